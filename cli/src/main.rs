@@ -1,0 +1,2 @@
+//! The anthronet command.
+fn main() {}

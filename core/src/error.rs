@@ -1,0 +1,74 @@
+//! The error type of the library: every variant names what was wrong, what was expected and what came.
+
+use std::path::{Path, PathBuf};
+
+/// What the library's fallible functions return.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Everything that can go wrong, grouped by what the caller can do about it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A field of a request is unknown, not finite, out of range or of the wrong size.
+    #[error("{field}: {message}")]
+    Request {
+        /// The field as the caller wrote it, such as `height` or `z`.
+        field: String,
+        /// What was expected and what came, with a hint where there is one.
+        message: String,
+    },
+    /// The given measures cannot belong to one person; the message carries the conflict and the nearest values.
+    #[error("{0}")]
+    Infeasible(String),
+    /// The model file is damaged, of another version or does not match this library.
+    #[error("model {origin}: {message}")]
+    Model {
+        /// Path of the file, or `(embedded)`, or `(memory)`.
+        origin: String,
+        /// What was expected and what came.
+        message: String,
+    },
+    /// A file that was read is not what it should be.
+    #[error("{}: {message}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What was expected and what came, with line or offset where known.
+        message: String,
+    },
+    /// The operating system refused to read or write.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was tried: `read`, `write`, `create`.
+        action: &'static str,
+        /// The system's own word.
+        source: std::io::Error,
+    },
+    /// Data handed to an exporter or a constructor contradicts itself.
+    #[error("{what}: {message}")]
+    Invalid {
+        /// The thing that is wrong, such as `joint weights`.
+        what: &'static str,
+        /// What was expected and what came.
+        message: String,
+    },
+}
+
+impl Error {
+    /// An error about one field of a request.
+    pub fn request(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Request { field: field.into(), message: message.into() }
+    }
+
+    /// An error about the content of a file.
+    pub fn file(path: impl AsRef<Path>, message: impl Into<String>) -> Self {
+        Self::File { path: path.as_ref().to_path_buf(), message: message.into() }
+    }
+
+    /// An error about data that contradicts itself.
+    pub fn invalid(what: &'static str, message: impl Into<String>) -> Self {
+        Self::Invalid { what, message: message.into() }
+    }
+}
