@@ -1,2 +1,4 @@
 //! The anthronet command.
+mod failure;
+mod render;
 fn main() {}
