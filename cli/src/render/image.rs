@@ -56,11 +56,11 @@ impl Image {
     }
 }
 
-/// Linear light, 0..1, to an sRGB byte (IEC 61966-2-1).
-pub(crate) fn srgb_from_linear(x: f32) -> u8 {
+/// Linear light, 0..1, to an sRGB byte (IEC 61966-2-1); `grain`, -0.5..0.5 of a step, decides the rounding.
+pub(crate) fn srgb_from_linear(x: f32, grain: f32) -> u8 {
     let x = x.clamp(0.0, 1.0);
     let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 };
-    (encoded * 255.0 + 0.5) as u8
+    (encoded * 255.0 + 0.5 + grain) as u8
 }
 
 /// An sRGB byte to linear light.
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn srgb_round_trips() {
         for byte in 0..=255 {
-            assert_eq!(srgb_from_linear(linear_from_srgb(byte)), byte);
+            assert_eq!(srgb_from_linear(linear_from_srgb(byte), 0.0), byte);
         }
     }
 

@@ -11,10 +11,10 @@ pub(crate) struct Shading<'a> {
     pub(crate) studio: &'a Studio,
     /// The camera's place in view space.
     pub(crate) eye: Vec3,
+    /// The figure's own +Z in view space: where its eyes look.
+    pub(crate) forward: Vec3,
     /// Albedo of the skin.
     pub(crate) skin: Vec3,
-    /// Lightness of everything, 1 as measured.
-    pub(crate) exposure: f32,
 }
 
 impl Shading<'_> {
@@ -36,7 +36,7 @@ impl Shading<'_> {
             Material::Tongue => self.surface(Vec3::new(0.42, 0.12, 0.11), v, normal, to_eye, 40.0, 1.0),
             Material::Skin | Material::Lashes => self.surface(self.skin, v, normal, to_eye, 14.0, 0.75),
         };
-        let [r, g, b] = tone(radiance * self.exposure).to_array();
+        let [r, g, b] = tone(radiance).to_array();
         [r, g, b, 1.0]
     }
 
@@ -45,7 +45,7 @@ impl Shading<'_> {
         let diffuse = albedo * v.light;
         let fresnel = schlick(n.dot(to_eye));
         let mirrored = (n * (2.0 * n.dot(to_eye)) - to_eye).normalize_or(n);
-        let sheen = self.studio.radiance(mirrored) * (fresnel * v.open.y * 0.45);
+        let sheen = self.studio.radiance(mirrored) * (fresnel * v.open.y * 0.28);
         diffuse + (sheen + self.highlight(v, n, to_eye, shine) * 0.035) * gloss
     }
 
@@ -76,22 +76,30 @@ impl Shading<'_> {
         let in_iris = (1.0 - smooth(iris - 0.02, iris + 0.03, s)) * front;
         let in_pupil = (1.0 - smooth(pupil - 0.015, pupil + 0.02, s)) * front;
         let albedo = sclera.lerp(iris_colour, in_iris).lerp(Vec3::splat(0.004), in_pupil);
+        // The cornea bulges: over the iris its normal leans outwards more than the eyeball's.
+        let axis = self.forward;
+        let lean = 0.75 * in_iris;
+        let n = (n + (n - axis * n.dot(axis)) * lean).normalize_or(n);
         let fresnel = schlick(n.dot(to_eye));
         let mirrored = (n * (2.0 * n.dot(to_eye)) - to_eye).normalize_or(n);
         let wet = self.studio.radiance(mirrored) * (fresnel * v.open.y * 0.8);
-        albedo * v.light + wet + self.highlight(v, n, to_eye, 700.0) * 0.02
+        albedo * v.light + wet + self.highlight(v, n, to_eye, 500.0) * 0.035
     }
 }
 
 /// Lashes as strands: dense at the lid, tapering to nothing. `local` is the place relative to the eyeball, whose
-/// surface has length 1; the lashes reach from there to about 1.4.
+/// surface has length 1; the lashes reach from there to about 1.4. Lower lashes are short and thin.
 fn lash(local: Vec3) -> [f32; 4] {
-    let out = ((local.length() - 1.0) / 0.38).clamp(0.0, 1.0);
-    let along = libm::atan2f(local.x, local.z) + 0.12 * out * if local.x < 0.0 { -1.0 } else { 1.0 };
-    let strand = 0.5 + 0.5 * libm::cosf(along * 90.0);
-    let width = 0.85 - 0.80 * out;
-    let alpha = smooth(1.0 - width - 0.25, 1.0 - width + 0.25, strand) * (1.0 - smooth(0.75, 1.0, out));
-    [0.012, 0.009, 0.008, alpha * 0.9]
+    let upper = local.y > 0.0;
+    let out = ((local.length() - 1.0) / if upper { 0.38 } else { 0.26 }).clamp(0.0, 1.0);
+    // Strands lean away from the nose, and more so towards their tips.
+    let along = libm::atan2f(local.x, local.z) * (1.0 - 0.10 * out);
+    let uneven = 0.30 * libm::sinf(along * 23.0) + 0.22 * libm::sinf(along * 41.0 + 0.7);
+    let strand = 0.5 + 0.5 * libm::cosf(along * 150.0 + 3.0 * uneven);
+    let length = (if upper { 0.86 } else { 0.62 }) + 0.30 * uneven;
+    let width = (if upper { 0.74 } else { 0.40 }) * (1.0 - out / length).max(0.0);
+    let alpha = smooth(1.0 - width - 0.15, 1.0 - width + 0.20, strand) * smooth(0.0, 0.05, length - out);
+    [0.016, 0.011, 0.009, alpha * if upper { 0.85 } else { 0.5 }]
 }
 
 /// Reflectance of a surface of refractive index 1.4, by the cosine to the eye.

@@ -20,5 +20,6 @@ mod visibility;
 
 pub(crate) use camera::View;
 pub(crate) use figure::{Figure, Material, Part};
+pub(crate) use font::{draw_text, text_width};
 pub(crate) use image::Image;
 pub(crate) use picture::{LitFigure, Picture, Tile, draw_views};

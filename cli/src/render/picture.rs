@@ -14,7 +14,7 @@ use super::raster::{Mesh, Samples, Varying, Window};
 use super::visibility::{Occluder, Visibility, directions};
 
 /// Points along a side of the square of ground that takes the contact shadow.
-const GROUND_POINTS: usize = 72;
+const GROUND_POINTS: usize = 96;
 /// Half the side of that square, metres.
 const GROUND_REACH: f32 = 1.0;
 /// Samples in a band of a tile that is rendered at once: bounds the memory.
@@ -150,7 +150,11 @@ impl LitFigure {
                 }
             }
         }
-        light.into_iter().map(|l| l / total.max(1e-6)).collect()
+        for value in &mut light {
+            *value /= total.max(1e-6);
+        }
+        soften(&mut light);
+        light
     }
 
     /// How tall and how wide the figure is in a view: left, right, top, in metres about the model's axis.
@@ -300,7 +304,12 @@ impl Picture {
             })
             .collect();
         let ground = figure.ground(tile.view, &studio);
-        let shading = Shading { studio: &studio, eye: camera.eye(), skin: figure.figure.skin, exposure: 1.0 };
+        let shading = Shading {
+            studio: &studio,
+            eye: camera.eye(),
+            forward: tile.view.view_from_model() * Vec3::Z,
+            skin: figure.figure.skin,
+        };
 
         let rows = (BAND_SAMPLES / (tile.width * self.samples * self.samples).max(1)).clamp(1, tile.height.max(1));
         let bands: Vec<usize> = (0..tile.height).step_by(rows).collect();
@@ -371,14 +380,46 @@ impl Picture {
                 if empty > 0.0 {
                     let shadow = tile.camera.ground(Vec2::new(x as f32 + 0.5, row)).map_or(1.0, |g| {
                         let p = model_from_view * Vec3::new(g.x, 0.0, g.y);
-                        sample_ground(ground, Vec2::new(p.x, p.z) - figure.ground_centre)
+                        let light = sample_ground(ground, Vec2::new(p.x, p.z) - figure.ground_centre);
+                        1.0 - (1.0 - light) * away_from_sides(x, tile.width)
                     });
                     colour += behind * (shadow * empty);
                 }
-                out.extend(colour.to_array().map(srgb_from_linear));
+                let grain = dither(x, first + y);
+                out.extend(colour.to_array().map(|c| srgb_from_linear(c, grain)));
             }
         }
         out
+    }
+}
+
+/// 0 at a tile's left and right edge, 1 from an eighth of its width on: shadows end before the neighbour begins.
+fn away_from_sides(x: usize, width: usize) -> f32 {
+    let t = (8.0 * (x.min(width - 1 - x) as f32 + 0.5) / width as f32).min(1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// A fixed grain between -0.5 and 0.5 that hides the steps of eight bits in gradients.
+fn dither(x: usize, y: usize) -> f32 {
+    let mut h = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77);
+    h = (h ^ h >> 15).wrapping_mul(0x2C1B_3C6D);
+    h = (h ^ h >> 12).wrapping_mul(0x297A_2D39);
+    (h >> 8) as f32 / 16_777_216.0 - 0.5
+}
+
+/// Blurs the grid by a few centimetres: the key light's directions are too few to give one smooth shadow.
+fn soften(grid: &mut [f32]) {
+    let last = GROUND_POINTS - 1;
+    for _ in 0..3 {
+        for stride in [1, GROUND_POINTS] {
+            let before = grid.to_vec();
+            for (k, value) in grid.iter_mut().enumerate() {
+                let along = if stride == 1 { k % GROUND_POINTS } else { k / GROUND_POINTS };
+                let low = if along == 0 { k } else { k - stride };
+                let high = if along == last { k } else { k + stride };
+                *value = 0.25 * before[low] + 0.5 * before[k] + 0.25 * before[high];
+            }
+        }
     }
 }
 

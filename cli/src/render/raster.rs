@@ -62,7 +62,8 @@ impl Window {
     }
 
     /// The triangles' indices, three by three, that may touch the window and have an area: euc divides by it.
-    fn visible(&self, projected: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u32> {
+    /// On request only those whose front (counter-clockwise) faces the eye.
+    fn visible(&self, projected: &[Vec3], triangles: &[[u32; 3]], front_only: bool) -> Vec<u32> {
         let low = self.origin;
         let high = [low[0] + self.size[0] as f32, low[1] + self.size[1] as f32];
         let mut out = Vec::new();
@@ -71,7 +72,9 @@ impl Window {
             let (min, max) = (a.min(b).min(c), a.max(b).max(c));
             let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
             let inside = max.x >= low[0] && min.x <= high[0] && max.y >= low[1] && min.y <= high[1];
-            if inside && area.abs() > 1e-5 {
+            // With y downwards a counter-clockwise triangle has a negative area.
+            let front = !front_only || area < 0.0;
+            if inside && front && area.abs() > 1e-5 {
                 out.extend_from_slice(t);
             }
         }
@@ -96,11 +99,11 @@ impl Pipeline for DepthOnly<'_> {
     fn frag(&self, _: &f32) {}
 }
 
-/// The smallest depth per sample, row by row; [`NOTHING`] where no triangle covers it.
+/// The smallest depth per sample of what faces the eye, row by row; [`NOTHING`] where nothing does.
 pub(crate) fn depth_map(window: Window, projected: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
     let mut pixels = Buffer2d::new(window.size, ());
     let mut depth = Buffer2d::new(window.size, NOTHING);
-    let indices = window.visible(projected, triangles);
+    let indices = window.visible(projected, triangles, true);
     DepthOnly { window, projected }.draw::<Triangles<'_, _, BackfaceCullingDisabled>, _>(
         &indices,
         &mut pixels,
@@ -164,7 +167,7 @@ impl Samples {
 
     /// Draws an opaque mesh.
     pub(crate) fn draw(&mut self, mesh: &Mesh<'_>, shader: impl Fn(&Varying) -> [f32; 4]) {
-        let indices = self.window.visible(mesh.projected, mesh.triangles);
+        let indices = self.window.visible(mesh.projected, mesh.triangles, false);
         let pipeline = self.pipeline(mesh, shader, true);
         pipeline.draw::<Triangles<'_, _, BackfaceCullingDisabled>, _>(
             &indices,
@@ -175,7 +178,7 @@ impl Samples {
 
     /// Draws a translucent mesh (lashes) over what is there; call after every opaque one.
     pub(crate) fn draw_veil(&mut self, mesh: &Mesh<'_>, shader: impl Fn(&Varying) -> [f32; 4]) {
-        let indices = self.window.visible(mesh.projected, mesh.triangles);
+        let indices = self.window.visible(mesh.projected, mesh.triangles, false);
         let pipeline = self.pipeline(mesh, shader, false);
         pipeline.draw::<Triangles<'_, _, BackfaceCullingDisabled>, _>(
             &indices,

@@ -7,8 +7,8 @@ use glam::{Vec2, Vec3};
 
 use super::raster::{Window, depth_map};
 
-/// Side of a depth map in texels. A person with arms spread spans 2 m: a texel is then 4 mm.
-const MAP_SIZE: usize = 480;
+/// Side of a depth map in texels. A person with arms spread spans 2 m: a texel is then 5 mm.
+const MAP_SIZE: usize = 400;
 
 /// Directions spread evenly over the sphere (Fibonacci spiral), from +Y down to -Y.
 pub(crate) fn directions(count: usize) -> Vec<Vec3> {
@@ -64,8 +64,11 @@ impl Visibility {
 }
 
 fn open_towards(occluder: &Occluder<'_>, points: &[(Vec3, Vec3)], towards: Vec3) -> Vec<u64> {
-    let (right, up) = towards.any_orthonormal_pair();
-    let flat = |p: Vec3| Vec2::new(p.dot(right), p.dot(up));
+    // Seen from the light, x to the right and y downwards as in a picture, so that fronts wind as they do there.
+    let right = if towards.y.abs() < 0.9 { Vec3::Y.cross(towards) } else { Vec3::Z.cross(towards) };
+    let right = right.normalize_or(Vec3::X);
+    let down = right.cross(towards);
+    let flat = |p: Vec3| Vec2::new(p.dot(right), p.dot(down));
     let (low, high) = occluder.positions.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| {
         let p = flat(*p);
         (low.min(p), high.max(p))
