@@ -5,7 +5,11 @@
 //! [`basis`].
 
 pub mod assets;
+pub mod basis;
+pub mod corpus;
+pub mod dataset;
 mod error;
+pub mod landmarks;
 pub mod sampling;
 pub mod tpose;
 
