@@ -2,8 +2,11 @@
 
 pub mod condition;
 mod error;
+pub mod export;
+pub mod import;
 pub mod measure;
 pub mod mesh;
 pub mod random;
+pub mod rig;
 
 pub use error::{Error, Result};
