@@ -239,7 +239,8 @@ pub(crate) fn figure_from_scene(scene: &Scene) -> Result<Figure> {
         })
         .collect();
     let skin = scene.meshes.iter().find(|mesh| kind(mesh) == Material::Skin).and_then(material);
-    let [r, g, b, _] = skin.map_or_else(|| SkinTone::default().base_color(), |m: &SceneMaterial| m.base_color);
+    let [r, g, b, _] =
+        skin.map_or_else(|| SkinTone::default().base_color(), |m: &SceneMaterial| m.base_color);
     Figure::new(parts, Vec3::new(r, g, b))
 }
 
@@ -266,7 +267,11 @@ mod tests {
     fn options_go_before_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("r.json");
-        std::fs::write(&file, r#"{"sex": "male", "measures": {"height": 1.8, "arm_length": 0.33}, "seed": 3}"#).unwrap();
+        std::fs::write(
+            &file,
+            r#"{"sex": "male", "measures": {"height": 1.8, "arm_length": 0.33}, "seed": 3}"#,
+        )
+        .unwrap();
         let arguments = RequestArguments {
             request: Some(file),
             sex: Some(SexChoice::Female),

@@ -83,9 +83,8 @@ fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<Re
     let mut random = SplitMix(seed);
     let mut targets: [Vec<(f64, f64)>; 2] = [count.div_ceil(2), count / 2].map(|n| {
         let mut columns = [(); 2].map(|()| {
-            let mut strata: Vec<f64> = (0..n)
-                .map(|i| REACH * (2.0 * (i as f64 + random.unit()) / n as f64 - 1.0))
-                .collect();
+            let mut strata: Vec<f64> =
+                (0..n).map(|i| REACH * (2.0 * (i as f64 + random.unit()) / n as f64 - 1.0)).collect();
             for i in (1..n).rev() {
                 strata.swap(i, (random.unit() * (i + 1) as f64) as usize);
             }

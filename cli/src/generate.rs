@@ -110,9 +110,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     for warning in &summary.warnings {
         eprintln!("warning: {warning}");
     }
-    let residual = summary.worst_residual_mm.map_or("no measure given".to_owned(), |(name, mm)| {
-        format!("measures within {mm:.3} mm ({name})")
-    });
+    let residual = summary
+        .worst_residual_mm
+        .map_or("no measure given".to_owned(), |(name, mm)| format!("measures within {mm:.3} mm ({name})"));
     eprintln!(
         "{}: {}, {:.3} m, {:.1} kg, {residual}",
         arguments.output.display(),

@@ -93,7 +93,11 @@ pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<
         return Ok(());
     }
     let known: Vec<_> = known.iter().map(|k| format!(".{k}")).collect();
-    Err(Failure::usage(format!("{option} {}: unknown ending, expected one of {}", path.display(), known.join(" "))))
+    Err(Failure::usage(format!(
+        "{option} {}: unknown ending, expected one of {}",
+        path.display(),
+        known.join(" ")
+    )))
 }
 
 #[cfg(test)]
@@ -103,7 +107,11 @@ mod tests {
     #[test]
     fn sides_come_after_the_name_for_both_and_nothing_twice() {
         let mut arguments = RequestArguments {
-            measures: vec![("arm_length_left".into(), 0.3), ("arm_length".into(), 0.31), ("height".into(), 1.7)],
+            measures: vec![
+                ("arm_length_left".into(), 0.3),
+                ("arm_length".into(), 0.31),
+                ("height".into(), 1.7),
+            ],
             ..RequestArguments::default()
         };
         let names: Vec<_> = arguments.sorted_measures().unwrap().iter().map(|(name, _)| *name).collect();

@@ -18,7 +18,9 @@ pub(crate) enum Table {
 
 /// Score the model against held-out bodies, or print the statistics of the sampled ones.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --table statistics --json")]
+#[command(
+    after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --table statistics --json"
+)]
 pub(crate) struct EvaluateArguments {
     /// Which table.
     #[arg(long, default_value = "generator")]

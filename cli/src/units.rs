@@ -73,7 +73,8 @@ pub(crate) fn parse_measure(text: &str) -> Result<(String, f64), String> {
 
 /// Reads a picture's size such as `1200x800`: 16 to 8192 pixels each way.
 pub(crate) fn parse_size(text: &str) -> Result<(usize, usize), String> {
-    let wrong = || format!("expected WIDTHxHEIGHT in pixels, 16 to 8192 each, such as 1600x720, got `{text}`");
+    let wrong =
+        || format!("expected WIDTHxHEIGHT in pixels, 16 to 8192 each, such as 1600x720, got `{text}`");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
     let side = |digits: &str| match digits.trim().parse::<usize>() {
         Ok(side @ 16..=8192) => Ok(side),
@@ -114,7 +115,10 @@ mod tests {
 
     #[test]
     fn what_is_no_length_says_so() {
-        for text in ["", "m", "NaN", "inf", "-inf", "1e999", "tall", "1.7.0", "5ft13in", "5ftx", "5.5ft3in", "1.7kg", "0x10"] {
+        for text in [
+            "", "m", "NaN", "inf", "-inf", "1e999", "tall", "1.7.0", "5ft13in", "5ftx", "5.5ft3in", "1.7kg",
+            "0x10",
+        ] {
             let message = parse_length(text).unwrap_err();
             assert!(message.contains(&format!("got `{text}`")), "{text}: {message}");
         }

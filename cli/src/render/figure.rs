@@ -56,7 +56,9 @@ impl Figure {
         }
         for part in &parts {
             let name = part.material;
-            if let Some(at) = part.positions.iter().position(|p| !p.is_finite() || p.abs().max_element() > 1e3) {
+            if let Some(at) =
+                part.positions.iter().position(|p| !p.is_finite() || p.abs().max_element() > 1e3)
+            {
                 let p = part.positions[at];
                 return Err(Failure::failed(format!(
                     "{name:?} vertex {at}: expected finite metres, got ({}, {}, {})",
@@ -65,7 +67,9 @@ impl Figure {
             }
             let count = part.positions.len();
             if let Some(bad) = part.triangles.iter().flatten().find(|i| **i as usize >= count) {
-                return Err(Failure::failed(format!("{name:?}: triangle names vertex {bad}, there are {count}")));
+                return Err(Failure::failed(format!(
+                    "{name:?}: triangle names vertex {bad}, there are {count}"
+                )));
             }
         }
         Ok(Self { parts, skin: skin.clamp(Vec3::splat(0.01), Vec3::splat(0.95)) })

@@ -102,7 +102,8 @@ mod tests {
     fn text_is_drawn_where_it_says() {
         let mut image = Image::new(24, 16, [255; 3]);
         draw_text(&mut image, 2, 1, 2, [0; 3], "1");
-        let dark: Vec<_> = (0..24 * 16).filter(|i| image.pixels[i * 3] == 0).map(|i| (i % 24, i / 24)).collect();
+        let dark: Vec<_> =
+            (0..24 * 16).filter(|i| image.pixels[i * 3] == 0).map(|i| (i % 24, i / 24)).collect();
         let ones: u32 = glyph('1').iter().map(|r| r.count_ones()).sum();
         assert_eq!(dark.len(), ones as usize * 4);
         assert!(dark.iter().all(|(x, y)| (2..12).contains(x) && (1..15).contains(y)));

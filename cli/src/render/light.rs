@@ -54,7 +54,8 @@ impl Studio {
     /// Radiance from a direction, linear RGB.
     pub(crate) fn radiance(&self, d: Vec3) -> Vec3 {
         let up = 0.5 + 0.5 * d.y;
-        let room = Vec3::new(0.20, 0.185, 0.175).lerp(Vec3::new(0.37, 0.39, 0.42), up * up * (3.0 - 2.0 * up));
+        let room =
+            Vec3::new(0.20, 0.185, 0.175).lerp(Vec3::new(0.37, 0.39, 0.42), up * up * (3.0 - 2.0 * up));
         self.others.iter().fold(room + self.key.radiance * self.key.shape(d), |sum, light| {
             sum + light.radiance * light.shape(d)
         })

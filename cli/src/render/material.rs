@@ -69,7 +69,8 @@ impl Shading<'_> {
         let around = libm::atan2f(d.y, d.x);
         let fibres = 0.5 + 0.25 * libm::sinf(around * 37.0) + 0.25 * libm::sinf(around * 61.0 + 1.3);
         let depth = ((s - pupil) / (iris - pupil)).clamp(0.0, 1.0);
-        let brown = Vec3::new(0.115, 0.052, 0.022).lerp(Vec3::new(0.25, 0.13, 0.055), fibres * (1.0 - 0.5 * depth));
+        let brown =
+            Vec3::new(0.115, 0.052, 0.022).lerp(Vec3::new(0.25, 0.13, 0.055), fibres * (1.0 - 0.5 * depth));
         let limbus = smooth(0.62, 1.0, depth);
         let iris_colour = brown * (1.0 - 0.78 * limbus);
         let sclera = Vec3::new(0.70, 0.655, 0.62) * (1.0 - 0.25 * smooth(0.55, 0.95, s));

@@ -222,7 +222,14 @@ impl Picture {
 impl Tile {
     /// A tile of this size that shows the figure's whole body at a fixed scale: `scale` pixels a metre, the
     /// ground `foot` pixels above the lower edge.
-    pub(crate) fn at_scale(width: usize, height: usize, view: View, scale: f32, foot: f32, middle: f32) -> Self {
+    pub(crate) fn at_scale(
+        width: usize,
+        height: usize,
+        view: View,
+        scale: f32,
+        foot: f32,
+        middle: f32,
+    ) -> Self {
         let camera = body_camera(width, height, scale, foot, middle);
         Self { width, height, view, camera }
     }
@@ -245,12 +252,14 @@ pub(crate) fn draw_views(figure: &LitFigure, views: &[View], width: usize, heigh
     let body: f32 =
         views.iter().zip(&frames).filter(|(v, _)| !v.is_head()).map(|(_, f)| f.right - f.left + gap).sum();
     let heads = views.iter().filter(|v| v.is_head()).count() as f32 * head_width(height);
-    let tallest = frames.iter().zip(views).filter(|(_, v)| !v.is_head()).fold(0.1_f32, |t, (f, _)| t.max(f.top));
+    let tallest =
+        frames.iter().zip(views).filter(|(_, v)| !v.is_head()).fold(0.1_f32, |t, (f, _)| t.max(f.top));
     let (above, below) = (0.07, 0.17);
     let by_height = height as f32 / (tallest + above + below);
     let by_width = if body > 0.0 { (width as f32 - heads).max(width as f32 * 0.2) / body } else { by_height };
     let scale = by_height.min(by_width);
-    let slack = if body > 0.0 { (height as f32 - scale * (tallest + above + below)).max(0.0) * 0.5 } else { 0.0 };
+    let slack =
+        if body > 0.0 { (height as f32 - scale * (tallest + above + below)).max(0.0) * 0.5 } else { 0.0 };
 
     let shares: Vec<f32> = views
         .iter()
@@ -294,8 +303,11 @@ impl Picture {
     pub(crate) fn draw(&self, figure: &LitFigure, tile: &Tile) -> Image {
         let studio = Studio::new();
         let fine = self.samples as f32;
-        let camera =
-            Camera { axis: tile.camera.axis, centre: tile.camera.centre * fine, scale: tile.camera.scale * fine };
+        let camera = Camera {
+            axis: tile.camera.axis,
+            centre: tile.camera.centre * fine,
+            scale: tile.camera.scale * fine,
+        };
         let parts: Vec<Prepared> = (0..figure.figure.parts.len())
             .map(|part| {
                 let varyings = figure.varyings(part, tile.view, &studio);
@@ -311,7 +323,8 @@ impl Picture {
             skin: figure.figure.skin,
         };
 
-        let rows = (BAND_SAMPLES / (tile.width * self.samples * self.samples).max(1)).clamp(1, tile.height.max(1));
+        let rows =
+            (BAND_SAMPLES / (tile.width * self.samples * self.samples).max(1)).clamp(1, tile.height.max(1));
         let bands: Vec<usize> = (0..tile.height).step_by(rows).collect();
         let threads = thread::available_parallelism().map_or(1, NonZero::get).min(8);
         let draw_band = |first: usize| {
@@ -322,7 +335,9 @@ impl Picture {
         let pixels: Vec<u8> = thread::scope(|scope| {
             let workers: Vec<_> = bands
                 .chunks(bands.len().div_ceil(threads).max(1))
-                .map(|bands| scope.spawn(move || bands.iter().flat_map(|b| draw_band(*b)).collect::<Vec<u8>>()))
+                .map(|bands| {
+                    scope.spawn(move || bands.iter().flat_map(|b| draw_band(*b)).collect::<Vec<u8>>())
+                })
                 .collect();
             workers
                 .into_iter()
@@ -332,7 +347,10 @@ impl Picture {
         Image { width: tile.width, height: tile.height, pixels }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call site; the arguments are the tile's prepared state")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one call site; the arguments are the tile's prepared state"
+    )]
     fn band(
         &self,
         figure: &LitFigure,
@@ -344,8 +362,7 @@ impl Picture {
         count: usize,
     ) -> Vec<u8> {
         let fine = self.samples;
-        let window =
-            Window { origin: [0.0, (first * fine) as f32], size: [tile.width * fine, count * fine] };
+        let window = Window { origin: [0.0, (first * fine) as f32], size: [tile.width * fine, count * fine] };
         let mut samples = Samples::new(window);
         let mesh = |i: usize| Mesh {
             projected: &parts[i].projected,

@@ -193,7 +193,13 @@ impl Samples {
         shader: F,
         write_depth: bool,
     ) -> Shaded<'a, F> {
-        Shaded { window: self.window, projected: mesh.projected, varyings: mesh.varyings, shader, write_depth }
+        Shaded {
+            window: self.window,
+            projected: mesh.projected,
+            varyings: mesh.varyings,
+            shader,
+            write_depth,
+        }
     }
 
     /// Closes cracks one sample wide: euc tests each triangle's own rounded edges, so that a sample on a shared edge

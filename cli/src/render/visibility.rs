@@ -46,7 +46,9 @@ impl Visibility {
             let workers: Vec<_> = directions
                 .chunks(chunk)
                 .map(|part| {
-                    scope.spawn(move || part.iter().map(|d| open_towards(occluder, points, *d)).collect::<Vec<_>>())
+                    scope.spawn(move || {
+                        part.iter().map(|d| open_towards(occluder, points, *d)).collect::<Vec<_>>()
+                    })
                 })
                 .collect();
             workers
@@ -69,10 +71,11 @@ fn open_towards(occluder: &Occluder<'_>, points: &[(Vec3, Vec3)], towards: Vec3)
     let right = right.normalize_or(Vec3::X);
     let down = right.cross(towards);
     let flat = |p: Vec3| Vec2::new(p.dot(right), p.dot(down));
-    let (low, high) = occluder.positions.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| {
-        let p = flat(*p);
-        (low.min(p), high.max(p))
-    });
+    let (low, high) =
+        occluder.positions.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| {
+            let p = flat(*p);
+            (low.min(p), high.max(p))
+        });
     let span = (high - low).max_element().max(1e-3);
     let scale = (MAP_SIZE - 2) as f32 / span;
     let texel = span / (MAP_SIZE - 2) as f32;
@@ -115,7 +118,8 @@ mod tests {
     fn a_sphere_sees_half_and_a_point_beneath_it_less() {
         let part = sphere(Vec3::new(0.0, 1.0, 0.0), 0.5, 48);
         let welded = Welded::new(&part);
-        let mut points: Vec<_> = welded.positions.iter().copied().zip(welded.normals.iter().copied()).collect();
+        let mut points: Vec<_> =
+            welded.positions.iter().copied().zip(welded.normals.iter().copied()).collect();
         points.push((Vec3::ZERO, Vec3::Y));
         let all = directions(128);
         let occluder = Occluder { positions: &part.positions, triangles: &part.triangles };
