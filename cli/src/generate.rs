@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::backend::{self, Model};
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::progress::print;
 use crate::request::{RequestArguments, check_ending, read_text};
 
@@ -83,6 +83,9 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &["glb", "gltf", "obj"])?;
+    if arguments.report.as_deref() == Some(&*arguments.output) {
+        return Err(Failure::usage("--report: expected another file than that of -o"));
+    }
     let choice = FileChoice {
         lod: arguments.lod,
         influences: if arguments.influences == "8" { 8 } else { 4 },

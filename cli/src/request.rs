@@ -42,7 +42,7 @@ pub(crate) struct RequestArguments {
     pub(crate) request: Option<PathBuf>,
 
     /// Which of the people with these measures: 0 is the likeliest [default: 0].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
     /// The latent vector by hand instead of by seed: as many numbers as `anthronet info` says, each about -3 to 3.

@@ -81,7 +81,7 @@ fn the_output_is_required_and_its_ending_known() {
 fn a_bad_request_file_is_a_failure_that_names_file_and_field() {
     let folder = folder();
     for (text, expected) in [
-        ("", "line 1"),
+        ("", "request"),
         ("{\"measures\": {\"height\": 1.7", "line 1"),
         ("[1, 2]", "request"),
         ("{\"measures\": {\"heigth\": 1.7}}", "did you mean"),
