@@ -1,6 +1,8 @@
 //! Conditional human bodies from tape measures.
 
+pub mod condition;
 mod error;
 pub mod measure;
+pub mod model;
 
 pub use error::{Error, Result};

@@ -1,0 +1,3 @@
+//! From a request to the condition of the network.
+
+pub mod fourier;
