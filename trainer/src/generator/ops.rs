@@ -135,6 +135,9 @@ impl CustomOp1 for Normalise {
                 work.for_each(|((out, g), y)| {
                     let rows = out.chunks_exact_mut(columns).zip(g.chunks_exact(columns));
                     for ((out, g), y) in rows.zip(y.chunks_exact(columns)) {
+                        let (out, g, y) = (&mut out[..columns], &g[..columns], &y[..columns]);
+                        let (mean_g, mean_gy) = (&mean_g[..columns], &mean_gy[..columns]);
+                        let inverse = &inverse[..columns];
                         for c in 0..columns {
                             out[c] = inverse[c] * (g[c] - mean_g[c] - y[c] * mean_gy[c]);
                         }
@@ -174,9 +177,12 @@ impl CustomOp2 for ScaleShiftPrelu {
         let mut out = vec![0.0; rows * columns];
         out.par_chunks_mut(CHUNK * columns).zip(x.par_chunks(CHUNK * columns)).for_each(|(out, x)| {
             for (out, x) in out.chunks_exact_mut(columns).zip(x.chunks_exact(columns)) {
+                // Slices of one visible length lose their bounds checks, and the loop becomes vector code.
+                let (scale, shift, slope) = (&scale[..columns], &shift[..columns], &slope[..columns]);
+                let (out, x) = (&mut out[..columns], &x[..columns]);
                 for c in 0..columns {
                     let u = x[c] * scale[c] + shift[c];
-                    out[c] = if u > 0.0 { u } else { u * slope[c] };
+                    out[c] = u.max(0.0) + u.min(0.0) * slope[c];
                 }
             }
         });
@@ -205,12 +211,17 @@ impl CustomOp2 for ScaleShiftPrelu {
                         let (d_shift, d_slope) = rest.split_at_mut(columns);
                         let rows = dx.chunks_exact_mut(columns).zip(g.chunks_exact(columns));
                         for ((dx, g), x) in rows.zip(x.chunks_exact(columns)) {
+                            let (scale, shift) = (&scale[..columns], &shift[..columns]);
+                            let (slope, d_slope) = (&slope[..columns], &mut d_slope[..columns]);
+                            let (d_scale, d_shift) = (&mut d_scale[..columns], &mut d_shift[..columns]);
+                            let (dx, g, x) = (&mut dx[..columns], &g[..columns], &x[..columns]);
                             for c in 0..columns {
                                 let u = x[c] * scale[c] + shift[c];
-                                let du = if u > 0.0 { g[c] } else { g[c] * slope[c] };
+                                let factor = if u > 0.0 { 1.0 } else { slope[c] };
+                                let du = g[c] * factor;
                                 d_scale[c] += du * x[c];
                                 d_shift[c] += du;
-                                d_slope[c] += if u > 0.0 { 0.0 } else { g[c] * u };
+                                d_slope[c] += g[c] * u.min(0.0);
                                 dx[c] = du * scale[c];
                             }
                         }
