@@ -5,5 +5,6 @@ mod error;
 pub mod measure;
 pub mod mesh;
 pub mod random;
+pub mod model;
 
 pub use error::{Error, Result};
