@@ -63,8 +63,8 @@ mod tests {
         assert_eq!(random.normal().to_bits(), NORMAL);
     }
 
-    const BITS: u64 = 0;
-    const NORMAL: u64 = 0;
+    const BITS: u64 = 17_236_010_905_523_606_670;
+    const NORMAL: u64 = 4_609_655_796_443_936_700;
 
     #[test]
     fn streams_and_seeds_differ() {

@@ -13,6 +13,9 @@ pub(crate) fn survival(x: f64, n: usize) -> f64 {
     }
     let half = 0.5 * x;
     let decay = libm::exp(-half);
+    if decay == 0.0 {
+        return 0.0;
+    }
     // Sum of half^(k) / Γ(k + 1): whole k for even n, k + 1/2 for odd n.
     let (mut term, mut order, tail) = if n.is_multiple_of(2) {
         (1.0, 0.0, 0.0)

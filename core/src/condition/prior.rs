@@ -77,6 +77,8 @@ impl Prior {
         let male = self.sexes[1].log_likelihood(given, error)?;
         // exp of a large number is infinite, so the quotient is still 0 or 1.
         let p = 1.0 / (1.0 + libm::exp(male - female));
+        // Measures so absurd that both likelihoods overflow say nothing.
+        let p = if p.is_nan() { 0.5 } else { p };
         Ok([p, 1.0 - p])
     }
 }
@@ -310,8 +312,10 @@ impl Conditional {
     /// One draw of all measures; the given ones stay as they were given.
     pub fn sample(&self, random: &mut Random) -> Measurements {
         let open: Vec<_> = (0..MEASURE_COUNT).filter(|i| !self.given[*i]).collect();
-        let part: Vec<_> =
-            open.iter().flat_map(|i| open.iter().map(|j| self.covariance[i * MEASURE_COUNT + j])).collect();
+        let part: Vec<_> = open
+            .iter()
+            .flat_map(|i| open.iter().map(move |j| self.covariance[i * MEASURE_COUNT + j]))
+            .collect();
         let normals = random.normals(open.len());
         let deviation = self.standard_deviation();
         let step = match Cholesky::with_jitter(&part, open.len()) {

@@ -39,7 +39,7 @@ pub struct MeasureRange {
 /// A person to be made.
 ///
 /// The same request gives the same person. The default asks for nothing: the likeliest woman.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// The sex; `None` leaves it to the measures to decide.
     pub sex: Option<Sex>,
@@ -102,6 +102,19 @@ impl<'de> Deserialize<'de> for Pairs {
     }
 }
 
+impl Default for Request {
+    fn default() -> Self {
+        Self {
+            sex: None,
+            measures: [None; MEASURE_COUNT],
+            seed: 0,
+            z: None,
+            fill: Fill::Mean,
+            nearest: false,
+        }
+    }
+}
+
 impl Request {
     /// Reads JSON such as `{"sex": "female", "measures": {"height": 1.70, "arm_length": 0.33}, "seed": 7}`.
     ///
@@ -113,6 +126,12 @@ impl Request {
     /// [`Error::Request`] with the field, or with line and column where the text is not such JSON. Values are checked
     /// by [`Request::check`], not here.
     pub fn from_json(text: &str) -> Result<Self> {
+        // A derived reader would also take an array of the fields in order.
+        if !text.trim_start().starts_with('{') {
+            let message =
+                "expected a JSON object such as {\"sex\": \"female\", \"measures\": {\"height\": 1.7}}";
+            return Err(Error::request("request", message));
+        }
         let file: RequestFile =
             serde_json::from_str(text).map_err(|e| Error::request("request", e.to_string()))?;
         let mut request = Self {
@@ -319,7 +338,8 @@ fn check_value(name: &str, value: f64, range: MeasureRange) -> Result<()> {
     if value >= range.min && value <= range.max {
         return Ok(());
     }
-    let span = format!("{}–{} m", metres(range.min), metres(range.max));
+    let millimetre = |v: f64| metres((v * 1000.0).round() / 1000.0);
+    let span = format!("{}–{} m", millimetre(range.min), millimetre(range.max));
     let message = if !value.is_finite() {
         format!("expected {span}, got {value}")
     } else if value <= 0.0 {

@@ -119,9 +119,9 @@ pub fn solve<S: MeasuredShape + ?Sized>(
         if !at.has_jacobian {
             at = problem.evaluate(at.coefficients, true);
         }
-        let Some(target) = problem.target(&at, ridge) else { break };
+        let Some(targets) = problem.targets(&at, ridge) else { break };
         iterations += 1;
-        let (next, improved) = problem.search(&at, &target);
+        let (next, improved) = problem.search(&at, &targets);
         (failures, ridge) = if improved { (0, RIDGE) } else { (failures + 1, ridge * RIDGE_GROWTH) };
         at = next;
         if at.largest < best.largest {
@@ -182,14 +182,15 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
         Point { coefficients, measures, largest, squares, has_jacobian }
     }
 
-    /// c₀ + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m + J(c − c₀)): where the measures would be as asked if they were linear. `None` when
-    /// the derivatives are not finite.
-    fn target(&self, at: &Point, mut ridge: f64) -> Option<Vec<f64>> {
+    /// Where the measures would be as asked if they were linear; see [`Targets`]. `None` when the derivatives are not
+    /// finite.
+    fn targets(&self, at: &Point, mut ridge: f64) -> Option<Targets> {
         let k = self.start.len();
         let n = self.rows.len();
         // Rows of J Σ^½, scaled to length 1: the Gram matrix then has a unit diagonal.
         let mut scaled = Vec::with_capacity(n * k);
-        let mut right = Vec::with_capacity(n);
+        let mut residual = Vec::with_capacity(n);
+        let mut moved = Vec::with_capacity(n);
         for &(i, asked) in &self.rows {
             let row = &self.jacobian[i * k..(i + 1) * k];
             let first = scaled.len();
@@ -203,9 +204,10 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
             for x in &mut scaled[first..] {
                 *x *= factor;
             }
-            let moved: f64 =
+            let change: f64 =
                 row.iter().zip(&at.coefficients).zip(self.start).map(|((j, c), c0)| j * (c - c0)).sum();
-            right.push((asked - at.measures[i] + moved) * factor);
+            residual.push((asked - at.measures[i]) * factor);
+            moved.push(change * factor);
         }
         let mut gram = vec![0.0; n * n];
         for i in 0..n {
@@ -230,37 +232,57 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
                 None => return None,
             }
         };
-        let mut multipliers = right;
-        factor.solve(&mut multipliers);
-        let mut target = self.start.to_vec();
-        for (row, multiplier) in scaled.chunks_exact(k.max(1)).zip(&multipliers) {
-            for ((c, x), variance) in target.iter_mut().zip(row).zip(self.variances) {
-                *c += variance.sqrt() * x * multiplier;
+        let from = |base: &[f64], mut right: Vec<f64>| {
+            factor.solve(&mut right);
+            let mut target = base.to_vec();
+            for (row, multiplier) in scaled.chunks_exact(k.max(1)).zip(&right) {
+                for ((c, x), variance) in target.iter_mut().zip(row).zip(self.variances) {
+                    *c += variance.sqrt() * x * multiplier;
+                }
             }
-        }
-        target.iter().all(|c| c.is_finite()).then_some(target)
+            target.iter().all(|c| c.is_finite()).then_some(target)
+        };
+        let whole = residual.iter().zip(&moved).map(|(r, m)| r + m).collect();
+        Some(Targets { nearest: from(self.start, whole)?, correction: from(&at.coefficients, residual)? })
     }
 
-    /// The first of ever shorter steps towards the target that lowers the residual, and true; else the best of them,
-    /// and false.
-    fn search(&mut self, at: &Point, target: &[f64]) -> (Point, bool) {
+    /// The next point, and whether it is better than the last.
+    ///
+    /// The nearest target is taken if it at least halves the residual. Else its sideways move has crossed kinks, and
+    /// the correction alone is followed, in ever shorter steps until the residual falls; if it never does, the best of
+    /// them is the next point.
+    fn search(&mut self, at: &Point, targets: &Targets) -> (Point, bool) {
+        let want_jacobian = at.largest > NEARLY_DONE;
+        let mut best = self.evaluate(targets.nearest.clone(), want_jacobian);
+        if best.squares <= 0.25 * at.squares {
+            return (best, true);
+        }
+        best.has_jacobian = false;
         let mut length = 1.0;
-        let mut best: Option<Point> = None;
         for _ in 0..7 {
-            let step = at.coefficients.iter().zip(target).map(|(c, t)| c + length * (t - c)).collect();
-            let want_jacobian = length == 1.0 && at.largest > NEARLY_DONE;
-            let point = self.evaluate(step, want_jacobian);
-            // A full step promises all of the residual; a hundredth of the promise is the least to be kept.
-            if point.squares <= (1.0 - 0.01 * length) * at.squares {
-                return (point, true);
+            let step =
+                at.coefficients.iter().zip(&targets.correction).map(|(c, t)| c + length * (t - c)).collect();
+            let point = self.evaluate(step, false);
+            let falls = point.squares <= (1.0 - 0.01 * length) * at.squares;
+            if point.squares < best.squares {
+                best = point;
             }
-            if best.as_ref().is_none_or(|b| point.squares < b.squares) {
-                best = Some(Point { has_jacobian: false, ..point });
+            if falls {
+                break;
             }
             length *= 0.5;
         }
-        (best.unwrap_or_else(|| Point { has_jacobian: false, ..at.clone() }), false)
+        let improved = best.squares <= 0.999 * at.squares;
+        (best, improved)
     }
+}
+
+/// Where the next step could lead.
+struct Targets {
+    /// c₀ + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m + J(c − c₀)): of all points that meet the measures, the one nearest to the start.
+    nearest: Vec<f64>,
+    /// c + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m): the one nearest to the current point.
+    correction: Vec<f64>,
 }
 
 #[cfg(test)]

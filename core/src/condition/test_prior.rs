@@ -66,11 +66,12 @@ pub(crate) fn prior() -> Prior {
     Prior::new(sex_prior(0.0, 0.0), sex_prior(1.5, 0.0))
 }
 
-/// Ranges of ± six standard deviations, none below a centimetre.
+/// Ranges of ± six standard deviations in whole centimetres, none below one.
 pub(crate) fn ranges() -> [MeasureRange; MEASURE_COUNT] {
     let prior = sex_prior(0.7, 0.0);
     std::array::from_fn(|i| {
         let (mean, spread) = (prior.mean()[i], 6.0 * prior.covariance()[i * (MEASURE_COUNT + 1)].sqrt());
-        MeasureRange { min: (mean - spread).max(0.01), max: mean + spread }
+        let centimetre = |v: f64| (100.0 * v).round() / 100.0;
+        MeasureRange { min: centimetre(mean - spread).max(0.01), max: centimetre(mean + spread) }
     })
 }
