@@ -211,19 +211,7 @@ impl CustomOp2 for ScaleShiftPrelu {
                         let (d_shift, d_slope) = rest.split_at_mut(columns);
                         let rows = dx.chunks_exact_mut(columns).zip(g.chunks_exact(columns));
                         for ((dx, g), x) in rows.zip(x.chunks_exact(columns)) {
-                            let (scale, shift) = (&scale[..columns], &shift[..columns]);
-                            let (slope, d_slope) = (&slope[..columns], &mut d_slope[..columns]);
-                            let (d_scale, d_shift) = (&mut d_scale[..columns], &mut d_shift[..columns]);
-                            let (dx, g, x) = (&mut dx[..columns], &g[..columns], &x[..columns]);
-                            for c in 0..columns {
-                                let u = x[c] * scale[c] + shift[c];
-                                let factor = if u > 0.0 { 1.0 } else { slope[c] };
-                                let du = g[c] * factor;
-                                d_scale[c] += du * x[c];
-                                d_shift[c] += du;
-                                d_slope[c] += g[c] * u.min(0.0);
-                                dx[c] = du * scale[c];
-                            }
+                            prelu_backward([scale, shift, slope], x, g, dx, [d_scale, d_shift, d_slope]);
                         }
                         sum
                     })
@@ -241,6 +229,34 @@ impl CustomOp2 for ScaleShiftPrelu {
             Some(Tensor::from_vec(dx, (rows, columns), &Device::Cpu)?),
             Some(Tensor::from_vec(dp, (3, columns), &Device::Cpu)?),
         ))
+    }
+}
+
+/// One row of [`ScaleShiftPrelu`]'s backward pass. A function of its own, because only across a call does the
+/// compiler know that the outputs do not overlap, without which it writes no vector code.
+#[inline(never)]
+fn prelu_backward(
+    [scale, shift, slope]: [&[f32]; 3],
+    x: &[f32],
+    gradient: &[f32],
+    dx: &mut [f32],
+    [d_scale, d_shift, d_slope]: [&mut [f32]; 3],
+) {
+    fn one(p: [f32; 3], x: f32, g: f32, sums: [&mut f32; 3]) -> f32 {
+        let u = x * p[0] + p[1];
+        let factor = if u > 0.0 { 1.0 } else { p[2] };
+        let du = g * factor;
+        *sums[0] += du * x;
+        *sums[1] += du;
+        *sums[2] += g * u.min(0.0);
+        du * p[0]
+    }
+    let sums = d_scale.iter_mut().zip(d_shift).zip(d_slope);
+    let parameters = scale.iter().zip(shift).zip(slope);
+    for ((((dx, x), g), ((a, b), c)), ((p, q), r)) in
+        dx.iter_mut().zip(x).zip(gradient).zip(sums).zip(parameters)
+    {
+        *dx = one([*p, *q, *r], *x, *g, [a, b, c]);
     }
 }
 
