@@ -6,6 +6,7 @@ pub mod export;
 pub mod import;
 pub mod measure;
 pub mod mesh;
+pub mod model;
 pub mod random;
 pub mod rig;
 
