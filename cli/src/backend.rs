@@ -123,10 +123,26 @@ pub(crate) fn measure_file(_model: &Model, _path: &Path) -> Result<Measured> {
     Err(Failure::failed(NOT_WIRED))
 }
 
-/// A character file as the renderer takes it.
-pub(crate) fn figure_from_file(_path: &Path) -> Result<Figure> {
-    // figure_from_scene(&anthronet::import::read_scene(path)?)
-    Err(Failure::failed(NOT_WIRED))
+/// A character file as the renderer takes it, moved so that its lowest point stands on the ground.
+pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
+    let scene = anthronet::import::open(path)?;
+    let lowest =
+        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
+    let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
+    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name)).map(|mesh| mesh.base_color);
+    // A file without colours reads as white, which is no skin.
+    let [r, g, b, _] = skin.filter(|c| *c != [1.0; 4]).unwrap_or_else(|| SkinTone::default().base_color());
+    let parts = scene
+        .meshes
+        .into_iter()
+        .map(|mesh| Part {
+            material: Material::from_name(&mesh.name),
+            positions: mesh.positions.iter().map(|p| *p - Vec3::Y * lowest).collect(),
+            triangles: mesh.triangles,
+        })
+        .collect();
+    Figure::new(parts, Vec3::new(r, g, b))
+        .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))
 }
 
 /// Writes a file whole or not at all.

@@ -13,11 +13,11 @@ use crate::request::{FillChoice, RequestArguments, SexChoice, check_ending};
 /// Directions that the light is gathered from; fewer than for a single picture, as figures are small.
 const QUALITY: usize = 128;
 /// Pixels per metre: the same for everyone, so that heights compare.
-const SCALE: f32 = 150.0;
+const SCALE: f32 = 140.0;
 /// Cell of one person, pixels; the tallest and widest of people fit.
-const CELL: [usize; 2] = [690, 372];
+const CELL: [usize; 2] = [690, 350];
 /// Widths of the three views within a cell.
-const VIEWS: [(View, usize); 3] = [(View::Front, 294), (View::Side, 102), (View::Back, 294)];
+const VIEWS: [(View, usize); 3] = [(View::Front, 300), (View::Side, 90), (View::Back, 300)];
 /// Height of the caption below the figures, pixels.
 const CAPTION: usize = 30;
 /// How far from the mean the shortest, tallest, thinnest and heaviest are asked for, in standard deviations.

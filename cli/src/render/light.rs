@@ -28,7 +28,7 @@ impl Studio {
         Self {
             key: Softbox {
                 towards: towards(-0.62, 0.60, 0.62),
-                radiance: Vec3::new(1.0, 0.95, 0.88) * 8.2,
+                radiance: Vec3::new(1.0, 0.96, 0.92) * 8.2,
                 sharpness: 5.5,
             },
             others: [

@@ -34,7 +34,10 @@ impl Shading<'_> {
             Material::Eye => self.eyeball(v, normal, to_eye),
             Material::Teeth => self.surface(Vec3::new(0.72, 0.66, 0.56), v, normal, to_eye, 60.0, 1.0),
             Material::Tongue => self.surface(Vec3::new(0.42, 0.12, 0.11), v, normal, to_eye, 40.0, 1.0),
-            Material::Skin | Material::Lashes => self.surface(self.skin, v, normal, to_eye, 14.0, 0.75),
+            Material::Skin | Material::Lashes => {
+                // Colour cards of skin are printed yellower than skin is: blood under it takes green away.
+                self.surface(self.skin * Vec3::new(1.03, 0.92, 0.97), v, normal, to_eye, 14.0, 0.75)
+            }
         };
         let [r, g, b] = tone(radiance).to_array();
         [r, g, b, 1.0]

@@ -102,8 +102,11 @@ impl LitFigure {
             }
         }
         let material = self.figure.parts[part].material;
-        // Light travels below the skin, red the furthest; this also hides the limits of the depth maps.
-        let steps = if material == Material::Skin { [9, 4, 3, 3, 2] } else { [1; 5] };
+        // Light travels below the skin, red the furthest; this also hides the limits of the depth maps. The last two,
+        // shares of what is open, are smoothed alike.
+        const REACH: [f32; 5] = [0.012, 0.007, 0.005, 0.006, 0.006];
+        let steps =
+            REACH.map(|reach| if material == Material::Skin { welded.diffusion_steps(reach) } else { 1 });
         for (sum, steps) in sums.iter_mut().zip(steps) {
             for _ in 0..steps {
                 *sum = welded.diffuse(sum);
