@@ -159,7 +159,10 @@ mod tests {
     #[test]
     fn a_name_without_its_side_means_both() {
         let both = expand_name("arm_length").unwrap();
-        assert_eq!(both.iter().map(|m| m.name()).collect::<Vec<_>>(), ["arm_length_left", "arm_length_right"]);
+        assert_eq!(
+            both.iter().map(|m| m.name()).collect::<Vec<_>>(),
+            ["arm_length_left", "arm_length_right"]
+        );
         assert_eq!(both[0].mirrored(), both[1]);
         assert_eq!(expand_name("height").unwrap().len(), 1);
         assert_eq!(expand_name("hat_size"), None);

@@ -1,0 +1,166 @@
+"""Measures written .glb files again, with numpy and scipy, from the definitions that `anthronet info --json` gives.
+
+    python measure_glb.py ANTHRONET FOLDER
+
+The six vectors of the paper's interpolation table and some partial requests, each made by the command line. All 36
+measures of every file have to equal the report's, and the given ones what was asked.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull, QhullError
+
+from glb import Cases, Glb
+
+TOLERANCE = 1e-4  # metres: what the project promises
+# A slice through all triangles meets edges that the quads do not have, so that it may be longer by this.
+SLICE_TOLERANCE = 5e-4
+
+PARTIAL = {
+    "woman": {"sex": "female", "measures": {"height": 1.70}},
+    "small woman": {"sex": "female", "measures": {"height": 1.52, "hip_circumference": 0.95}},
+    "heavy woman": {"sex": "female", "measures": {"height": 1.66, "waist_circumference": 1.10}},
+    "man": {"sex": "male", "measures": {"height": 1.80, "chest_circumference": 1.05}},
+    "slim man": {"sex": "male", "measures": {"height": 1.92, "waist_circumference": 0.78, "thigh_circumference": 0.52}},
+    "long left arm": {"sex": "male", "measures": {"arm_length_left": 0.34, "arm_length_right": 0.335}},
+    "long feet": {"sex": "female", "measures": {"heel_to_toe_length": 0.27, "foot_width": 0.10}},
+    "thick neck": {"sex": "male", "measures": {"neck_circumference": 0.46, "head_circumference": 0.55}},
+}
+
+
+def hull_perimeter(points, normal):
+    """Length of a tape around points (n, 3) that are seen along a normal."""
+    normal = normal / np.linalg.norm(normal)
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    across /= np.linalg.norm(across)
+    flat = np.c_[points @ across, points @ np.cross(normal, across)]
+    # Of a plane hull scipy calls the perimeter its area.
+    return ConvexHull(flat).area
+
+
+def crossings(vertices, edges, origin, normal):
+    """Points where edges (n, 2) pass through a plane, and which edges those are."""
+    side = (vertices - origin) @ normal
+    a, b = side[edges[:, 0]], side[edges[:, 1]]
+    through = (a < 0) != (b < 0)
+    a, b, cut = a[through], b[through], edges[through]
+    t = (a / (a - b))[:, None]
+    return vertices[cut[:, 0]] * (1 - t) + vertices[cut[:, 1]] * t, through
+
+
+def whole_slice(vertices, triangles, origin, normal):
+    """Tape around the part of the cut through all triangles whose middle lies nearest to the plane's origin."""
+    sides = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    points, through = crossings(vertices, edges, origin, normal)
+    # A triangle that is cut joins the points on two of its sides.
+    of_triangle = edge_of_side.reshape(3, -1).T
+    cut = through[of_triangle]
+    pairs = of_triangle[cut.sum(1) == 2][cut[cut.sum(1) == 2]].reshape(-1, 2)
+    number = np.cumsum(through) - 1
+    pairs = number[pairs]
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
+    count, part = connected_components(graph, directed=False)
+    parts = [points[part == i] for i in range(count)]
+    nearest = min(parts, key=lambda p: np.linalg.norm((p.min(0) + p.max(0)) / 2 - origin))
+    return hull_perimeter(nearest, normal)
+
+
+def landmarks(definition, vertices):
+    """(points, 3): each a weighted sum of vertices."""
+    return np.array([sum(w * vertices[int(v)] for v, w in point) for point in definition["points"]])
+
+
+def measured(definition, vertices):
+    points = landmarks(definition, vertices)
+    normal = np.array(definition["normal"] or (0, 0, 0), float)
+    if definition["kind"] == "tape":
+        return hull_perimeter(points, normal)
+    if definition["kind"] == "slice":
+        edges = np.array(definition["edges"], np.int64)
+        return hull_perimeter(crossings(vertices, edges, points.mean(0), normal)[0], normal)
+    if definition["kind"] == "length":
+        steps = np.diff(points, axis=0)
+        if definition["axis"]:
+            axis = np.array(definition["axis"], float)
+            return abs(float(steps.sum(0) @ (axis / np.linalg.norm(axis))))
+        return float(np.linalg.norm(steps, axis=1).sum())
+    raise ValueError(f"{definition['name']}: unknown kind {definition['kind']}")
+
+
+def call(*arguments):
+    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"exit {done.returncode}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def generate(anthronet, request, file, report):
+    arguments = ["--sex", request["sex"]]
+    for name, value in request["measures"].items():
+        arguments += ["-m", f"{name}={value}"]
+    call(anthronet, "generate", *arguments, "-o", file, "--report", report)
+
+
+def main(anthronet, folder):
+    cases, folder = Cases(), Path(folder)
+    definitions = json.loads(call(anthronet, "info", "--json"))["measures"]
+    names = [d["name"] for d in definitions]
+    cases.case("info lists 36 measures", len(set(names)) == len(names) == 36, names)
+    needed = 1 + max(int(v) for d in definitions for point in d["points"] for v, _ in point)
+
+    paper = json.loads((Path(__file__).parent / "data" / "paper_vectors.json").read_text(encoding="utf-8"))
+    requests = {f"paper {name}": request for name, request in paper.items()} | PARTIAL
+    worst_asked = 0.0
+    for name, request in requests.items():
+        stem = folder / f"measured_{name.replace(' ', '_')}"
+        file, report = stem.with_suffix(".glb"), stem.with_suffix(".json")
+        try:
+            generate(anthronet, request, file, report)
+        except RuntimeError as error:
+            cases.case(f"{name}: generate", False, error)
+            continue
+        glb = Glb(file)
+        body = glb.primitives(glb.skinned_nodes()[0])[0]
+        vertices = glb.positions(body)
+        if len(vertices) < needed:
+            cases.case(f"{name}: vertices", False, f"{len(vertices)}, measures speak of {needed}")
+            continue
+        try:
+            lengths = {d["name"]: measured(d, vertices) for d in definitions}
+        except (QhullError, ValueError, KeyError) as error:
+            cases.case(f"{name}: measured", False, repr(error))
+            continue
+
+        rows = json.loads(report.read_text(encoding="utf-8"))["measures"]
+        off = {row["name"]: abs(lengths[row["name"]] - row["obtained"]) for row in rows}
+        first = max(off, key=off.get)
+        cases.case(f"{name}: all {len(off)} as reported (worst {first} {off[first] * 1000:.4f} mm)",
+                   len(off) == 36 and off[first] <= TOLERANCE, "reported and measured differ")
+
+        asked = {}
+        for measure, value in request["measures"].items():
+            both = [measure] if measure in lengths else [f"{measure}_left", f"{measure}_right"]
+            asked |= {one: abs(lengths[one] - value) for one in both}
+        first = max(asked, key=asked.get)
+        worst_asked = max(worst_asked, asked[first])
+        cases.case(f"{name}: {len(asked)} given as asked (worst {first} {asked[first] * 1000:.4f} mm)",
+                   asked[first] <= TOLERANCE, "asked and measured differ")
+
+        for d in definitions:
+            if d["kind"] == "slice":
+                around = whole_slice(vertices, glb.triangles(body), landmarks(d, vertices).mean(0), np.array(d["normal"], float))
+                cases.case(f"{name}: {d['name']} is the whole slice ({(around - lengths[d['name']]) * 1000:+.4f} mm)",
+                           abs(around - lengths[d["name"]]) <= SLICE_TOLERANCE, "the slice through all triangles differs")
+    print(f"   worst given measure of {len(requests)} requests: {worst_asked * 1000:.5f} mm")
+    cases.exit()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])
