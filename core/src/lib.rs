@@ -2,5 +2,6 @@
 
 mod error;
 pub mod measure;
+pub mod mesh;
 
 pub use error::{Error, Result};
