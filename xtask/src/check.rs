@@ -45,3 +45,33 @@ fn layers() -> Outcome {
         n => Err(format!("layering of core: {n} lines use a room that they may not use")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::tools::{read, root};
+
+    #[test]
+    fn continuous_integration_calls_what_the_readme_says() {
+        let command = "\ncargo xtask test\n";
+        for file in ["README.md", ".ci/run"] {
+            assert!(read(&root().join(file)).unwrap().contains(command), "{file} lacks `{}`", command.trim());
+        }
+    }
+
+    #[test]
+    fn every_dependency_has_its_reason_and_its_licence_written_down() {
+        let manifest = read(&root().join("Cargo.toml")).unwrap();
+        let (_, dependencies) = manifest.split_once("[workspace.dependencies]\n").unwrap();
+        let names = dependencies.lines().take_while(|line| !line.starts_with('[')).filter_map(|line| {
+            let (name, value) = line.split_once(" = ")?;
+            (!value.contains("path = ")).then_some(name)
+        });
+        let [reasons, licences] =
+            ["CHANGELOG.md", "THIRD_PARTY.md"].map(|file| read(&root().join(file)).unwrap());
+        for name in names {
+            let quoted = format!("`{name}`");
+            assert!(reasons.contains(&quoted), "CHANGELOG.md does not say what {quoted} is for");
+            assert!(licences.contains(&format!("| {quoted} |")), "THIRD_PARTY.md does not list {quoted}");
+        }
+    }
+}

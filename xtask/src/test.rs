@@ -29,16 +29,3 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::tools::{read, root};
-
-    #[test]
-    fn continuous_integration_calls_what_the_readme_says() {
-        let command = "\ncargo xtask test\n";
-        for file in ["README.md", ".ci/run"] {
-            assert!(read(&root().join(file)).unwrap().contains(command), "{file} lacks `{}`", command.trim());
-        }
-    }
-}
