@@ -1,8 +1,8 @@
 """Blender imports a .glb: armature, bones, weights, mesh, pose; and a picture to look at.
 
-    python blender_import.py FILE.glb
+    python blender_import.py FILE.glb [PICTURE.png]
 
-Run pose_reference.py on the file first. Writes FILE.blender.png.
+Run pose_reference.py on the file first.
 """
 
 import json
@@ -59,7 +59,7 @@ def render(path):
     bpy.ops.render.render(write_still=True)
 
 
-def main(path):
+def main(path, picture=None):
     cases, glb = Cases(), Glb(path)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=path)
@@ -119,7 +119,8 @@ def main(path):
         height = float(body[:, 2].max() - body[:, 2].min())
         cases.case(f"Blender: a grown-up stands on the floor, {height:.4f} m tall",
                    1.3 < height < 2.2 and abs(body[:, 2].min()) < 1e-3, f"lowest {body[:, 2].min()} m")
-    render(f"{Path(path).resolve()}.blender.png")
+    if picture:
+        render(str(Path(picture).resolve()))
 
     # Parents first, so that each bone's pose lies on its parent's.
     for name in names:
@@ -132,4 +133,4 @@ def main(path):
     cases.exit()
 
 
-main(sys.argv[1])
+main(*sys.argv[1:])

@@ -69,7 +69,11 @@ fn find_python() -> Result<(PathBuf, (u32, u32)), String> {
         let mut numbers = text.split_whitespace().filter_map(|word| word.parse().ok());
         let (Some(major), Some(minor)) = (numbers.next(), numbers.next()) else { continue };
         seen.push(format!("{name} {major}.{minor}"));
-        if (major, minor) >= (3, 11) && (best.is_none() || (major, minor) == (3, 11)) {
+        let better = match best {
+            None => (major, minor) >= (3, 11),
+            Some((_, version)) => (major, minor) == (3, 11) && version != (3, 11),
+        };
+        if better {
             best = Some((name.into(), (major, minor)));
         }
     }

@@ -224,7 +224,10 @@ fn in_other_programs(
         }
         let name = format!("Blender, {stem}.glb");
         match &environment.blender {
-            Ok(()) => tally.script(&name, python(program, "blender_import.py").arg(&file)),
+            Ok(()) => {
+                let picture = (stem == "posed_4").then(|| folder.join("blender.png"));
+                tally.script(&name, python(program, "blender_import.py").arg(&file).args(picture));
+            }
             Err(reason) => tally.skip(&name, reason),
         }
     }
