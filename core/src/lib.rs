@@ -1,7 +1,13 @@
 //! Conditional human bodies from tape measures.
 
+pub mod condition;
 mod error;
+pub mod export;
+pub mod import;
 pub mod measure;
 pub mod mesh;
+pub mod model;
+pub mod random;
+pub mod rig;
 
 pub use error::{Error, Result};

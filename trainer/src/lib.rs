@@ -5,8 +5,17 @@
 //! [`basis`].
 
 pub mod assets;
+pub mod basis;
+mod checkpoint;
+pub mod corpus;
+pub mod dataset;
 mod error;
+pub mod generator;
+pub mod landmarks;
+mod losses;
+mod progress;
 pub mod sampling;
 pub mod tpose;
+pub mod training;
 
 pub use error::{Error, Result};

@@ -23,7 +23,7 @@ const BIASES: &str = include_str!("sampling_bias.json");
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Spread {
     Uniform(f64),
-    /// Standard deviation; cut off at 2.5 of it.
+    /// Standard deviation; cut off at twice it.
     Normal(f64),
 }
 
@@ -94,8 +94,7 @@ impl Sampler {
         let races = rng.dirichlet(["african", "asian", "caucasian"]);
         let stature = STATURE[0] + (STATURE[1] - STATURE[0]) * rng.uniform();
 
-        let mut person =
-            Person { sex, shapes: Vec::new(), stature, shorter: Vec::new(), taller: Vec::new() };
+        let mut person = Person { sex, shapes: Vec::new(), stature, shorter: Vec::new(), taller: Vec::new() };
         let set = &assets.targets;
         let add = |list: &mut Vec<(usize, f32)>, key: String, weight: f64| {
             if let Some(number) = set.number(&key).filter(|_| weight != 0.0) {
@@ -111,8 +110,13 @@ impl Sampler {
                     let w = wa * wm * ww;
                     let build = format!("{sex}-{age}-{muscle}-{weight}");
                     add(&mut person.shapes, format!("macrodetails/universal-{build}"), w);
-                    let (kind, wp) = if proportion < 0.0 { ("uncommon", -proportion) } else { ("ideal", proportion) };
-                    add(&mut person.shapes, format!("macrodetails/proportions/{build}-{kind}proportions"), w * wp);
+                    let (kind, wp) =
+                        if proportion < 0.0 { ("uncommon", -proportion) } else { ("ideal", proportion) };
+                    add(
+                        &mut person.shapes,
+                        format!("macrodetails/proportions/{build}-{kind}proportions"),
+                        w * wp,
+                    );
                     add(&mut person.shorter, format!("macrodetails/height/{build}-minheight"), w);
                     add(&mut person.taller, format!("macrodetails/height/{build}-maxheight"), w);
                     for (cup, wc) in cups {
@@ -127,7 +131,7 @@ impl Sampler {
             let value = bias
                 + match *spread {
                     Spread::Uniform(half) => half * (2.0 * rng.uniform() - 1.0),
-                    Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.5, 2.5),
+                    Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.0, 2.0),
                 };
             for [negative, positive] in &modifier.pairs {
                 let sided = if modifier.pairs.len() > 1 { ASYMMETRY * rng.normal() } else { 0.0 };
@@ -174,14 +178,16 @@ fn spread(modifier: &Modifier) -> Option<Spread> {
     let name = modifier.name.as_str();
     let whole_part = ["torso-trans", "hip-trans", "neck-trans", "head-trans", "hand-trans", "foot-trans"];
     if whole_part.iter().any(|p| name.starts_with(p))
-        || ["stomach-pregnant", "bulge-", "leg-valgus", "hand-fingers-distance"].iter().any(|p| name.starts_with(p))
+        || ["stomach-pregnant", "bulge-", "leg-valgus", "hand-fingers-distance"]
+            .iter()
+            .any(|p| name.starts_with(p))
     {
         return None;
     }
     Some(match modifier.group.as_str() {
         "head" | "neck" => Spread::Uniform(0.12),
         "forehead" => Spread::Normal(0.12),
-        "cheek" | "chin" | "ears" | "eyebrows" | "eyes" | "mouth" | "nose" => Spread::Normal(0.25),
+        "cheek" | "chin" | "ears" | "eyebrows" | "eyes" | "mouth" | "nose" => Spread::Normal(0.2),
         _ if name.starts_with("measure-") => Spread::Uniform(0.35),
         _ => Spread::Uniform(0.245),
     })

@@ -38,8 +38,7 @@ impl VertexFaces {
 /// The normal of a quad is half the cross product of its diagonals: its vector area, planar or not.
 pub fn vertex_normals(positions: &[Vec3], quads: &[[u32; 4]], around: &VertexFaces) -> Vec<Vec3> {
     let at = |i: u32| positions.get(i as usize).copied().unwrap_or_default();
-    let areas: Vec<Vec3> =
-        quads.iter().map(|q| (at(q[2]) - at(q[0])).cross(at(q[3]) - at(q[1]))).collect();
+    let areas: Vec<Vec3> = quads.iter().map(|q| (at(q[2]) - at(q[0])).cross(at(q[3]) - at(q[1]))).collect();
     around
         .offsets
         .windows(2)

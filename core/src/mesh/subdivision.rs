@@ -40,7 +40,10 @@ impl Subdivision {
             for &e in of_face {
                 let slots = &mut edge_faces[e as usize];
                 let free = slots.iter_mut().find(|slot| **slot == u32::MAX).ok_or_else(|| {
-                    Error::invalid("topology", format!("edge {:?} has more than two faces", edges[e as usize]))
+                    Error::invalid(
+                        "topology",
+                        format!("edge {:?} has more than two faces", edges[e as usize]),
+                    )
                 })?;
                 *free = f as u32;
             }
@@ -225,8 +228,7 @@ mod tests {
         let points = (0..8)
             .map(|i| Vec3::new((i & 1) as f32, ((i >> 1) & 1) as f32, ((i >> 2) & 1) as f32) * 2.0 - 1.0)
             .collect();
-        let quads =
-            vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let uvs = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let quad_uvs = vec![[0, 1, 2, 3]; 6];
         (Topology { vertex_count: 8, quads, uvs, quad_uvs }, points)

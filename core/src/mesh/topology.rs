@@ -26,7 +26,11 @@ impl Topology {
         if self.quads.len() != self.quad_uvs.len() {
             return Err(Error::invalid(
                 "topology",
-                format!("{} faces but {} faces of texture coordinates", self.quads.len(), self.quad_uvs.len()),
+                format!(
+                    "{} faces but {} faces of texture coordinates",
+                    self.quads.len(),
+                    self.quad_uvs.len()
+                ),
             ));
         }
         for (f, (quad, uvs)) in self.quads.iter().zip(&self.quad_uvs).enumerate() {

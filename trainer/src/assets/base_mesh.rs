@@ -44,6 +44,8 @@ pub struct BaseMesh {
     pub raw_of_surface: Vec<u32>,
     /// Vertices of `base.obj` by group, as `basemesh_vertex_groups.json` lists them.
     pub groups: BTreeMap<String, Vec<u32>>,
+    /// For each vertex of `base.obj` its mirror image, where `hm08.mirror` knows one.
+    pub mirror: BTreeMap<u32, u32>,
 }
 
 type Faces = Vec<([u32; 4], [u32; 4])>;
@@ -82,8 +84,7 @@ impl BaseMesh {
         let cage = compact(&body, &uvs, Some(CAGE_VERTICES)).0;
         let mut accessories = Vec::new();
         for (name, groups) in ACCESSORIES {
-            let of_groups: Faces =
-                groups.iter().flat_map(|g| faces.remove(*g).unwrap_or_default()).collect();
+            let of_groups: Faces = groups.iter().flat_map(|g| faces.remove(*g).unwrap_or_default()).collect();
             if of_groups.is_empty() {
                 return Err(Error::Source(format!("base.obj: groups {groups:?} have no faces")));
             }
@@ -100,7 +101,15 @@ impl BaseMesh {
             .into_iter()
             .map(|(name, ranges)| (name, ranges.iter().flat_map(|&[a, b]| a..=b).collect()))
             .collect();
-        Ok(Self { raw_positions: positions, cage, accessories, raw_of_surface, groups })
+        let mirror = wheel
+            .read_text("mesh_metadata/hm08.mirror")?
+            .lines()
+            .filter_map(|line| {
+                let mut words = line.split_whitespace();
+                Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?))
+            })
+            .collect();
+        Ok(Self { raw_positions: positions, cage, accessories, raw_of_surface, groups, mirror })
     }
 }
 

@@ -12,7 +12,7 @@ mod wheel;
 pub use base_mesh::{ACCESSORIES, AccessoryRange, BaseMesh, CAGE_VERTICES};
 pub use rig::{JointSource, Rig};
 pub use targets::{Modifier, Target, TargetSet};
-pub use wheel::{Wheel, WHEEL_NAME, WHEEL_SHA256};
+pub use wheel::{WHEEL_NAME, WHEEL_SHA256, Wheel};
 
 use glam::Vec3;
 

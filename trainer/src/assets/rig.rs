@@ -59,9 +59,33 @@ struct Weights {
 
 /// Depth-first order, so that parents come first and limbs stay together.
 const ORDER: [&str; 27] = [
-    "Root", "pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head", "jaw", "eye_l", "eye_r",
-    "clavicle", "upperarm", "lowerarm", "hand", "thumb_01", "thumb_02", "thumb_03", "index_01", "index_02",
-    "index_03", "middle_01", "middle_02", "middle_03", "ring_01", "ring_02", "ring_03", "pinky_01",
+    "Root",
+    "pelvis",
+    "spine_01",
+    "spine_02",
+    "spine_03",
+    "neck_01",
+    "head",
+    "jaw",
+    "eye_l",
+    "eye_r",
+    "clavicle",
+    "upperarm",
+    "lowerarm",
+    "hand",
+    "thumb_01",
+    "thumb_02",
+    "thumb_03",
+    "index_01",
+    "index_02",
+    "index_03",
+    "middle_01",
+    "middle_02",
+    "middle_03",
+    "ring_01",
+    "ring_02",
+    "ring_03",
+    "pinky_01",
 ];
 const ORDER_REST: [&str; 6] = ["pinky_02", "pinky_03", "thigh", "calf", "foot", "ball"];
 
@@ -90,12 +114,17 @@ impl Rig {
         let game_weights: Weights = json(wheel, "rigs/standard/weights.game_engine.json")?;
         let default_weights: Weights = json(wheel, "rigs/standard/weights.default.json")?;
 
-        let mut rig =
-            Self { joints: Vec::new(), heads: Vec::new(), tails: Vec::new(), twists: Vec::new(), weights: vec![] };
+        let mut rig = Self {
+            joints: Vec::new(),
+            heads: Vec::new(),
+            tails: Vec::new(),
+            twists: Vec::new(),
+            weights: vec![],
+        };
         let central = ORDER[..10].iter().map(|n| (*n).to_owned());
-        let sided = ["l", "r"].into_iter().flat_map(|side| {
-            ORDER[10..].iter().chain(&ORDER_REST).map(move |n| format!("{n}_{side}"))
-        });
+        let sided = ["l", "r"]
+            .into_iter()
+            .flat_map(|side| ORDER[10..].iter().chain(&ORDER_REST).map(move |n| format!("{n}_{side}")));
         for name in central.chain(sided) {
             let (bone, parent) = match name.as_str() {
                 "eye_l" => (&default["eye.L"], "head"),
@@ -149,8 +178,10 @@ impl Rig {
         default_rig: &BTreeMap<String, Bone>,
     ) -> Result<Vec<Vec<(u16, f32)>>> {
         let missing = |name: &str| Error::Source(format!("the rig has no joint {name}"));
-        let (head, jaw) =
-            (self.find("head").ok_or_else(|| missing("head"))?, self.find("jaw").ok_or_else(|| missing("jaw"))?);
+        let (head, jaw) = (
+            self.find("head").ok_or_else(|| missing("head"))?,
+            self.find("jaw").ok_or_else(|| missing("jaw"))?,
+        );
         let mut dense = vec![BTreeMap::<usize, f32>::new(); mesh.raw_positions.len()];
         for (name, list) in &game.weights {
             let joint = self.find(name).ok_or_else(|| missing(name))?;

@@ -1,0 +1,356 @@
+//! Whether the given measures can belong to one person, and if not, which of them quarrel and what would do instead.
+//!
+//! The ruler is the Mahalanobis distance of the given measures from the prior's mean, each believed up to a reading
+//! error. In that metric the nearest point of the feasible ellipsoid lies on the line to the mean, so it has a closed
+//! form.
+
+use serde::Serialize;
+
+use super::chi_squared;
+use super::prior::{GivenMeasures, SexPrior};
+use super::request::group_by;
+use super::text::{list, metres};
+use crate::Result;
+use crate::measure::{MEASURE_COUNT, MeasureId, Sex};
+
+/// Largest number of names (both sides of a measure count as one) that the search for a conflict goes through in
+/// full; 24 names give 12,950 sets. Larger conflicts are found by leaving names out one by one.
+const FULL_SEARCH: usize = 4;
+
+/// How far inside the limit a nearest value is put, so that it is still feasible when rounded to the millimetre.
+const NEAREST_SCALE: f64 = 0.98;
+
+/// Where a request becomes unusual, and where it is refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Standard deviation, metres, of the error with which given measures are believed.
+    pub reading_error: f64,
+    /// Share of people farther out than the distance that draws a warning.
+    pub warn_tail: f64,
+    /// Share of people farther out than the distance that, times `slack`, is refused.
+    pub refuse_tail: f64,
+    /// The factor on that distance: real bodies have heavier tails than the Gaussian.
+    pub slack: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { reading_error: 0.005, warn_tail: 1e-3, refuse_tail: 1e-12, slack: 1.5 }
+    }
+}
+
+impl Limits {
+    /// The Mahalanobis distance of `count` measures beyond which a warning is due.
+    pub fn warn(&self, count: usize) -> f64 {
+        chi_squared::upper_quantile(self.warn_tail, count).sqrt()
+    }
+
+    /// The Mahalanobis distance of `count` measures beyond which they are refused.
+    pub fn refuse(&self, count: usize) -> f64 {
+        self.slack * chi_squared::upper_quantile(self.refuse_tail, count).sqrt()
+    }
+}
+
+/// One measure of a [`Conflict`], metres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConflictMeasure {
+    /// Identifier, with its side.
+    pub name: &'static str,
+    /// What the request gives.
+    pub asked: f64,
+    /// What would do.
+    pub nearest: f64,
+}
+
+/// A smallest set of given measures that do not go together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Conflict {
+    /// The measures, in order.
+    pub measures: Vec<ConflictMeasure>,
+    /// A sentence for people.
+    pub message: String,
+}
+
+/// How plausible the given measures are.
+#[derive(Clone, Debug)]
+pub struct Feasibility {
+    /// The sex that was assumed.
+    pub sex: Sex,
+    /// Number of given measures.
+    pub count: usize,
+    /// Mahalanobis distance from the mean; 0 when nothing is given.
+    pub distance: f64,
+    /// The distance beyond which a request is unusual.
+    pub warn: f64,
+    /// The distance beyond which a request is refused.
+    pub refuse: f64,
+    /// What quarrels; empty for a feasible request.
+    pub conflicts: Vec<Conflict>,
+    /// The given measures where they are feasible, else with the nearest values of all conflicts taken over: feasible.
+    pub nearest: GivenMeasures,
+}
+
+impl Feasibility {
+    /// Judges the given measures.
+    ///
+    /// # Errors
+    /// [`crate::Error::Request`] for a measure that is not finite, [`crate::Error::Invalid`] for a reading error that
+    /// is not positive.
+    pub fn assess(prior: &SexPrior, sex: Sex, given: &GivenMeasures, limits: &Limits) -> Result<Self> {
+        let count = given.iter().flatten().count();
+        let distance = prior.distance_squared(given, limits.reading_error)?.sqrt();
+        let mut result = Self {
+            sex,
+            count,
+            distance,
+            warn: limits.warn(count),
+            refuse: limits.refuse(count),
+            conflicts: Vec::new(),
+            nearest: *given,
+        };
+        // Negated so that a distance that overflows to infinity or NaN counts as too far.
+        if !(distance <= result.refuse) {
+            let search = Search::new(prior, given, limits)?;
+            let sets = search.resolve(&mut result.nearest)?;
+            result.conflicts = sets.iter().map(|set| describe(set, given, &result.nearest, sex)).collect();
+        }
+        Ok(result)
+    }
+
+    /// Whether one person can have all the given measures.
+    pub fn is_feasible(&self) -> bool {
+        self.conflicts.is_empty()
+    }
+
+    /// A warning when the measures are feasible but rarer together than the limit.
+    pub fn warning(&self) -> Option<String> {
+        if !self.is_feasible() || self.distance <= self.warn {
+            return None;
+        }
+        let share = chi_squared::survival(self.distance * self.distance, self.count);
+        let rarity = if share < 1e-9 {
+            "fewer than 1 in 1,000,000,000".to_owned()
+        } else {
+            // Two digits: more would claim knowledge of tails that nobody has.
+            let one_in = 1.0 / share;
+            let step = libm::pow(10.0, libm::floor(libm::log10(one_in)) - 1.0);
+            format!("about 1 in {}", thousands((one_in / step).round() * step))
+        };
+        let sex = self.sex;
+        Some(format!(
+            "the given measures are unusual together: {rarity} {sex} bodies is so far from the average"
+        ))
+    }
+
+    /// The whole explanation of an infeasible request; empty for a feasible one.
+    pub fn message(&self) -> String {
+        let messages: Vec<_> = self.conflicts.iter().map(|c| c.message.as_str()).collect();
+        messages.join("; ")
+    }
+}
+
+/// 1234567 as `1,234,567`.
+fn thousands(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    let mut text = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(c);
+    }
+    text
+}
+
+/// The search for conflicts among one request's measures.
+struct Search<'a> {
+    prior: &'a SexPrior,
+    limits: &'a Limits,
+    /// Indices of measures, one entry per name: both sides together where both are given.
+    names: Vec<Vec<usize>>,
+    /// Refusing distance per number of measures, 0..=36.
+    refuse: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(prior: &'a SexPrior, given: &GivenMeasures, limits: &'a Limits) -> Result<Self> {
+        let names = group_by(given, |_, _| true)
+            .into_iter()
+            .map(|group| group.ids.iter().map(|id| id.index()).collect())
+            .collect();
+        let refuse = (0..=MEASURE_COUNT).map(|n| limits.refuse(n)).collect();
+        Ok(Self { prior, limits, names, refuse })
+    }
+
+    /// Replaces conflict after conflict by its nearest values until the whole is feasible; returns the conflicting
+    /// sets of measures.
+    fn resolve(&self, current: &mut GivenMeasures) -> Result<Vec<Vec<usize>>> {
+        let mut sets = Vec::new();
+        let everything: Vec<_> = self.names.iter().flatten().copied().collect();
+        // Each round makes one set feasible. A request that needs more rounds than this is wrong all over, and is then
+        // best moved as a whole.
+        for _ in 0..6 {
+            if self.excess(&everything, current)? <= 1.0 {
+                return Ok(sets);
+            }
+            let set = self.smallest_conflict(current)?;
+            self.pull_inside(&set, current)?;
+            sets.push(set);
+        }
+        if self.excess(&everything, current)? > 1.0 {
+            self.pull_inside(&everything, current)?;
+            sets.push(everything);
+        }
+        Ok(sets)
+    }
+
+    /// Distance of these measures as a share of what is refused; above 1 they conflict.
+    fn excess(&self, set: &[usize], values: &GivenMeasures) -> Result<f64> {
+        let part = subset(values, set);
+        let distance = self.prior.distance_squared(&part, self.limits.reading_error)?.sqrt();
+        let excess = distance / self.refuse[set.len().min(MEASURE_COUNT)];
+        Ok(if excess.is_nan() { f64::INFINITY } else { excess })
+    }
+
+    /// The smallest set of names that conflicts by itself, the worst of that size.
+    fn smallest_conflict(&self, values: &GivenMeasures) -> Result<Vec<usize>> {
+        for size in 1..=FULL_SEARCH.min(self.names.len()) {
+            let mut worst: Option<(f64, Vec<usize>)> = None;
+            let mut choice: Vec<usize> = (0..size).collect();
+            loop {
+                let set: Vec<_> = choice.iter().flat_map(|i| self.names[*i].iter().copied()).collect();
+                let excess = self.excess(&set, values)?;
+                if excess > 1.0 && worst.as_ref().is_none_or(|(most, _)| excess > *most) {
+                    worst = Some((excess, set));
+                }
+                if !next_combination(&mut choice, self.names.len()) {
+                    break;
+                }
+            }
+            if let Some((_, set)) = worst {
+                return Ok(set);
+            }
+        }
+        self.leave_out(values)
+    }
+
+    /// A conflicting set that stops conflicting whichever name is left out, by leaving out greedily.
+    fn leave_out(&self, values: &GivenMeasures) -> Result<Vec<usize>> {
+        let mut kept: Vec<usize> = (0..self.names.len()).collect();
+        let flatten =
+            |kept: &[usize]| kept.iter().flat_map(|i| self.names[*i].iter().copied()).collect::<Vec<_>>();
+        loop {
+            let mut best: Option<(f64, Vec<usize>)> = None;
+            for leave in 0..kept.len() {
+                let mut rest = kept.clone();
+                rest.remove(leave);
+                let excess = self.excess(&flatten(&rest), values)?;
+                if excess > 1.0 && best.as_ref().is_none_or(|(most, _)| excess > *most) {
+                    best = Some((excess, rest));
+                }
+            }
+            match best {
+                Some((_, rest)) => kept = rest,
+                None => return Ok(flatten(&kept)),
+            }
+        }
+    }
+
+    /// Moves these measures along the line to their mean until they are feasible, in whole millimetres; both sides of
+    /// a measure that were equal stay equal.
+    fn pull_inside(&self, set: &[usize], values: &mut GivenMeasures) -> Result<()> {
+        let start = *values;
+        let mean = self.prior.mean();
+        let excess = self.excess(set, values)?;
+        let mut scale = if excess.is_finite() { NEAREST_SCALE / excess.max(1.0) } else { 0.0 };
+        for attempt in 0..40 {
+            if attempt == 39 {
+                scale = 0.0;
+            }
+            for &i in set {
+                let asked = start[i].unwrap_or(mean[i]);
+                let moved = if scale == 0.0 { mean[i] } else { mean[i] + scale * (asked - mean[i]) };
+                values[i] = Some(moved);
+            }
+            for &i in set {
+                if let Some(mirror) = MeasureId::from_index(i).map(|id| id.mirrored().index())
+                    && mirror > i
+                    && set.contains(&mirror)
+                    && start[i] == start[mirror]
+                {
+                    let middle = 0.5 * (values[i].unwrap_or(mean[i]) + values[mirror].unwrap_or(mean[i]));
+                    values[i] = Some(middle);
+                    values[mirror] = Some(middle);
+                }
+            }
+            for &i in set {
+                values[i] = values[i].map(|v| (v * 1000.0).round() / 1000.0);
+            }
+            // Rounding and averaging can cost what the margin does not hold when the limits are very tight.
+            if self.excess(set, values)? <= 1.0 {
+                return Ok(());
+            }
+            scale *= 0.9;
+        }
+        for &i in set {
+            values[i] = Some(mean[i]);
+        }
+        Ok(())
+    }
+}
+
+/// The entries of `set` alone.
+fn subset(values: &GivenMeasures, set: &[usize]) -> GivenMeasures {
+    let mut part = [None; MEASURE_COUNT];
+    for &i in set {
+        part[i] = values[i];
+    }
+    part
+}
+
+/// The next combination of `choice.len()` out of `n` in lexicographic order; false after the last.
+fn next_combination(choice: &mut [usize], n: usize) -> bool {
+    let size = choice.len();
+    for place in (0..size).rev() {
+        if choice[place] + (size - place) < n {
+            choice[place] += 1;
+            for later in place + 1..size {
+                choice[later] = choice[later - 1] + 1;
+            }
+            return true;
+        }
+    }
+    false
+}
+
+/// The conflict in words.
+fn describe(set: &[usize], asked: &GivenMeasures, nearest: &GivenMeasures, sex: Sex) -> Conflict {
+    let given = subset(asked, set);
+    let measures = MeasureId::all()
+        .filter_map(|id| {
+            let (asked, nearest) = (given[id.index()]?, nearest[id.index()]?);
+            Some(ConflictMeasure { name: id.name(), asked, nearest })
+        })
+        .collect();
+    let mut asked_texts = Vec::new();
+    let mut nearest_texts = Vec::new();
+    for group in super::request::groups(&given) {
+        let value = |of: &GivenMeasures| group.ids.first().and_then(|id| of[id.index()]).unwrap_or(f64::NAN);
+        asked_texts.push(format!("{} {} m", group.name, metres(value(asked))));
+        nearest_texts.push(format!("{} m", metres(value(nearest))));
+    }
+    let verb = match asked_texts.len() {
+        1 => "is out of reach",
+        _ => "do not go together",
+    };
+    let message = format!(
+        "{} {verb} for a {sex}: nearest feasible {} {}",
+        list(&asked_texts, "and"),
+        if nearest_texts.len() == 1 { "is" } else { "are" },
+        list(&nearest_texts, "and")
+    );
+    Conflict { measures, message }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+use proptest::prelude::*;
+
+use super::super::request::Request;
+use super::super::test_prior::sex_prior;
+use super::*;
+use crate::random::Random;
+
+fn assess(pairs: &[(&str, f64)]) -> Feasibility {
+    let mut request = Request::default();
+    for (name, value) in pairs {
+        request.set(name, *value).unwrap();
+    }
+    Feasibility::assess(&sex_prior(0.0, 0.0), Sex::Female, &request.measures, &Limits::default()).unwrap()
+}
+
+fn names(conflict: &Conflict) -> Vec<&str> {
+    conflict.measures.iter().map(|m| m.name).collect()
+}
+
+#[test]
+fn ordinary_requests_pass_without_a_word() {
+    for pairs in [
+        &[][..],
+        &[("height", 1.75)],
+        &[("height", 1.60), ("waist_circumference", 1.10), ("arm_length", 0.30)],
+        &[("arm_length_left", 0.32), ("arm_length_right", 0.325)],
+    ] {
+        let found = assess(pairs);
+        assert!(found.is_feasible() && found.warning().is_none(), "{found:?}");
+        assert_eq!(found.message(), "");
+    }
+}
+
+#[test]
+fn the_unusual_draws_a_warning() {
+    let found = assess(&[("height", 1.69), ("waist_circumference", 0.60), ("hip_circumference", 1.10)]);
+    assert!(found.is_feasible());
+    let warning = found.warning().unwrap();
+    assert!(warning.contains("unusual together") && warning.contains("female"), "{warning}");
+}
+
+#[test]
+fn a_pair_that_quarrels_is_found_among_many() {
+    let found = assess(&[
+        ("height", 1.70),
+        ("head_circumference", 0.54),
+        ("foot_width", 0.095),
+        ("calf_length", 0.42),
+        ("waist_circumference", 0.55),
+        ("hip_circumference", 1.38),
+    ]);
+    assert_eq!(found.conflicts.len(), 1, "{found:?}");
+    assert_eq!(names(&found.conflicts[0]), ["waist_circumference", "hip_circumference"]);
+    let [waist, hip] = found.conflicts[0].measures.as_slice() else { panic!() };
+    assert!(waist.nearest > waist.asked && hip.nearest < hip.asked);
+    let message = found.message();
+    let start = "waist_circumference 0.55 m and hip_circumference 1.38 m do not go together for a female: nearest feasible are ";
+    assert!(message.starts_with(start), "{message}");
+    assert_eq!(found.nearest[3], Some(1.70));
+}
+
+#[test]
+fn sides_are_one_name_and_can_quarrel_with_each_other() {
+    let found = assess(&[("height", 1.69), ("arm_length_left", 0.26), ("arm_length_right", 0.38)]);
+    assert_eq!(names(&found.conflicts[0]), ["arm_length_left", "arm_length_right"]);
+    let found = assess(&[("height", 1.69), ("arm_length", 0.58)]);
+    let message = found.message();
+    assert!(
+        message.starts_with("arm_length 0.58 m is out of reach for a female: nearest feasible is 0."),
+        "{message}"
+    );
+    let [left, right] = found.conflicts[0].measures.as_slice() else { panic!() };
+    assert_eq!(left.nearest, right.nearest);
+}
+
+#[test]
+fn a_quarrel_of_all_is_found_by_leaving_out() {
+    // Each length a little more at odds with the stature than the last; none of four sets is enough by itself.
+    let limits = Limits { refuse_tail: 1e-4, slack: 1.0, ..Limits::default() };
+    let p = sex_prior(0.0, 0.0);
+    let mut given = [None; MEASURE_COUNT];
+    let mut signs = [1.0, -1.0].into_iter().cycle();
+    for id in MeasureId::all().filter(|id| id.mirrored() == *id) {
+        let deviation = p.covariance()[id.index() * (MEASURE_COUNT + 1)].sqrt();
+        given[id.index()] = Some(p.mean()[id.index()] + signs.next().unwrap() * 1.7 * deviation);
+    }
+    let found = Feasibility::assess(&p, Sex::Female, &given, &limits).unwrap();
+    assert!(!found.is_feasible());
+    assert!(is_feasible(&p, &found.nearest, &limits));
+}
+
+fn is_feasible(p: &SexPrior, given: &GivenMeasures, limits: &Limits) -> bool {
+    Feasibility::assess(p, Sex::Female, given, limits).unwrap().is_feasible()
+}
+
+#[test]
+fn absurd_numbers_are_answered_too() {
+    for value in [1e12, 1e200, f64::MAX, -f64::MAX] {
+        let found = assess(&[("height", value), ("waist_circumference", 0.8)]);
+        assert!(!found.is_feasible());
+        assert!(is_feasible(&sex_prior(0.0, 0.0), &found.nearest, &Limits::default()));
+    }
+    let mut given = [None; MEASURE_COUNT];
+    given[0] = Some(f64::NAN);
+    assert!(Feasibility::assess(&sex_prior(0.0, 0.0), Sex::Female, &given, &Limits::default()).is_err());
+}
+
+#[test]
+fn numbers_have_thousands() {
+    assert_eq!(thousands(12.0), "12");
+    assert_eq!(thousands(1_200_000.0), "1,200,000");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn nearest_values_are_feasible_and_conflicts_are_minimal(
+        seed in any::<u64>(),
+        spread in 0.5..12.0f64,
+        mask in prop::collection::vec(prop::bool::weighted(0.35), MEASURE_COUNT),
+    ) {
+        let (p, limits) = (sex_prior(0.0, 0.0), Limits::default());
+        let mut random = Random::new(seed, 3);
+        let mut given = [None; MEASURE_COUNT];
+        for i in 0..MEASURE_COUNT {
+            let deviation = p.covariance()[i * (MEASURE_COUNT + 1)].sqrt();
+            given[i] = mask[i].then(|| p.mean()[i] + spread * deviation * random.normal());
+        }
+        let found = Feasibility::assess(&p, Sex::Female, &given, &limits).unwrap();
+        prop_assert_eq!(found.is_feasible(), found.distance <= found.refuse);
+        prop_assert!(is_feasible(&p, &found.nearest, &limits), "{:?}", found);
+        for i in 0..MEASURE_COUNT {
+            prop_assert_eq!(found.nearest[i].is_some(), mask[i]);
+        }
+        // What no conflict names stays as it was asked.
+        for id in MeasureId::all() {
+            if !found.conflicts.iter().any(|c| c.measures.iter().any(|m| m.name == id.name())) {
+                prop_assert_eq!(found.nearest[id.index()], given[id.index()]);
+            }
+        }
+        // The first conflict is one by itself.
+        if let Some(first) = found.conflicts.first() {
+            let mut alone = [None; MEASURE_COUNT];
+            for m in &first.measures {
+                alone[MeasureId::from_name(m.name).unwrap().index()] = Some(m.asked);
+            }
+            prop_assert!(!is_feasible(&p, &alone, &limits));
+        }
+    }
+}

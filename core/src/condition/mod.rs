@@ -1,0 +1,27 @@
+//! From a request to the condition of the network, and from its answer to exactly the asked measures.
+//!
+//! [`Request`] → [`Prepared`] (checked, [`Feasibility`], filled and projected by the [`Prior`]) → the network decodes →
+//! [`solve()`] on the given measures → [`Report`].
+
+mod chi_squared;
+mod cholesky;
+mod feasibility;
+pub mod fourier;
+mod prepare;
+mod prior;
+mod report;
+mod request;
+mod solve;
+mod text;
+
+pub use feasibility::{Conflict, ConflictMeasure, Feasibility, Limits};
+pub use prepare::Prepared;
+pub use prior::{
+    Conditional, GivenMeasures, PROJECTION_ERROR, Prior, QUANTILE_COUNT, READING_ERROR, SexPrior,
+};
+pub use report::{Filled, MeasureReport, Report};
+pub use request::{Fill, MeasureRange, Request};
+pub use solve::{MeasuredShape, SolveOptions, SolveOutcome, solve};
+
+#[cfg(test)]
+mod test_prior;

@@ -1,0 +1,100 @@
+//! A request made ready for the network: checked, its sex decided, its conflicts found, its open measures filled.
+
+use super::feasibility::{Conflict, Feasibility, Limits};
+use super::prior::{GivenMeasures, PROJECTION_ERROR, Prior};
+use super::request::{Fill, MeasureRange, Request};
+use crate::measure::{MEASURE_COUNT, Measurements, Sex};
+use crate::random::Random;
+use crate::{Error, Result};
+
+/// The stream of [`Random`] that open measures are drawn from.
+const FILL_STREAM: u64 = 2;
+
+/// What the network and the solve need, and what the report says about how it came about. Metres.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The sex that was given, or the likelier one.
+    pub sex: Sex,
+    /// The measures to be met exactly: the given ones, or the nearest feasible ones where the request allows that.
+    pub given: GivenMeasures,
+    /// All measures: the given ones and the filled ones.
+    pub filled: Measurements,
+    /// The filled measures pulled towards the plausible: the condition of the network.
+    pub projected: Measurements,
+    /// Lower end of each measure's 90 % interval beside the given ones; a given one itself.
+    pub low90: Measurements,
+    /// Upper end of that interval.
+    pub high90: Measurements,
+    /// The latent vector.
+    pub z: Vec<f64>,
+    /// Sentences about what is unusual or was assumed.
+    pub warnings: Vec<String>,
+    /// Conflicts that the nearest feasible request resolved.
+    pub conflicts: Vec<Conflict>,
+}
+
+impl Prepared {
+    /// Prepares a request for a network of `latent_size` latent dimensions.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for what [`Request::check`] refuses; [`Error::Infeasible`] for measures that no one person
+    /// has, unless the request asks for the nearest instead.
+    pub fn new(
+        request: &Request,
+        prior: &Prior,
+        ranges: &[MeasureRange; MEASURE_COUNT],
+        limits: &Limits,
+        latent_size: usize,
+    ) -> Result<Self> {
+        request.check(ranges, latent_size)?;
+        let mut warnings = Vec::new();
+        let sex = match request.sex {
+            Some(sex) => sex,
+            None => guess_sex(request, prior, limits, &mut warnings)?,
+        };
+        let prior = prior.of(sex);
+        let feasibility = Feasibility::assess(prior, sex, &request.measures, limits)?;
+        if !feasibility.is_feasible() {
+            if !request.nearest {
+                return Err(Error::Infeasible(feasibility.message()));
+            }
+            warnings
+                .push("the request is infeasible and was replaced by the nearest feasible one".to_owned());
+        }
+        warnings.extend(feasibility.warning());
+
+        let conditional = prior.condition(&feasibility.nearest)?;
+        let filled = match request.fill {
+            Fill::Mean => *conditional.mean(),
+            Fill::Sample => conditional.sample(&mut Random::new(request.seed, FILL_STREAM)),
+        };
+        let (low90, high90) = conditional.interval90();
+        Ok(Self {
+            sex,
+            given: feasibility.nearest,
+            filled,
+            projected: prior.project(&filled, PROJECTION_ERROR)?,
+            low90,
+            high90,
+            z: request.latent(latent_size),
+            warnings,
+            conflicts: feasibility.conflicts,
+        })
+    }
+}
+
+fn guess_sex(request: &Request, prior: &Prior, limits: &Limits, warnings: &mut Vec<String>) -> Result<Sex> {
+    if request.given().next().is_none() {
+        warnings.push("sex not given, nor any measure: female assumed".to_owned());
+        return Ok(Sex::Female);
+    }
+    let posterior = prior.sex_posterior(&request.measures, limits.reading_error)?;
+    let sex = if posterior[0] >= posterior[1] { Sex::Female } else { Sex::Male };
+    // Never 100 %: the data is not the world.
+    let percent = (100.0 * posterior[sex.index()]).floor().min(99.0);
+    warnings.push(format!("sex not given: {sex} is likelier ({percent:.0} %)"));
+    Ok(sex)
+}
+
+#[cfg(test)]
+mod tests;

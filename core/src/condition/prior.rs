@@ -1,0 +1,331 @@
+//! What is known about a person before anything is measured: per sex, a Gaussian over the 36 measures and their
+//! quantiles.
+//!
+//! Three uses: measures that were not given are filled from the Gaussian conditioned on those that were; a full vector
+//! is pulled towards the plausible ([`SexPrior::project`]) before the network sees it; and a sex that was not given is
+//! judged by which Gaussian explains the measures better.
+
+use super::cholesky::Cholesky;
+use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
+use crate::random::Random;
+use crate::{Error, Result};
+
+/// Number of quantiles kept per measure: 0 %, 1 %, … 100 %.
+pub const QUANTILE_COUNT: usize = 101;
+
+/// Standard deviation, in metres, of the error with which a given measure is believed when it predicts others: a tape
+/// reads to about a millimetre. It also keeps nearly collinear measures (left and right) from being extrapolated.
+pub const READING_ERROR: f64 = 0.001;
+
+/// Standard deviation, in metres, of the error that [`SexPrior::project`] takes off by default: half of the rounding to
+/// a centimetre of the paper's tables.
+pub const PROJECTION_ERROR: f64 = 0.003;
+
+/// Standard normal quantile of 95 %: a 90 % interval is the mean ± this many standard deviations.
+const HALF_INTERVAL_90: f64 = 1.644_853_626_951_472_7;
+
+/// The measures that a request gives; `None` where it leaves the value open.
+pub type GivenMeasures = [Option<f64>; MEASURE_COUNT];
+
+/// The priors of both sexes.
+#[derive(Clone, Debug)]
+pub struct Prior {
+    sexes: [SexPrior; 2],
+}
+
+impl Prior {
+    /// From flat arrays, female first: `mean` 2 × 36 (m), `covariance` 2 × 36 × 36 (m²), `quantiles` 2 × 36 × 101 (m).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a wrong size and for whatever [`SexPrior::new`] refuses.
+    pub fn from_slices(mean: &[f64], covariance: &[f64], quantiles: &[f64]) -> Result<Self> {
+        let half = |what, data: &[f64], each: usize| {
+            if data.len() == 2 * each {
+                Ok([data[..each].to_vec(), data[each..].to_vec()])
+            } else {
+                Err(Error::invalid(what, format!("expected 2 x {each} numbers, got {}", data.len())))
+            }
+        };
+        let [mean_f, mean_m] = half("prior mean", mean, MEASURE_COUNT)?;
+        let [cov_f, cov_m] = half("prior covariance", covariance, MEASURE_COUNT * MEASURE_COUNT)?;
+        let [quant_f, quant_m] = half("prior quantiles", quantiles, MEASURE_COUNT * QUANTILE_COUNT)?;
+        Ok(Self {
+            sexes: [SexPrior::new(&mean_f, &cov_f, &quant_f)?, SexPrior::new(&mean_m, &cov_m, &quant_m)?],
+        })
+    }
+
+    /// From the two priors.
+    pub fn new(female: SexPrior, male: SexPrior) -> Self {
+        Self { sexes: [female, male] }
+    }
+
+    /// The prior of one sex.
+    pub fn of(&self, sex: Sex) -> &SexPrior {
+        match sex {
+            Sex::Female => &self.sexes[0],
+            Sex::Male => &self.sexes[1],
+        }
+    }
+
+    /// Probability of each sex, in the order of [`Sex::index`], from the given measures alone; both sexes count as
+    /// equally frequent, so nothing given means one half each.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a measure that is not finite.
+    pub fn sex_posterior(&self, given: &GivenMeasures, error: f64) -> Result<[f64; 2]> {
+        let female = self.sexes[0].log_likelihood(given, error)?;
+        let male = self.sexes[1].log_likelihood(given, error)?;
+        // exp of a large number is infinite, so the quotient is still 0 or 1.
+        let p = 1.0 / (1.0 + libm::exp(male - female));
+        Ok([p, 1.0 - p])
+    }
+}
+
+/// The Gaussian and the quantiles of one sex.
+#[derive(Clone, Debug)]
+pub struct SexPrior {
+    mean: Measurements,
+    /// 36 × 36, symmetric.
+    covariance: Vec<f64>,
+    /// 36 × 101, non-decreasing along each row.
+    quantiles: Vec<f64>,
+}
+
+impl SexPrior {
+    /// From flat row-major arrays: `mean` 36 (m), `covariance` 36 × 36 (m²), `quantiles` 36 × 101 (m).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for wrong sizes, numbers that are not finite, a covariance that is not symmetric or not
+    /// positive definite beside [`READING_ERROR`], and quantiles that fall.
+    pub fn new(mean: &[f64], covariance: &[f64], quantiles: &[f64]) -> Result<Self> {
+        let n = MEASURE_COUNT;
+        for (what, data, expected) in [
+            ("prior mean", mean, n),
+            ("prior covariance", covariance, n * n),
+            ("prior quantiles", quantiles, n * QUANTILE_COUNT),
+        ] {
+            if data.len() != expected {
+                return Err(Error::invalid(what, format!("expected {expected} numbers, got {}", data.len())));
+            }
+            if let Some(bad) = data.iter().find(|v| !v.is_finite()) {
+                return Err(Error::invalid(what, format!("expected finite numbers, got {bad}")));
+            }
+        }
+        let largest = covariance.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let mut symmetric = covariance.to_vec();
+        for (i, a) in MeasureId::all().enumerate() {
+            for (j, b) in MeasureId::all().enumerate().take(i) {
+                let (lower, upper) = (covariance[i * n + j], covariance[j * n + i]);
+                // Looser than f32 storage, far tighter than anything that matters.
+                if (lower - upper).abs() > 1e-6 * largest {
+                    let message = format!("not symmetric at {a}, {b}: {lower} and {upper}");
+                    return Err(Error::invalid("prior covariance", message));
+                }
+                let middle = 0.5 * (lower + upper);
+                symmetric[i * n + j] = middle;
+                symmetric[j * n + i] = middle;
+            }
+        }
+        let all: Vec<_> = (0..n).collect();
+        if symmetric.iter().step_by(n + 1).any(|v| *v < 0.0)
+            || noisy_factor(&symmetric, &all, READING_ERROR).is_none()
+        {
+            return Err(Error::invalid("prior covariance", "expected a positive definite matrix"));
+        }
+        for (row, id) in quantiles.chunks_exact(QUANTILE_COUNT).zip(MeasureId::all()) {
+            if row.windows(2).any(|w| w[0] > w[1]) {
+                return Err(Error::invalid("prior quantiles", format!("those of {id} do not rise")));
+            }
+        }
+        let mut fixed = [0.0; MEASURE_COUNT];
+        fixed.copy_from_slice(mean);
+        Ok(Self { mean: fixed, covariance: symmetric, quantiles: quantiles.to_vec() })
+    }
+
+    /// Mean of each measure, metres.
+    pub fn mean(&self) -> &Measurements {
+        &self.mean
+    }
+
+    /// Covariance, 36 × 36 row-major, m².
+    pub fn covariance(&self) -> &[f64] {
+        &self.covariance
+    }
+
+    /// The share of people, 0 to 100, whose measure is at most `value` metres: linear between the stored quantiles,
+    /// 0 below the smallest body of the data and 100 above the largest.
+    pub fn percentile(&self, id: MeasureId, value: f64) -> f64 {
+        let row = &self.quantiles[id.index() * QUANTILE_COUNT..(id.index() + 1) * QUANTILE_COUNT];
+        let above = row.partition_point(|q| *q <= value);
+        match above {
+            0 => 0.0,
+            QUANTILE_COUNT => 100.0,
+            // `above` is the first quantile beyond the value, so the interval is not empty.
+            _ => (above - 1) as f64 + (value - row[above - 1]) / (row[above] - row[above - 1]),
+        }
+    }
+
+    /// The distribution of all measures once some are given, each believed up to `READING_ERROR`.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a given measure that is not finite.
+    pub fn condition(&self, given: &GivenMeasures) -> Result<Conditional> {
+        let n = MEASURE_COUNT;
+        let (rows, offset) = self.offsets(given)?;
+        let factor = self.factor(&rows, READING_ERROR)?;
+        let mut weights = offset;
+        factor.solve(&mut weights);
+
+        let mut mean = self.mean;
+        for (i, value) in mean.iter_mut().enumerate() {
+            *value = given[i].unwrap_or_else(|| {
+                *value + rows.iter().zip(&weights).map(|(g, w)| self.covariance[i * n + g] * w).sum::<f64>()
+            });
+        }
+
+        // S_UU − S_UG (S_GG + e²I)⁻¹ S_GU as a difference of inner products of the half-solved columns.
+        let half: Vec<Vec<f64>> = (0..n)
+            .map(|u| {
+                let mut column: Vec<_> = rows.iter().map(|g| self.covariance[g * n + u]).collect();
+                factor.forward(&mut column);
+                column
+            })
+            .collect();
+        let mut covariance = vec![0.0; n * n];
+        for i in (0..n).filter(|i| given[*i].is_none()) {
+            for j in (0..n).filter(|j| given[*j].is_none()) {
+                let explained: f64 = half[i].iter().zip(&half[j]).map(|(a, b)| a * b).sum();
+                covariance[i * n + j] = self.covariance[i * n + j] - explained;
+            }
+        }
+        Ok(Conditional { given: std::array::from_fn(|i| given[i].is_some()), mean, covariance })
+    }
+
+    /// The most probable true measures behind a full vector that was read with a normal error of `error` metres:
+    /// A* = μ + S (S + e²I)⁻¹ (A − μ). Pulls rounded or unlikely vectors to where the network was trained.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a value that is not finite, [`Error::Invalid`] for an error that is not positive.
+    pub fn project(&self, measures: &Measurements, error: f64) -> Result<Measurements> {
+        let n = MEASURE_COUNT;
+        let (rows, mut weights) = self.offsets(&measures.map(Some))?;
+        self.factor(&rows, error)?.solve(&mut weights);
+        Ok(std::array::from_fn(|i| {
+            let row = &self.covariance[i * n..(i + 1) * n];
+            self.mean[i] + row.iter().zip(&weights).map(|(s, w)| s * w).sum::<f64>()
+        }))
+    }
+
+    /// Squared Mahalanobis distance of the given measures from the mean, under S_GG + e²I; 0 when nothing is given.
+    ///
+    /// # Errors
+    /// As [`SexPrior::project`].
+    pub fn distance_squared(&self, given: &GivenMeasures, error: f64) -> Result<f64> {
+        let (rows, offset) = self.offsets(given)?;
+        Ok(self.factor(&rows, error)?.quadratic_form(&offset))
+    }
+
+    /// Log-likelihood of the given measures under S_GG + e²I, without the constant that depends on their number alone.
+    ///
+    /// # Errors
+    /// As [`SexPrior::project`].
+    pub fn log_likelihood(&self, given: &GivenMeasures, error: f64) -> Result<f64> {
+        let (rows, offset) = self.offsets(given)?;
+        let factor = self.factor(&rows, error)?;
+        Ok(-0.5 * (factor.quadratic_form(&offset) + factor.log_determinant()))
+    }
+
+    /// Indices of the given measures and their differences from the mean.
+    fn offsets(&self, given: &GivenMeasures) -> Result<(Vec<usize>, Vec<f64>)> {
+        let mut rows = Vec::new();
+        let mut offset = Vec::new();
+        for (id, value) in MeasureId::all().zip(given) {
+            if let Some(value) = value {
+                if !value.is_finite() {
+                    return Err(Error::request(
+                        id.name(),
+                        format!("expected a finite number of metres, got {value}"),
+                    ));
+                }
+                rows.push(id.index());
+                offset.push(value - self.mean[id.index()]);
+            }
+        }
+        Ok((rows, offset))
+    }
+
+    fn factor(&self, rows: &[usize], error: f64) -> Result<Cholesky> {
+        noisy_factor(&self.covariance, rows, error).ok_or_else(|| {
+            Error::invalid("measurement error", format!("expected a positive number of metres, got {error}"))
+        })
+    }
+}
+
+/// Cholesky factor of the rows and columns `rows` of a 36 × 36 matrix, with e² added to the diagonal.
+fn noisy_factor(covariance: &[f64], rows: &[usize], error: f64) -> Option<Cholesky> {
+    let size = rows.len();
+    let mut part = Vec::with_capacity(size * size);
+    for &i in rows {
+        for &j in rows {
+            let noise = if i == j { error * error } else { 0.0 };
+            part.push(covariance[i * MEASURE_COUNT + j] + noise);
+        }
+    }
+    Cholesky::new(&part, size)
+}
+
+/// All measures once some are given: a Gaussian over those that were left open.
+#[derive(Clone, Debug)]
+pub struct Conditional {
+    given: [bool; MEASURE_COUNT],
+    mean: Measurements,
+    /// 36 × 36; the rows and columns of the given measures are zero.
+    covariance: Vec<f64>,
+}
+
+impl Conditional {
+    /// Which measures were given.
+    pub fn given(&self) -> &[bool; MEASURE_COUNT] {
+        &self.given
+    }
+
+    /// The likeliest value of each measure, metres; a given measure is as it was given.
+    pub fn mean(&self) -> &Measurements {
+        &self.mean
+    }
+
+    /// Standard deviation of each measure, metres; 0 for a given one.
+    pub fn standard_deviation(&self) -> Measurements {
+        // Rounding may leave a variance a hair below zero.
+        std::array::from_fn(|i| self.covariance[i * (MEASURE_COUNT + 1)].max(0.0).sqrt())
+    }
+
+    /// Lower and upper end of the central 90 % of each measure, metres; a given one is both ends itself.
+    pub fn interval90(&self) -> (Measurements, Measurements) {
+        let deviation = self.standard_deviation();
+        let end = |sign: f64| std::array::from_fn(|i| self.mean[i] + sign * HALF_INTERVAL_90 * deviation[i]);
+        (end(-1.0), end(1.0))
+    }
+
+    /// One draw of all measures; the given ones stay as they were given.
+    pub fn sample(&self, random: &mut Random) -> Measurements {
+        let open: Vec<_> = (0..MEASURE_COUNT).filter(|i| !self.given[*i]).collect();
+        let part: Vec<_> =
+            open.iter().flat_map(|i| open.iter().map(|j| self.covariance[i * MEASURE_COUNT + j])).collect();
+        let normals = random.normals(open.len());
+        let deviation = self.standard_deviation();
+        let step = match Cholesky::with_jitter(&part, open.len()) {
+            Some(factor) => factor.multiply(&normals),
+            // Cannot happen for a checked prior; independent draws are still a plausible person.
+            None => open.iter().zip(&normals).map(|(i, x)| deviation[*i] * x).collect(),
+        };
+        let mut sample = self.mean;
+        for (i, step) in open.iter().zip(step) {
+            sample[*i] += step;
+        }
+        sample
+    }
+}
+
+#[cfg(test)]
+mod tests;

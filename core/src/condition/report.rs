@@ -1,0 +1,193 @@
+//! What came of a request: per measure what was asked and what the body has, how the rest was filled, what was odd.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::feasibility::Conflict;
+use super::prepare::Prepared;
+use super::prior::Prior;
+use super::request::{Fill, Request, group_by};
+use super::solve::SolveOutcome;
+use crate::measure::{MeasureId, Sex};
+
+/// Measures that a table for people shows even when they were not given.
+const ALWAYS_SHOWN: [&str; 4] = ["height", "chest_circumference", "waist_circumference", "hip_circumference"];
+
+/// Where the value of a measure came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Filled {
+    /// From the request.
+    #[serde(rename = "given")]
+    Given,
+    /// The likeliest value beside the given measures.
+    #[serde(rename = "prior mean")]
+    PriorMean,
+    /// Drawn from what is plausible beside the given measures.
+    #[serde(rename = "prior sample")]
+    PriorSample,
+}
+
+/// One measure of a body; metres unless said.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasureReport {
+    /// Identifier, with its side.
+    pub name: &'static str,
+    /// What the request gives; `None` for an open measure.
+    pub asked: Option<f64>,
+    /// What the body has.
+    pub obtained: f64,
+    /// Obtained − asked; `None` for an open measure.
+    pub residual: Option<f64>,
+    /// Whether the request gives it.
+    pub given: bool,
+    /// Where the value came from.
+    pub filled: Filled,
+    /// Lower end of the 90 % of people with the given measures; the value itself for a given measure.
+    pub low90: f64,
+    /// Upper end of that interval.
+    pub high90: f64,
+    /// Share of people of this sex, 0 to 100, who have at most the obtained value.
+    pub percentile: f64,
+}
+
+/// The account of one body. Serialises to the JSON of `--report`; prints as a table for people.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// All 36 measures, in order.
+    pub measures: Vec<MeasureReport>,
+    /// Sentences about what is unusual.
+    pub warnings: Vec<String>,
+    /// Which given measures did not go together; empty unless the request was replaced by the nearest feasible one.
+    pub conflicts: Vec<Conflict>,
+    /// The request's seed.
+    pub seed: u64,
+    /// The sex of the body.
+    pub sex: Sex,
+    /// How open measures were filled.
+    pub fill: Fill,
+    /// The latent vector of the body.
+    pub z: Vec<f64>,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Volume, m³.
+    pub volume_m3: f64,
+    /// Body mass index, kg/m².
+    pub bmi: f64,
+    /// Steps of the exact solve.
+    pub iterations: usize,
+    /// Largest |obtained − asked| that the solve left over the given measures, metres. Where the request was replaced
+    /// by the nearest feasible one, the measures it aimed at were those.
+    pub solve_residual: f64,
+    /// Whether the solve reached its tolerance.
+    pub converged: bool,
+}
+
+impl Report {
+    /// The account of the body that `prepared` and `outcome` led to; `mass` in kg and `volume` in m³ are the body's.
+    pub fn new(
+        request: &Request,
+        prepared: &Prepared,
+        prior: &Prior,
+        outcome: &SolveOutcome,
+        mass: f64,
+        volume: f64,
+    ) -> Self {
+        let filled = match request.fill {
+            Fill::Mean => Filled::PriorMean,
+            Fill::Sample => Filled::PriorSample,
+        };
+        let prior = prior.of(prepared.sex);
+        let measures: Vec<_> = MeasureId::all()
+            .map(|id| {
+                let i = id.index();
+                let (asked, obtained) = (request.measures[i], outcome.obtained[i]);
+                MeasureReport {
+                    name: id.name(),
+                    asked,
+                    obtained,
+                    residual: asked.map(|a| obtained - a),
+                    given: asked.is_some(),
+                    filled: if asked.is_some() { Filled::Given } else { filled },
+                    low90: prepared.low90[i],
+                    high90: prepared.high90[i],
+                    percentile: prior.percentile(id, obtained),
+                }
+            })
+            .collect();
+        let height = MeasureId::from_name("height").map_or(f64::NAN, |id| outcome.obtained[id.index()]);
+        let mut warnings = prepared.warnings.clone();
+        if !outcome.converged {
+            warnings.push(format!(
+                "the given measures could not be met exactly: the worst is {:.2} mm off",
+                1000.0 * outcome.residual_max
+            ));
+        }
+        Self {
+            measures,
+            warnings,
+            conflicts: prepared.conflicts.clone(),
+            seed: request.seed,
+            sex: prepared.sex,
+            fill: request.fill,
+            z: prepared.z.clone(),
+            mass_kg: mass,
+            volume_m3: volume,
+            bmi: mass / (height * height),
+            iterations: outcome.iterations,
+            solve_residual: outcome.residual_max,
+            converged: outcome.converged,
+        }
+    }
+
+    /// The JSON of `--report`, indented.
+    pub fn to_json(&self) -> String {
+        // Strings for keys and plain numbers: nothing here that serialising can refuse.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}, {:.1} kg, BMI {:.1}, seed {}", self.sex, self.mass_kg, self.bmi, self.seed)?;
+        writeln!(
+            f,
+            "{:<28} {:>9} {:>9} {:>9} {:>10}  90 % interval",
+            "", "asked", "obtained", "off by", "percentile"
+        )?;
+        // Sides that were treated alike and came out alike share a line.
+        let values = std::array::from_fn(|i| self.measures.get(i).map(|m| m.obtained));
+        let shown = |name: &str| ALWAYS_SHOWN.contains(&name);
+        for group in group_by(&values, |left, right| (left - right).abs() < 5e-4) {
+            let rows: Vec<_> = group.ids.iter().filter_map(|id| self.measures.get(id.index())).collect();
+            let alike = rows.windows(2).all(|w| w[0].asked == w[1].asked);
+            for row in rows.iter().take(if alike { 1 } else { rows.len() }) {
+                if row.given || shown(row.name) {
+                    write_row(f, if alike { &group.name } else { row.name }, row)?;
+                }
+            }
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
+        for conflict in &self.conflicts {
+            writeln!(f, "conflict: {}", conflict.message)?;
+        }
+        Ok(())
+    }
+}
+
+fn write_row(f: &mut fmt::Formatter<'_>, name: &str, row: &MeasureReport) -> fmt::Result {
+    let (asked, off) = match (row.asked, row.residual) {
+        (Some(asked), Some(residual)) => {
+            (format!("{asked:.3} m"), format!("{:.2} mm", 1000.0 * residual.abs()))
+        }
+        _ => ("-".to_owned(), "-".to_owned()),
+    };
+    let obtained = format!("{:.3} m", row.obtained);
+    write!(f, "{name:<28} {asked:>9} {obtained:>9} {off:>9} {:>10.0}", row.percentile)?;
+    if row.given { writeln!(f) } else { writeln!(f, "  {:.3} to {:.3} m", row.low90, row.high90) }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,403 @@
+//! What a user asks for: any subset of the measures, a sex, a seed or a latent vector; read, checked, written.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+
+use super::prior::GivenMeasures;
+use super::text::{list, metres};
+use crate::measure::{MEASURE_COUNT, MeasureId, Sex, expand_name};
+use crate::random::Random;
+use crate::{Error, Result};
+
+/// The stream of [`Random`] that a latent vector is drawn from.
+const LATENT_STREAM: u64 = 1;
+
+/// How measures that a request leaves open are filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fill {
+    /// With their likeliest values beside the given measures.
+    #[default]
+    Mean,
+    /// With a draw from what is plausible beside the given measures; the seed chooses it.
+    Sample,
+}
+
+/// The values that a measure may take, metres, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeasureRange {
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+/// A person to be made.
+///
+/// The same request gives the same person. The default asks for nothing: the likeliest woman.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Request {
+    /// The sex; `None` leaves it to the measures to decide.
+    pub sex: Option<Sex>,
+    /// The given measures in metres, in the order of [`MeasureId`]; `None` where one is left open.
+    pub measures: GivenMeasures,
+    /// 0 asks for the likeliest person; any other number for one of the people whom the measures allow.
+    pub seed: u64,
+    /// The latent vector by hand instead of by seed, each entry normally distributed with variance 1.
+    pub z: Option<Vec<f64>>,
+    /// How open measures are filled.
+    pub fill: Fill,
+    /// Whether an infeasible request is replaced by the nearest feasible one, with a warning, instead of refused.
+    pub nearest: bool,
+}
+
+/// The file format; names of measures are checked afterwards, so that the error can name the likeliest one.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RequestFile {
+    #[serde(default)]
+    sex: Option<String>,
+    #[serde(default)]
+    measures: Pairs,
+    #[serde(default)]
+    seed: u64,
+    #[serde(default)]
+    z: Option<Vec<f64>>,
+    #[serde(default)]
+    fill: Fill,
+    #[serde(default)]
+    nearest: bool,
+}
+
+/// A JSON object whose keys come once each, in alphabetical order: `arm_length` before `arm_length_left`.
+#[derive(Default)]
+struct Pairs(BTreeMap<String, Value>);
+
+impl<'de> Deserialize<'de> for Pairs {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct PairsVisitor;
+        impl<'de> Visitor<'de> for PairsVisitor {
+            type Value = Pairs;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object of measures, such as {\"height\": 1.7}")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<Pairs, A::Error> {
+                let mut pairs = BTreeMap::new();
+                while let Some((name, value)) = map.next_entry::<String, Value>()? {
+                    if pairs.contains_key(&name) {
+                        return Err(de::Error::custom(format!("measure `{name}` is given twice")));
+                    }
+                    pairs.insert(name, value);
+                }
+                Ok(Pairs(pairs))
+            }
+        }
+        deserializer.deserialize_map(PairsVisitor)
+    }
+}
+
+impl Request {
+    /// Reads JSON such as `{"sex": "female", "measures": {"height": 1.70, "arm_length": 0.33}, "seed": 7}`.
+    ///
+    /// All fields may be left out: `sex`, `measures`, `seed`, `z` (numbers), `fill` (`"mean"` or `"sample"`), `nearest`.
+    /// A measure without its side sets both sides, whatever the order; one with its side goes before it. `null` is
+    /// the same as leaving a measure out.
+    ///
+    /// # Errors
+    /// [`Error::Request`] with the field, or with line and column where the text is not such JSON. Values are checked
+    /// by [`Request::check`], not here.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let file: RequestFile =
+            serde_json::from_str(text).map_err(|e| Error::request("request", e.to_string()))?;
+        let mut request = Self {
+            sex: file.sex.map(|s| s.parse()).transpose()?,
+            seed: file.seed,
+            z: file.z,
+            fill: file.fill,
+            nearest: file.nearest,
+            ..Self::default()
+        };
+        for (name, value) in file.measures.0 {
+            match value {
+                Value::Null => {
+                    known(&name)?;
+                }
+                Value::Number(number) if number.as_f64().is_some() => {
+                    request.set(&name, number.as_f64().unwrap_or(f64::NAN))?;
+                }
+                other => {
+                    known(&name)?;
+                    return Err(Error::request(name, format!("expected a number of metres, got {other}")));
+                }
+            }
+        }
+        Ok(request)
+    }
+
+    /// Writes what [`Request::from_json`] reads; both sides become one name where they agree.
+    ///
+    /// Values that are not finite, which [`Request::check`] refuses, are written as `null`.
+    pub fn to_json(&self) -> String {
+        let measures: serde_json::Map<_, _> = groups(&self.measures)
+            .into_iter()
+            .map(|group| (group.name, self.measures[group.ids[0].index()].into()))
+            .collect();
+        let mut object = serde_json::Map::new();
+        if let Some(sex) = self.sex {
+            object.insert("sex".into(), sex.name().into());
+        }
+        object.insert("measures".into(), measures.into());
+        object.insert("seed".into(), self.seed.into());
+        if let Some(z) = &self.z {
+            object.insert("z".into(), z.clone().into());
+        }
+        object.insert("fill".into(), if self.fill == Fill::Mean { "mean" } else { "sample" }.into());
+        object.insert("nearest".into(), self.nearest.into());
+        Value::from(object).to_string()
+    }
+
+    /// Gives a measure in metres; a name without its side sets both sides.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a name that is not a measure, with the likeliest ones. The value is checked by
+    /// [`Request::check`].
+    pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
+        for id in known(name)? {
+            self.measures[id.index()] = Some(value);
+        }
+        Ok(())
+    }
+
+    /// [`Request::set`] for chains: `Request::default().with("height", 1.7)?.with("arm_length", 0.33)?`.
+    ///
+    /// # Errors
+    /// As [`Request::set`].
+    pub fn with(mut self, name: &str, value: f64) -> Result<Self> {
+        self.set(name, value)?;
+        Ok(self)
+    }
+
+    /// The given measures with their values in metres, in order.
+    pub fn given(&self) -> impl Iterator<Item = (MeasureId, f64)> + '_ {
+        MeasureId::all().zip(&self.measures).filter_map(|(id, value)| value.map(|v| (id, v)))
+    }
+
+    /// The latent vector of `size` entries: [`Request::z`] where given, else drawn from the seed, else zero.
+    pub fn latent(&self, size: usize) -> Vec<f64> {
+        match (&self.z, self.seed) {
+            (Some(z), _) => z.clone(),
+            (None, 0) => vec![0.0; size],
+            (None, seed) => Random::new(seed, LATENT_STREAM).normals(size),
+        }
+    }
+
+    /// Refuses what no body can be made from: values that are not finite, not positive or outside their range, plain
+    /// contradictions such as a waist larger than the stature, and a latent vector that is not `latent_size` finite
+    /// numbers.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for the first field that is wrong, with what was expected, what came, and a hint when the
+    /// value fits in another unit.
+    pub fn check(&self, ranges: &[MeasureRange; MEASURE_COUNT], latent_size: usize) -> Result<()> {
+        for group in groups(&self.measures) {
+            let id = group.ids[0];
+            if let Some(value) = self.measures[id.index()] {
+                check_value(&group.name, value, ranges[id.index()])?;
+            }
+        }
+        check_contradictions(&self.measures)?;
+        if let Some(z) = &self.z {
+            if z.len() != latent_size {
+                return Err(Error::request("z", format!("expected {latent_size} numbers, got {}", z.len())));
+            }
+            if let Some((i, bad)) = z.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+                return Err(Error::request("z", format!("expected finite numbers, got {bad} at place {i}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Measures of one name: one, or both sides.
+pub(crate) struct Group {
+    /// The name as a user would write it: without its side when both sides are in the group.
+    pub(crate) name: String,
+    /// One or two measures, never none.
+    pub(crate) ids: Vec<MeasureId>,
+}
+
+/// The given measures, both sides of one measure together where they have the same value.
+pub(crate) fn groups(measures: &GivenMeasures) -> Vec<Group> {
+    group_by(measures, |left, right| left.to_bits() == right.to_bits())
+}
+
+/// The given measures, both sides of one measure together where both are given and `same` says so.
+pub(crate) fn group_by(measures: &GivenMeasures, same: impl Fn(f64, f64) -> bool) -> Vec<Group> {
+    let mut result = Vec::new();
+    for (id, value) in MeasureId::all().zip(measures) {
+        let Some(value) = *value else { continue };
+        let other = id.mirrored();
+        let paired = other != id && measures[other.index()].is_some_and(|mirror| same(value, mirror));
+        if !paired {
+            result.push(Group { name: id.name().to_owned(), ids: vec![id] });
+        } else if id < other {
+            result.push(Group { name: unsided(id).to_owned(), ids: vec![id, other] });
+        }
+    }
+    result
+}
+
+/// The name without its side.
+fn unsided(id: MeasureId) -> &'static str {
+    id.name().trim_end_matches("_left").trim_end_matches("_right")
+}
+
+/// The measures of a name, or the error that names the likeliest ones.
+fn known(name: &str) -> Result<Vec<MeasureId>> {
+    expand_name(name).ok_or_else(|| {
+        let message = match name.to_ascii_lowercase().as_str() {
+            "weight" | "mass" | "volume" | "bmi" => {
+                "follows from the other measures and cannot be set; give circumferences instead".to_owned()
+            }
+            _ => format!("is not a measure: did you mean {}?", list(&nearest_names(name), "or")),
+        };
+        Error::request(name, message)
+    })
+}
+
+/// The up to three known names most like the given one, best first.
+fn nearest_names(name: &str) -> Vec<&'static str> {
+    let wanted = name.trim().to_ascii_lowercase().replace([' ', '-'], "_");
+    match wanted.as_str() {
+        "stature" | "size" | "body_height" => return vec!["height"],
+        "bust" | "bust_girth" => return vec!["chest_circumference"],
+        _ => {}
+    }
+    let mut names: Vec<_> = MeasureId::all().flat_map(|id| [unsided(id), id.name()]).collect();
+    names.sort_unstable();
+    names.dedup();
+    // A name that holds every word of the wanted one (`waist`, `left_arm_length`) beats one that is merely similar.
+    let words: Vec<_> = wanted.split('_').filter(|w| !w.is_empty()).collect();
+    let lacks = |candidate: &str| !candidate_has_words(candidate, &words);
+    names.sort_by_cached_key(|candidate| (lacks(candidate), edit_distance(&wanted, candidate), *candidate));
+    names.truncate(3);
+    if let Some(best) = names.first() {
+        // Further guesses only where they are about as good as the first.
+        let (first_lacks, closest) = (lacks(best), edit_distance(&wanted, best));
+        names.retain(|n| lacks(n) == first_lacks && edit_distance(&wanted, n) <= closest + 2);
+    }
+    names
+}
+
+fn candidate_has_words(candidate: &str, words: &[&str]) -> bool {
+    !words.is_empty() && words.iter().all(|word| candidate.split('_').any(|part| part == *word))
+}
+
+/// Levenshtein distance in characters. Only the first 64 are looked at: a name is never longer.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().take(64).collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().take(64).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+fn check_value(name: &str, value: f64, range: MeasureRange) -> Result<()> {
+    if value >= range.min && value <= range.max {
+        return Ok(());
+    }
+    let span = format!("{}–{} m", metres(range.min), metres(range.max));
+    let message = if !value.is_finite() {
+        format!("expected {span}, got {value}")
+    } else if value <= 0.0 {
+        format!("expected {span}, got {} m: a measure is positive", metres(value))
+    } else {
+        let mut hints = Vec::new();
+        for (unit, metre) in [("mm", 0.001), ("cm", 0.01), ("in", 0.0254), ("ft", 0.3048)] {
+            let converted = value * metre;
+            if converted >= range.min && converted <= range.max {
+                hints.push(format!("{} m ({} {unit})", metres(converted), plain(value)));
+            }
+        }
+        let hint =
+            if hints.is_empty() { String::new() } else { format!(": did you mean {}?", list(&hints, "or")) };
+        format!("{} m is outside {span}{hint}", metres(value))
+    };
+    Err(Error::request(name, message))
+}
+
+/// A number as a user would type it, at most four decimals.
+fn plain(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Contradictions that no body of any shape can resolve; subtler ones are the prior's to find.
+fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
+    let value = |name: &str| MeasureId::from_name(name).and_then(|id| measures[id.index()]);
+    let larger = |field: &str, value: f64, than: &str, limit: f64, why: &str| {
+        Err(Error::request(
+            field,
+            format!("{} m contradicts {than} {} m: {why}", metres(value), metres(limit)),
+        ))
+    };
+    if let Some(height) = value("height") {
+        for (id, measure) in MeasureId::all().zip(measures) {
+            let Some(measure) = *measure else { continue };
+            // The largest chests of short people come near their stature.
+            let limit = if id.name() == "chest_circumference" { 1.15 * height } else { height };
+            if id.name() != "height" && measure >= limit {
+                return larger(id.name(), measure, "height", height, "it cannot be larger than the stature");
+            }
+        }
+        for side in ["left", "right"] {
+            let parts =
+                [format!("thigh_length_{side}"), format!("calf_length_{side}"), "head_height".to_owned()];
+            let given: Vec<_> = parts.iter().filter_map(|name| Some((name, value(name)?))).collect();
+            let sum: f64 = given.iter().map(|(_, v)| v).sum();
+            if let (Some((field, first)), true) = (given.first(), sum >= height) {
+                let names: Vec<_> = given.iter().map(|(name, _)| name.as_str()).collect();
+                let why = format!("{} are {} m together", list(&names, "and"), metres(sum));
+                return larger(field, *first, "height", height, &why);
+            }
+        }
+    }
+    let mut ordered: Vec<(String, String)> = ["left", "right"]
+        .iter()
+        .flat_map(|side| {
+            [("heel_to_ball_length", "heel_to_toe_length"), ("foot_width", "heel_to_toe_length")]
+                .map(|(small, large)| (format!("{small}_{side}"), format!("{large}_{side}")))
+                .into_iter()
+                .chain([
+                    (format!("thigh_circumference_{side}"), "hip_circumference".to_owned()),
+                    (format!("arm_circumference_{side}"), "chest_circumference".to_owned()),
+                    (format!("forearm_circumference_{side}"), "chest_circumference".to_owned()),
+                ])
+        })
+        .collect();
+    ordered.push(("neck_circumference".to_owned(), "chest_circumference".to_owned()));
+    for (small, large) in ordered {
+        if let (Some(a), Some(b)) = (value(&small), value(&large)) {
+            if a >= b {
+                return larger(&small, a, &large, b, "it must be the smaller of the two");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;
