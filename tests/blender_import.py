@@ -45,7 +45,7 @@ def render(path):
     scene.render.resolution_x, scene.render.resolution_y = 640, 640
     scene.render.film_transparent = False
     scene.world = bpy.data.worlds.new("sky")
-    scene.world.color = (0.9, 0.9, 0.9)
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.6, 0.6, 0.6, 1)
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
     sun.rotation_euler = (np.radians(50), 0, np.radians(-30))
     sun.data.energy = 2

@@ -20,6 +20,7 @@ from scipy.spatial import ConvexHull, QhullError
 from glb import Cases, Glb
 
 TOLERANCE = 1e-4  # metres: what the project promises
+BODY_VERTICES = 53_514  # of level of detail 0
 
 PARTIAL = {
     "woman": {"sex": "female", "measures": {"height": 1.70}},
@@ -112,12 +113,46 @@ def generate(anthronet, request, file, report, as_file):
     call(anthronet, "generate", *arguments, "-o", file, "--report", report)
 
 
+def enclosed_volume(vertices, triangles):
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def other_ways(cases, anthronet, request, folder, vertices, lengths):
+    """The same body through `measure` and as .obj."""
+    file = folder / "other_ways.obj"
+    for path in (file, file.with_suffix(".glb")):
+        generate(anthronet, request, path, folder / "other_ways.json", as_file=False)
+        rows = json.loads(call(anthronet, "measure", path, "--json"))["measures"]
+        worst = max(abs(row["value"] - lengths[row["name"]]) for row in rows)
+        cases.case(f"`measure` of {path.name} agrees (worst {worst * 1000:.5f} mm)", len(rows) == 36 and worst <= 1e-5,
+                   "`measure` and numpy differ")
+    lines = [line.split()[1:4] for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("v ")]
+    got = np.array(lines, float)
+    cases.case(".obj has the body's vertices", len(got) >= BODY_VERTICES, f"{len(got)}, at least {BODY_VERTICES} expected")
+    cases.close_to(".obj has the body first, in the same order", got[:BODY_VERTICES], vertices[:BODY_VERTICES], 1e-6)
+
+
+def joints(cases, listed, glb):
+    """The rig that `info` lists against the nodes of a file."""
+    nodes, _ = glb.skin(glb.skinned_nodes()[0])
+    name = {i: glb.nodes[i]["name"] for i in nodes}
+    in_file = {name[i]: name.get(glb.parent.get(i)) for i in nodes}
+    in_info = {joint["name"]: joint["parent"] for joint in listed}
+    # A parent may be given by name or by its place in the list.
+    in_info = {n: listed[p]["name"] if isinstance(p, int) else p for n, p in in_info.items()}
+    differ = {n for n in in_file | in_info if in_file.get(n, 0) != in_info.get(n, 0)}
+    cases.case(f"the file's {len(in_file)} joints are those of info", not differ, sorted(differ))
+
+
 def main(anthronet, folder):
     cases, folder = Cases(), Path(folder)
-    definitions = json.loads(call(anthronet, "info", "--json"))["measures"]
+    info = json.loads(call(anthronet, "info", "--json"))
+    definitions = info["measures"]
     names = [d["name"] for d in definitions]
     cases.case("info lists 36 measures", len(set(names)) == len(names) == 36, names)
-    needed = 1 + max(int(v) for d in definitions for point in d["points"] for v, _ in point)
+    known = max(int(v) for d in definitions for point in d["points"] for v, _ in point) < BODY_VERTICES
+    cases.case("measures speak of the body's vertices", known, f"some id is not below {BODY_VERTICES}")
 
     paper = json.loads((Path(__file__).parent / "data" / "paper_vectors.json").read_text(encoding="utf-8"))
     requests = {f"paper {name}": request for name, request in paper.items()} | PARTIAL
@@ -133,8 +168,8 @@ def main(anthronet, folder):
         glb = Glb(file)
         body = glb.primitives(glb.skinned_nodes()[0])[0]
         vertices = glb.positions(body)
-        if len(vertices) < needed:
-            cases.case(f"{name}: vertices", False, f"{len(vertices)}, measures speak of {needed}")
+        if len(vertices) < BODY_VERTICES:
+            cases.case(f"{name}: vertices", False, f"{len(vertices)}, at least {BODY_VERTICES} expected")
             continue
         try:
             lengths = {d["name"]: measured(d, vertices) for d in definitions}
@@ -142,7 +177,8 @@ def main(anthronet, folder):
             cases.case(f"{name}: measured", False, repr(error))
             continue
 
-        rows = json.loads(report.read_text(encoding="utf-8"))["measures"]
+        account = json.loads(report.read_text(encoding="utf-8"))
+        rows = account["measures"]
         off = {row["name"]: abs(lengths[row["name"]] - row["obtained"]) for row in rows}
         first = max(off, key=off.get)
         cases.case(f"{name}: all {len(off)} as reported (worst {first} {off[first] * 1000:.4f} mm)",
@@ -157,11 +193,18 @@ def main(anthronet, folder):
         cases.case(f"{name}: {len(asked)} given as asked (worst {first} {asked[first] * 1000:.4f} mm)",
                    asked[first] <= TOLERANCE, "asked and measured differ")
 
+        volume = enclosed_volume(vertices, glb.triangles(body))
+        cases.case(f"{name}: volume as reported ({volume * 1000:.3f} l)", abs(volume - account["volume_m3"]) <= 1e-6,
+                   f"reported {account['volume_m3'] * 1000:.3f} l")
+
         for d in definitions:
             if d["kind"] == "slice":
                 around = whole_slice(vertices, glb.triangles(body), landmarks(d, vertices).mean(0), np.array(d["normal"], float))
                 cases.case(f"{name}: {d['name']} is the whole slice ({(around - lengths[d['name']]) * 1000:+.4f} mm)",
                            abs(around - lengths[d["name"]]) <= TOLERANCE, "the slice through all triangles differs")
+        if name == "woman":
+            joints(cases, info["joints"], glb)
+            other_ways(cases, anthronet, request, folder, vertices, lengths)
     print(f"   worst given measure of {len(requests)} requests: {worst_asked * 1000:.5f} mm")
     cases.exit()
 
