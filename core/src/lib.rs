@@ -2,8 +2,12 @@
 
 pub mod condition;
 mod error;
+pub mod export;
+pub mod import;
 pub mod measure;
 pub mod mesh;
+pub mod model;
 pub mod random;
+pub mod rig;
 
 pub use error::{Error, Result};

@@ -6,6 +6,7 @@
 mod chi_squared;
 mod cholesky;
 mod feasibility;
+pub mod fourier;
 mod prepare;
 mod prior;
 mod report;

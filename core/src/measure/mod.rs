@@ -1,5 +1,18 @@
 //! Tape measures: what they are called, where they lie on the body and how they are read.
+//!
+//! A [`Definition`] is data: landmarks, loops and planes over the vertices of the finest level of detail. A
+//! circumference is what a tailor's tape reads, the perimeter of the convex hull of its points, because a tape
+//! spans hollows; the raw edge loop reads 50 mm more at the hip. Every measure has an analytic gradient, which
+//! the exact solve needs.
 
+mod definition;
+mod hull;
+mod mass;
 mod names;
+mod read;
+mod standard;
 
+pub use definition::{Definition, Definitions, Kind, Point};
+pub use mass::{BODY_DENSITY, Mass, enclosed_volume};
 pub use names::{MEASURE_COUNT, MeasureId, Measurements, Sex, expand_name};
+pub use read::Gradient;

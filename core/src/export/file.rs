@@ -1,0 +1,251 @@
+//! Files appear on the disk whole or not at all.
+//!
+//! Bytes go to a temporary file in the folder of the target, which is then renamed over it. If anything fails before
+//! that, what was there stays as it was and nothing is left behind.
+
+use std::{
+    ffi::OsStr,
+    fs, io,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::{Scene, gltf, obj};
+use crate::{Error, Result};
+
+/// The endings that [`write_scene`] knows.
+pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
+
+/// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
+/// a second file, `.bin` for `.gltf`.
+///
+/// # Errors
+/// [`Error::File`] for another ending, [`Error::Invalid`] for a scene that does not validate, [`Error::Io`] when the
+/// system refuses; the target is then as it was.
+pub fn write_scene(scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
+    let path = path.as_ref();
+    let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+    match ending.as_deref() {
+        Some("glb") => write_atomic(path, &gltf::to_glb(scene)?),
+        Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
+        Some("gltf") => {
+            let bin_path = path.with_extension("bin");
+            let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
+                return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
+            };
+            let files = gltf::to_gltf(scene, bin_name)?;
+            // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
+            let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
+            let json = Pending::new(path, |file| file.write_all(&files.json))?;
+            let bin_is_new = !bin.target.exists();
+            let bin_target = bin.target.clone();
+            bin.commit()?;
+            json.commit().inspect_err(|_| {
+                if bin_is_new {
+                    // The failure itself is what the caller must hear of.
+                    let _ = fs::remove_file(&bin_target);
+                }
+            })
+        }
+        _ => Err(Error::file(path, format!("unknown ending, expected one of {}", ENDINGS.join(" ")))),
+    }
+}
+
+/// Writes a file whole or not at all; an existing regular file is replaced, through a symbolic link too.
+///
+/// # Errors
+/// [`Error::Io`] names the path: the folder is missing or read-only, the target is a folder or a device, the disk is full.
+pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
+    Pending::new(path.as_ref(), |file| file.write_all(bytes))?.commit()
+}
+
+/// A file that is written completely but has not got its name yet. Dropping it removes it.
+struct Pending {
+    file: NamedTempFile,
+    target: PathBuf,
+    /// The path as the caller wrote it, for messages.
+    path: PathBuf,
+}
+
+impl Pending {
+    fn new(path: &Path, write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>) -> Result<Self> {
+        let create = || {
+            let target = target_of(path)?;
+            let folder = match target.parent() {
+                Some(parent) if parent != Path::new("") => parent,
+                _ => Path::new("."),
+            };
+            let mut builder = Builder::new();
+            builder.prefix(".anthronet-").suffix(".part");
+            // The default is private to the user; the finished file shall be like any other that the user makes.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+            // Only the kind: the message would name the temporary file.
+            let file = builder.tempfile_in(folder).map_err(|e| io::Error::from(e.kind()))?;
+            Ok((file, target))
+        };
+        let (mut file, target) = create().map_err(|source| fault(path, "create", source))?;
+        // A full disk may only be reported when the data is really written.
+        let written = write(&mut file).and_then(|()| file.as_file().sync_all());
+        written.map_err(|source| fault(path, "write", source))?;
+        Ok(Self { file, target, path: path.into() })
+    }
+
+    fn commit(self) -> Result<()> {
+        let path = self.path;
+        self.file.persist(&self.target).map(drop).map_err(|e| fault(&path, "write", e.error))
+    }
+}
+
+/// The regular file that a path names or will name. Renaming over a folder fails late and over a device destroys it.
+fn target_of(path: &Path) -> io::Result<PathBuf> {
+    if path.file_name().is_none() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder, expected a file name"));
+    }
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder, expected a file name"))
+        }
+        Ok(found) if !found.is_file() => {
+            Err(io::Error::new(io::ErrorKind::InvalidInput, "is not a regular file"))
+        }
+        Ok(_) => fs::canonicalize(path),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(path.into()),
+        Err(e) => Err(e),
+    }
+}
+
+fn fault(path: &Path, action: &'static str, source: io::Error) -> Error {
+    Error::Io { path: path.into(), action, source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::synthetic::arm;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn writes_replaces_and_leaves_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        write_atomic(&path, b"one").unwrap();
+        write_atomic(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn a_failing_write_keeps_the_old_file_and_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.glb");
+        write_atomic(&path, b"old").unwrap();
+        let full = |file: &mut NamedTempFile| {
+            file.write_all(b"half of the n")?;
+            Err(io::ErrorKind::StorageFull.into())
+        };
+        let Err(error) = Pending::new(&path, full) else { panic!("expected an error") };
+        let message = error.to_string();
+        assert!(
+            message.starts_with(&*path.to_string_lossy()) && message.contains("cannot write"),
+            "{message}"
+        );
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["a.glb"]);
+    }
+
+    #[test]
+    fn refuses_missing_folders_folders_and_endings_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = arm(4);
+        fs::create_dir(folder.path().join("dir.glb")).unwrap();
+        for (name, expected) in [
+            ("missing/a.glb", "cannot create: entity not found"),
+            ("dir.glb", "is a folder"),
+            ("a.stl", "expected one of .glb .gltf .obj"),
+            ("a", "expected one of .glb .gltf .obj"),
+            ("glb", "expected one of .glb .gltf .obj"),
+        ] {
+            let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains(expected), "{message}");
+            assert!(!message.contains(".part"), "{message}");
+        }
+        assert_eq!(names(folder.path()), ["dir.glb"]);
+    }
+
+    #[test]
+    fn an_invalid_scene_writes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut scene = arm(4);
+        scene.meshes[0].positions[0][0] = f32::NAN;
+        for name in ["a.glb", "a.gltf", "a.obj"] {
+            write_scene(&scene, folder.path().join(name)).unwrap_err();
+        }
+        assert!(names(folder.path()).is_empty());
+    }
+
+    #[test]
+    fn a_gltf_comes_with_its_buffer_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = arm(4);
+        write_scene(&scene, folder.path().join("my ärm.GLTF")).unwrap();
+        assert_eq!(names(folder.path()), ["my ärm.GLTF", "my ärm.bin"]);
+        let json = fs::read_to_string(folder.path().join("my ärm.GLTF")).unwrap();
+        assert!(json.contains("\"uri\": \"my%20%C3%A4rm.bin\""));
+
+        fs::create_dir(folder.path().join("b.bin")).unwrap();
+        write_scene(&scene, folder.path().join("b.gltf")).unwrap_err();
+        fs::create_dir(folder.path().join("c.gltf")).unwrap();
+        write_scene(&scene, folder.path().join("c.gltf")).unwrap_err();
+        assert_eq!(names(folder.path()), ["b.bin", "c.gltf", "my ärm.GLTF", "my ärm.bin"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn follows_links_refuses_devices_and_has_ordinary_permissions() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (real, link) = (folder.path().join("real"), folder.path().join("link"));
+        fs::write(&real, b"old").unwrap();
+        symlink(&real, &link).unwrap();
+        write_atomic(&link, b"new").unwrap();
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+
+        let device = folder.path().join("null");
+        symlink("/dev/null", &device).unwrap();
+        let message = write_atomic(&device, b"new").unwrap_err().to_string();
+        assert!(message.contains("not a regular file"), "{message}");
+
+        let plain = folder.path().join("plain");
+        fs::write(&plain, b"").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&real), mode(&plain));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_read_only_folder_is_named() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
+        let path = folder.path().join("a.glb");
+        let result = write_atomic(&path, b"bytes");
+        let left = names(folder.path());
+        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o755)).unwrap();
+        // Root may write anywhere.
+        if let Err(error) = result {
+            let message = error.to_string();
+            assert!(message.contains("a.glb: cannot create"), "{message}");
+            assert!(left.is_empty());
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! From a finished character to a file: the neutral [`Scene`], one writer per format, and the door to the disk.
+//!
+//! Every writer takes a [`Scene`] that it validates first and returns bytes; [`write_scene`] chooses the writer by
+//! the ending of the path and puts the bytes on the disk whole or not at all.
+
+pub(crate) mod accessor;
+pub mod file;
+pub mod gltf;
+pub mod obj;
+pub mod scene;
+pub mod skin_tone;
+#[cfg(test)]
+pub(crate) mod synthetic;
+
+pub use file::{write_atomic, write_scene};
+pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh};
+pub use skin_tone::SkinTone;

@@ -1,0 +1,219 @@
+//! Reading a measure off a body, with its derivative by every vertex.
+
+use glam::{DVec2, DVec3};
+
+use super::definition::{Definition, Definitions, Kind, Point};
+use super::hull::hull_perimeter;
+use super::names::{MEASURE_COUNT, MeasureId, Measurements};
+
+/// Derivative of a measure by the vertices it depends on; a vertex may appear more than once.
+pub type Gradient = Vec<(u32, DVec3)>;
+
+impl Point {
+    /// The place on a body whose vertices `at` gives.
+    pub fn place(&self, at: impl Fn(u32) -> DVec3) -> DVec3 {
+        self.0.iter().map(|&(v, w)| at(v) * w).sum()
+    }
+
+    fn add_gradient(&self, direction: DVec3, gradient: &mut Gradient) {
+        gradient.extend(self.0.iter().map(|&(v, w)| (v, direction * w)));
+    }
+}
+
+impl Definitions {
+    /// Reads all 36 measures of a body, metres. `at` gives the place of a vertex of the finest level of detail.
+    pub fn read_all(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Measurements {
+        let mut out = [0.0; MEASURE_COUNT];
+        for (id, definition) in self.iter() {
+            out[id.index()] = definition.read(at);
+        }
+        out
+    }
+
+    /// Reads one measure, metres.
+    pub fn read(&self, id: MeasureId, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
+        self.get(id).read(at)
+    }
+}
+
+impl Definition {
+    /// Reads the measure, metres.
+    pub fn read(&self, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
+        self.evaluate(at, None)
+    }
+
+    /// Reads the measure and appends its derivative.
+    pub fn read_with_gradient(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: &mut Gradient) -> f64 {
+        self.evaluate(at, Some(gradient))
+    }
+
+    fn evaluate(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
+        match self.kind {
+            Kind::Tape => self.tape(at, gradient),
+            Kind::Slice => self.slice(at, gradient),
+            Kind::Length => self.length(at, gradient),
+        }
+    }
+
+    fn length(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
+        let [from, to] = [&self.points[0], &self.points[1]];
+        let between = to.place(at) - from.place(at);
+        let (value, direction) = match self.axis {
+            Some(axis) => {
+                let along = between.dot(axis);
+                (along.abs(), axis * along.signum())
+            }
+            None => (between.length(), between.normalize_or_zero()),
+        };
+        if let Some(gradient) = gradient {
+            to.add_gradient(direction, gradient);
+            from.add_gradient(-direction, gradient);
+        }
+        value
+    }
+
+    fn tape(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
+        let (e1, e2) = self.normal.any_orthonormal_pair();
+        let flat: Vec<DVec2> = self
+            .points
+            .iter()
+            .map(|p| {
+                let x = p.place(at);
+                DVec2::new(x.dot(e1), x.dot(e2))
+            })
+            .collect();
+        let (perimeter, corners) = hull_perimeter(&flat);
+        if let Some(gradient) = gradient {
+            for (corner, g) in corners {
+                self.points[corner].add_gradient(e1 * g.x + e2 * g.y, gradient);
+            }
+        }
+        perimeter
+    }
+
+    fn slice(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
+        let n = self.normal;
+        let (e1, e2) = n.any_orthonormal_pair();
+        let share = 1.0 / self.points.len() as f64;
+        let level: f64 = self.points.iter().map(|p| p.place(at).dot(n)).sum::<f64>() * share;
+        // Cut edges: [a, b], and how far from a to b the plane is.
+        let mut cuts: Vec<([u32; 2], f64)> = Vec::new();
+        let mut flat = Vec::new();
+        for &[a, b] in &self.edges {
+            let (xa, xb) = (at(a), at(b));
+            let (ha, hb) = (xa.dot(n) - level, xb.dot(n) - level);
+            // Half open, so that a vertex exactly on the plane is cut once and not never.
+            if (ha < 0.0) != (hb < 0.0) {
+                let t = ha / (ha - hb);
+                let x = xa + (xb - xa) * t;
+                cuts.push(([a, b], t));
+                flat.push(DVec2::new(x.dot(e1), x.dot(e2)));
+            }
+        }
+        let (perimeter, corners) = hull_perimeter(&flat);
+        if let Some(gradient) = gradient {
+            let mut by_level = 0.0;
+            for (corner, g) in corners {
+                let ([a, b], t) = cuts[corner];
+                let direction = e1 * g.x + e2 * g.y;
+                let along = at(b) - at(a);
+                // The cut slides along its edge as the plane or the edge's ends move.
+                let slide = direction.dot(along) / along.dot(n);
+                let of_ends = direction - n * slide;
+                gradient.push((a, of_ends * (1.0 - t)));
+                gradient.push((b, of_ends * t));
+                by_level += slide;
+            }
+            for point in &self.points {
+                point.add_gradient(n * (by_level * share), gradient);
+            }
+        }
+        perimeter
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A wobbly barrel: rings of points, so that tapes and slices have something to span.
+    fn barrel() -> (Vec<DVec3>, Vec<[u32; 2]>) {
+        let (rings, around) = (6, 16);
+        let mut points = Vec::new();
+        for r in 0..rings {
+            for k in 0..around {
+                let angle = f64::from(k) / f64::from(around) * std::f64::consts::TAU;
+                let radius = 1.0 + 0.2 * libm::sin(3.0 * angle + f64::from(r)) + 0.05 * f64::from(r);
+                let y = f64::from(r) * 0.3 + 0.07 * libm::cos(5.0 * angle);
+                points.push(DVec3::new(radius * libm::cos(angle), y, radius * libm::sin(angle)));
+            }
+        }
+        let mut edges = Vec::new();
+        for r in 0..rings - 1 {
+            for k in 0..around {
+                let (a, b) = (r * around + k, r * around + (k + 1) % around);
+                edges.push([a as u32, (a + around) as u32]);
+                edges.push([a as u32, (b + around) as u32]);
+            }
+        }
+        (points, edges)
+    }
+
+    fn definitions() -> (Vec<DVec3>, Vec<Definition>) {
+        let (points, edges) = barrel();
+        let one = |v: u32| Point(vec![(v, 1.0)]);
+        let base = Definition {
+            name: "test".into(),
+            kind: Kind::Tape,
+            points: (32..48).map(|v| Point(vec![(v, 0.25), (v + 16, 0.75)])).collect(),
+            normal: DVec3::new(0.1, 1.0, -0.2).normalize_or_zero(),
+            axis: None,
+            edges: Vec::new(),
+        };
+        let slice =
+            Definition { kind: Kind::Slice, points: vec![one(35), one(50)], edges, ..base.clone() };
+        let length =
+            Definition { kind: Kind::Length, points: vec![one(3), one(77)], normal: DVec3::ZERO, ..base.clone() };
+        let along = Definition { axis: Some(DVec3::Y), ..length.clone() };
+        (points, vec![base, slice, length, along])
+    }
+
+    #[test]
+    fn gradients_match_finite_differences() {
+        let (points, definitions) = definitions();
+        for definition in definitions {
+            let mut sparse = Gradient::new();
+            definition.read_with_gradient(|v| points[v as usize], &mut sparse);
+            let mut dense = vec![DVec3::ZERO; points.len()];
+            for (v, g) in sparse {
+                dense[v as usize] += g;
+            }
+            let step = 1e-6;
+            for v in 0..points.len() {
+                for axis in 0..3 {
+                    let mut moved = points.clone();
+                    moved[v][axis] += step;
+                    let high = definition.read(|v| moved[v as usize]);
+                    moved[v][axis] -= 2.0 * step;
+                    let low = definition.read(|v| moved[v as usize]);
+                    let numeric = (high - low) / (2.0 * step);
+                    // Tolerance: second derivative of order 1/edge times the step, plus rounding over the step.
+                    assert!(
+                        (numeric - dense[v][axis]).abs() < 2e-6,
+                        "{:?} vertex {v} axis {axis}: {numeric} {}",
+                        definition.kind,
+                        dense[v][axis]
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_cut_reads_zero() {
+        let (points, definitions) = definitions();
+        let high = |v: u32| if v == 35 || v == 50 { DVec3::Y * 100.0 } else { points[v as usize] };
+        // Landmarks far above everything else; only edges at the landmarks themselves are cut.
+        assert!(definitions[1].read(high) >= 0.0);
+    }
+}

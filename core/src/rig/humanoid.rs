@@ -1,0 +1,315 @@
+//! What other programs call the joints of the rig.
+//!
+//! The native rig is MakeHuman's `game_engine` rig (Unreal-like names) with eyes, jaw and twist joints. The other
+//! vocabularies are:
+//! - **Unity**: `HumanBodyBones` of the Unity scripting reference; with spaces they are `HumanTrait.BoneName`.
+//! - **VRM**: `humanoid.humanBones` of VRMC_vrm 1.0, whose thumbs are metacarpal, proximal, distal.
+//! - **Mixamo**: the names in files from mixamo.com, `mixamorig:` included.
+//! - **Blender**: Rigify-like, with the `.L`/`.R` endings that Blender mirrors by.
+//!
+//! The root and the twist joints are no humanoid bones; in each vocabulary they get a name of its kind.
+
+use std::{borrow::Cow, collections::BTreeMap, str::FromStr, sync::LazyLock};
+
+use crate::{Error, Result};
+
+/// The vocabulary that a file's joints are named in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum JointNames {
+    /// The rig's own names, such as `upperarm_l`.
+    #[default]
+    Native,
+    /// Unity's `HumanBodyBones`, such as `LeftUpperArm`.
+    Unity,
+    /// Mixamo's, such as `mixamorig:LeftArm`.
+    Mixamo,
+    /// VRM 1.0's, such as `leftUpperArm`.
+    Vrm,
+    /// Blender's, such as `upper_arm.L`.
+    Blender,
+}
+
+impl JointNames {
+    /// Every vocabulary.
+    pub const ALL: [Self; 5] = [Self::Native, Self::Unity, Self::Mixamo, Self::Vrm, Self::Blender];
+
+    /// The word for it on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Native => "native",
+            Self::Unity => "unity",
+            Self::Mixamo => "mixamo",
+            Self::Vrm => "vrm",
+            Self::Blender => "blender",
+        }
+    }
+}
+
+impl FromStr for JointNames {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|scheme| scheme.name() == text).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::request("joint_names", format!("expected one of {known}, got `{text}`"))
+        })
+    }
+}
+
+/// A joint of the rig that is a bone of the standard humanoid, with its name in every vocabulary.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HumanoidBone {
+    /// Name in the rig.
+    pub native: String,
+    /// Member of Unity's `HumanBodyBones`.
+    pub unity: String,
+    /// Name in Unity's `HumanTrait.BoneName`, which `AvatarBuilder` wants: fingers have spaces, `Left Thumb Proximal`.
+    pub unity_trait: String,
+    /// Name in files from Mixamo.
+    pub mixamo: String,
+    /// Key in VRM 1.0's `humanBones`.
+    pub vrm: String,
+    /// Name in Blender.
+    pub blender: String,
+    /// Whether Unity and VRM 1.0 require it; both require the same fifteen.
+    pub required: bool,
+}
+
+/// A row of a table: native, Unity, Mixamo, VRM, Blender. In the tables of sides each name is completed by its side.
+type Row = [&'static str; 5];
+
+/// Bones in the middle that Unity and VRM require.
+const CENTRAL_REQUIRED: [Row; 3] = [
+    ["pelvis", "Hips", "Hips", "hips", "hips"],
+    ["spine_01", "Spine", "Spine", "spine", "spine"],
+    ["head", "Head", "Head", "head", "head"],
+];
+
+const CENTRAL_OPTIONAL: [Row; 4] = [
+    ["spine_02", "Chest", "Spine1", "chest", "chest"],
+    ["spine_03", "UpperChest", "Spine2", "upperChest", "upper_chest"],
+    ["neck_01", "Neck", "Neck", "neck", "neck"],
+    ["jaw", "Jaw", "Jaw", "jaw", "jaw"],
+];
+
+const SIDED_REQUIRED: [Row; 6] = [
+    ["upperarm", "UpperArm", "Arm", "UpperArm", "upper_arm"],
+    ["lowerarm", "LowerArm", "ForeArm", "LowerArm", "forearm"],
+    ["hand", "Hand", "Hand", "Hand", "hand"],
+    ["thigh", "UpperLeg", "UpLeg", "UpperLeg", "thigh"],
+    ["calf", "LowerLeg", "Leg", "LowerLeg", "shin"],
+    ["foot", "Foot", "Foot", "Foot", "foot"],
+];
+
+const SIDED_OPTIONAL: [Row; 18] = [
+    ["clavicle", "Shoulder", "Shoulder", "Shoulder", "shoulder"],
+    ["ball", "Toes", "ToeBase", "Toes", "toe"],
+    ["eye", "Eye", "Eye", "Eye", "eye"],
+    ["thumb_01", "ThumbProximal", "HandThumb1", "ThumbMetacarpal", "thumb.01"],
+    ["thumb_02", "ThumbIntermediate", "HandThumb2", "ThumbProximal", "thumb.02"],
+    ["thumb_03", "ThumbDistal", "HandThumb3", "ThumbDistal", "thumb.03"],
+    ["index_01", "IndexProximal", "HandIndex1", "IndexProximal", "f_index.01"],
+    ["index_02", "IndexIntermediate", "HandIndex2", "IndexIntermediate", "f_index.02"],
+    ["index_03", "IndexDistal", "HandIndex3", "IndexDistal", "f_index.03"],
+    ["middle_01", "MiddleProximal", "HandMiddle1", "MiddleProximal", "f_middle.01"],
+    ["middle_02", "MiddleIntermediate", "HandMiddle2", "MiddleIntermediate", "f_middle.02"],
+    ["middle_03", "MiddleDistal", "HandMiddle3", "MiddleDistal", "f_middle.03"],
+    ["ring_01", "RingProximal", "HandRing1", "RingProximal", "f_ring.01"],
+    ["ring_02", "RingIntermediate", "HandRing2", "RingIntermediate", "f_ring.02"],
+    ["ring_03", "RingDistal", "HandRing3", "RingDistal", "f_ring.03"],
+    ["pinky_01", "LittleProximal", "HandPinky1", "LittleProximal", "f_pinky.01"],
+    ["pinky_02", "LittleIntermediate", "HandPinky2", "LittleIntermediate", "f_pinky.02"],
+    ["pinky_03", "LittleDistal", "HandPinky3", "LittleDistal", "f_pinky.03"],
+];
+
+/// Not humanoid bones, sided.
+const SIDED_HELPERS: [Row; 8] = [
+    ["upperarm_twist_01", "UpperArmTwist1", "ArmTwist1", "UpperArmTwist1", "upper_arm_twist.01"],
+    ["upperarm_twist_02", "UpperArmTwist2", "ArmTwist2", "UpperArmTwist2", "upper_arm_twist.02"],
+    ["lowerarm_twist_01", "LowerArmTwist1", "ForeArmTwist1", "LowerArmTwist1", "forearm_twist.01"],
+    ["lowerarm_twist_02", "LowerArmTwist2", "ForeArmTwist2", "LowerArmTwist2", "forearm_twist.02"],
+    ["thigh_twist_01", "UpperLegTwist1", "UpLegTwist1", "UpperLegTwist1", "thigh_twist.01"],
+    ["thigh_twist_02", "UpperLegTwist2", "UpLegTwist2", "UpperLegTwist2", "thigh_twist.02"],
+    ["calf_twist_01", "LowerLegTwist1", "LegTwist1", "LowerLegTwist1", "shin_twist.01"],
+    ["calf_twist_02", "LowerLegTwist2", "LegTwist2", "LowerLegTwist2", "shin_twist.02"],
+];
+
+/// The rig's root, on the ground, above which no vocabulary has a bone.
+const ROOT: Row = ["Root", "Root", "Root", "root", "root"];
+
+/// Endings and beginnings of a side: native, Unity, Mixamo, VRM, Blender.
+const SIDES: [Row; 2] = [["_l", "Left", "Left", "left", ".L"], ["_r", "Right", "Right", "right", ".R"]];
+
+const FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
+
+struct Table {
+    /// The humanoid bones: central before sided, left before right, required before optional.
+    bones: Vec<HumanoidBone>,
+    /// Native name to the names of every joint, in the order of [`JointNames::ALL`].
+    names: BTreeMap<String, [String; 5]>,
+}
+
+static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    let mut table = Table { bones: Vec::new(), names: BTreeMap::new() };
+    for (rows, required) in [(&CENTRAL_REQUIRED[..], true), (&CENTRAL_OPTIONAL, false)] {
+        table.bones.extend(rows.iter().map(|row| bone(central(row), required)));
+    }
+    for side in &SIDES {
+        for (rows, required) in [(&SIDED_REQUIRED[..], true), (&SIDED_OPTIONAL, false)] {
+            table.bones.extend(rows.iter().map(|row| bone(sided(row, side), required)));
+        }
+    }
+    let helpers = SIDES.iter().flat_map(|side| SIDED_HELPERS.iter().map(move |row| sided(row, side)));
+    let bones = table.bones.iter().map(|bone| {
+        let HumanoidBone { native, unity, mixamo, vrm, blender, .. } = bone.clone();
+        [native, unity, mixamo, vrm, blender]
+    });
+    table.names =
+        bones.chain(helpers).chain([central(&ROOT)]).map(|names| (names[0].clone(), names)).collect();
+    table
+});
+
+fn central(row: &Row) -> [String; 5] {
+    let [native, unity, mixamo, vrm, blender] = row.map(str::to_owned);
+    [native, unity, format!("mixamorig:{mixamo}"), vrm, blender]
+}
+
+fn sided(row: &Row, side: &Row) -> [String; 5] {
+    let [native, unity, mixamo, vrm, blender] = row;
+    [
+        format!("{native}{}", side[0]),
+        format!("{}{unity}", side[1]),
+        format!("mixamorig:{}{mixamo}", side[2]),
+        format!("{}{vrm}", side[3]),
+        format!("{blender}{}", side[4]),
+    ]
+}
+
+fn bone([native, unity, mixamo, vrm, blender]: [String; 5], required: bool) -> HumanoidBone {
+    let finger = FINGERS.iter().find(|finger| unity.contains(*finger));
+    let unity_trait = finger.map_or(unity.clone(), |finger| unity.replace(finger, &format!(" {finger} ")));
+    HumanoidBone { native, unity, unity_trait, mixamo, vrm, blender, required }
+}
+
+/// The humanoid bones of the rig: the seven in the middle, then 24 a side, the left first.
+pub fn humanoid_bones() -> &'static [HumanoidBone] {
+    &TABLE.bones
+}
+
+/// The humanoid bone that this joint of the rig is; `None` for the root, twist joints and unknown names.
+pub fn humanoid(native: &str) -> Option<&'static HumanoidBone> {
+    TABLE.bones.iter().find(|bone| bone.native == native)
+}
+
+/// The joint's name in another vocabulary; a joint that is not of the rig keeps its name.
+pub fn renamed(native: &str, names: JointNames) -> Cow<'_, str> {
+    match TABLE.names.get(native) {
+        Some(row) if names != JointNames::Native => {
+            let column = JointNames::ALL.iter().position(|scheme| *scheme == names).unwrap_or_default();
+            Cow::Borrowed(row.get(column).map_or(native, String::as_str))
+        }
+        _ => Cow::Borrowed(native),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// VRMC_vrm 1.0, humanoid.md, "Required: yes".
+    const VRM_REQUIRED: [&str; 15] = [
+        "hips",
+        "spine",
+        "head",
+        "leftUpperLeg",
+        "leftLowerLeg",
+        "leftFoot",
+        "rightUpperLeg",
+        "rightLowerLeg",
+        "rightFoot",
+        "leftUpperArm",
+        "leftLowerArm",
+        "leftHand",
+        "rightUpperArm",
+        "rightLowerArm",
+        "rightHand",
+    ];
+
+    fn every_joint() -> Vec<String> {
+        let segments = "clavicle upperarm upperarm_twist_01 upperarm_twist_02 lowerarm lowerarm_twist_01 \
+                        lowerarm_twist_02 hand thigh thigh_twist_01 calf calf_twist_01 foot ball eye";
+        let mut sided: Vec<String> = segments.split_ascii_whitespace().map(str::to_owned).collect();
+        for finger in ["thumb", "index", "middle", "ring", "pinky"] {
+            sided.extend((1..=3).map(|i| format!("{finger}_0{i}")));
+        }
+        let central = ["Root", "pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head", "jaw"];
+        let both = ["l", "r"].iter().flat_map(|side| sided.iter().map(move |s| format!("{s}_{side}")));
+        central.map(str::to_owned).into_iter().chain(both).collect()
+    }
+
+    #[test]
+    fn every_joint_of_the_rig_has_a_unique_name_in_every_vocabulary() {
+        let joints = every_joint();
+        assert_eq!(joints.len(), 68);
+        for scheme in JointNames::ALL {
+            let names: BTreeSet<_> = joints.iter().map(|j| renamed(j, scheme)).collect();
+            assert_eq!(names.len(), joints.len(), "{scheme:?}");
+            let kept = joints.iter().filter(|j| renamed(j, scheme) == ***j).count();
+            // "Root" is the root's name in two more vocabularies, and VRM and Blender call a head a head and a jaw a jaw.
+            assert!(scheme == JointNames::Native || kept <= 2, "{scheme:?} renames too little");
+        }
+        for (native, names) in &TABLE.names {
+            assert!(joints.contains(native) || native.contains("twist_02"), "{native}");
+            assert_eq!(names.iter().filter(|n| n.is_empty()).count(), 0);
+        }
+    }
+
+    #[test]
+    fn the_required_bones_are_there() {
+        let required = |name: fn(&HumanoidBone) -> &str| {
+            humanoid_bones().iter().filter(|b| b.required).map(name).collect::<BTreeSet<_>>()
+        };
+        assert_eq!(required(|b| &b.vrm), BTreeSet::from(VRM_REQUIRED));
+        // HumanTrait.RequiredBone names the same fifteen, spelt with a capital.
+        let capital = VRM_REQUIRED.map(|name| name[..1].to_uppercase() + &name[1..]);
+        assert_eq!(required(|b| &b.unity), capital.iter().map(String::as_str).collect());
+        // HumanTrait.BoneCount is 55: all of Unity's bones are there.
+        assert_eq!(humanoid_bones().len(), 55);
+    }
+
+    #[test]
+    fn names_are_those_of_the_other_programs() {
+        let index = humanoid("index_02_r").unwrap();
+        assert_eq!(index.unity, "RightIndexIntermediate");
+        assert_eq!(index.unity_trait, "Right Index Intermediate");
+        assert_eq!(index.mixamo, "mixamorig:RightHandIndex2");
+        assert_eq!(index.vrm, "rightIndexIntermediate");
+        assert_eq!(index.blender, "f_index.02.R");
+        assert!(!index.required);
+        let thumb = ["thumb_01_l", "thumb_02_l", "thumb_03_l"].map(|j| humanoid(j).unwrap().vrm.as_str());
+        assert_eq!(thumb, ["leftThumbMetacarpal", "leftThumbProximal", "leftThumbDistal"]);
+        assert_eq!(humanoid("pinky_01_l").unwrap().unity_trait, "Left Little Proximal");
+        assert_eq!(humanoid("pelvis").unwrap().mixamo, "mixamorig:Hips");
+        assert_eq!(renamed("calf_l", JointNames::Blender), "shin.L");
+        assert_eq!(renamed("upperarm_twist_02_r", JointNames::Mixamo), "mixamorig:RightArmTwist2");
+    }
+
+    #[test]
+    fn what_is_no_bone_is_no_bone() {
+        assert_eq!(humanoid("Root"), None);
+        assert_eq!(humanoid("calf_twist_01_l"), None);
+        assert_eq!(humanoid("tail"), None);
+        assert_eq!(renamed("tail", JointNames::Unity), "tail");
+    }
+
+    #[test]
+    fn vocabularies_are_read_by_name() {
+        for scheme in JointNames::ALL {
+            assert_eq!(scheme.name().parse::<JointNames>().unwrap(), scheme);
+        }
+        let message = "maya".parse::<JointNames>().unwrap_err().to_string();
+        assert_eq!(message, "joint_names: expected one of native, unity, mixamo, vrm, blender, got `maya`");
+    }
+}

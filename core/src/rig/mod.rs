@@ -1,0 +1,8 @@
+//! The skeleton, its skin weights, and what other programs call its joints.
+
+pub mod humanoid;
+mod skeleton;
+mod skin_weights;
+
+pub use skeleton::{Joint, Skeleton, SkeletonShape};
+pub use skin_weights::{Influences, SkinWeights};

@@ -1,0 +1,314 @@
+//! The skeleton and the cage's skin weights: MakeHuman's `game_engine` rig with eyes, jaw and twist joints.
+//!
+//! Eyes and jaw come from MakeHuman's `default` rig. Twist joints spread the roll of a limb along it: they are
+//! leaves of the limb's joint, and the limb's weight is split over joint and helpers by where a vertex lies
+//! along the bone. Where the *near* end must not roll (upper arm, thigh) the helpers sit there and undo the
+//! joint's roll; where the *far* end must follow the next joint (forearm, calf) they sit there and add it.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use serde::Deserialize;
+
+use super::{BaseMesh, Wheel};
+use crate::{Error, Result};
+
+/// A joint of the rig, before any body gives it a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointSource {
+    /// Name, UE-like: `upperarm_l`.
+    pub name: String,
+    /// Parent in the list; parents come first.
+    pub parent: Option<usize>,
+}
+
+/// Joints, the raw vertices whose mean is each joint's head and tail, and skin weights.
+pub struct Rig {
+    /// Joints, parents first.
+    pub joints: Vec<JointSource>,
+    /// Raw vertices whose mean is the joint. Twist joints lie between head and tail of their parent: see
+    /// [`Rig::twists`].
+    pub heads: Vec<Vec<u32>>,
+    /// Raw vertices whose mean is the joint's far end.
+    pub tails: Vec<Vec<u32>>,
+    /// Twist joints: joint, and how far along its parent bone it sits, `0..1`.
+    pub twists: Vec<(usize, f32)>,
+    /// Per surface point (cage, accessories), joints and weights that sum to one.
+    pub weights: Vec<Vec<(u16, f32)>>,
+}
+
+#[derive(Deserialize)]
+struct Bone {
+    head: End,
+    tail: End,
+    parent: String,
+}
+
+#[derive(Deserialize)]
+struct End {
+    strategy: String,
+    cube_name: Option<String>,
+    vertex_index: Option<u32>,
+    vertex_indices: Option<Vec<u32>>,
+}
+
+#[derive(Deserialize)]
+struct Weights {
+    weights: BTreeMap<String, Vec<(u32, f32)>>,
+}
+
+/// Depth-first order, so that parents come first and limbs stay together.
+const ORDER: [&str; 27] = [
+    "Root",
+    "pelvis",
+    "spine_01",
+    "spine_02",
+    "spine_03",
+    "neck_01",
+    "head",
+    "jaw",
+    "eye_l",
+    "eye_r",
+    "clavicle",
+    "upperarm",
+    "lowerarm",
+    "hand",
+    "thumb_01",
+    "thumb_02",
+    "thumb_03",
+    "index_01",
+    "index_02",
+    "index_03",
+    "middle_01",
+    "middle_02",
+    "middle_03",
+    "ring_01",
+    "ring_02",
+    "ring_03",
+    "pinky_01",
+];
+const ORDER_REST: [&str; 6] = ["pinky_02", "pinky_03", "thigh", "calf", "foot", "ball"];
+
+/// Limb, the twist helpers' places along it, and whether they undo (near end) or add (far end) roll.
+struct TwistPlan {
+    limb: &'static str,
+    places: &'static [f32],
+    undo: bool,
+}
+
+const TWISTS: [TwistPlan; 4] = [
+    TwistPlan { limb: "upperarm", places: &[0.0, 0.5], undo: true },
+    TwistPlan { limb: "lowerarm", places: &[0.5, 1.0], undo: false },
+    TwistPlan { limb: "thigh", places: &[0.0], undo: true },
+    TwistPlan { limb: "calf", places: &[1.0], undo: false },
+];
+
+impl Rig {
+    /// Reads rig and weights.
+    ///
+    /// # Errors
+    /// [`Error::Source`] naming the bone.
+    pub fn read(wheel: &mut Wheel, mesh: &BaseMesh) -> Result<Self> {
+        let game: BTreeMap<String, Bone> = json(wheel, "rigs/standard/rig.game_engine.json")?;
+        let default: BTreeMap<String, Bone> = json(wheel, "rigs/standard/rig.default.json")?;
+        let game_weights: Weights = json(wheel, "rigs/standard/weights.game_engine.json")?;
+        let default_weights: Weights = json(wheel, "rigs/standard/weights.default.json")?;
+
+        let mut rig = Self {
+            joints: Vec::new(),
+            heads: Vec::new(),
+            tails: Vec::new(),
+            twists: Vec::new(),
+            weights: vec![],
+        };
+        let central = ORDER[..10].iter().map(|n| (*n).to_owned());
+        let sided = ["l", "r"]
+            .into_iter()
+            .flat_map(|side| ORDER[10..].iter().chain(&ORDER_REST).map(move |n| format!("{n}_{side}")));
+        for name in central.chain(sided) {
+            let (bone, parent) = match name.as_str() {
+                "eye_l" => (&default["eye.L"], "head"),
+                "eye_r" => (&default["eye.R"], "head"),
+                "jaw" => (&default["jaw"], "head"),
+                _ => {
+                    let bone = game
+                        .get(&name)
+                        .ok_or_else(|| Error::Source(format!("rig.game_engine.json has no bone {name}")))?;
+                    (bone, bone.parent.as_str())
+                }
+            };
+            let parent = rig.joints.iter().position(|j| j.name == parent);
+            let head = if name == "Root" {
+                // The rig puts Root behind the body; the ground between the feet is what engines expect.
+                group(mesh, "joint-ground")?
+            } else {
+                bone.head.vertices(mesh)?
+            };
+            let tail = bone.tail.vertices(mesh)?;
+            let plan = name.rsplit_once('_').and_then(|(limb, _)| TWISTS.iter().find(|t| t.limb == limb));
+            let limb = rig.joints.len();
+            rig.joints.push(JointSource { name: name.clone(), parent });
+            rig.heads.push(head.clone());
+            rig.tails.push(tail.clone());
+            for (i, &place) in plan.map_or(&[][..], |p| p.places).iter().enumerate() {
+                let (stem, side) = name.rsplit_once('_').unwrap_or((&name, ""));
+                rig.twists.push((rig.joints.len(), place));
+                rig.joints.push(JointSource {
+                    name: format!("{stem}_twist_{:02}_{side}", i + 1),
+                    parent: Some(limb),
+                });
+                rig.heads.push(head.clone());
+                rig.tails.push(tail.clone());
+            }
+        }
+        rig.weights = rig.skin(mesh, &game_weights, &default_weights, &default)?;
+        Ok(rig)
+    }
+
+    /// The joint with this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.name == name)
+    }
+
+    fn skin(
+        &self,
+        mesh: &BaseMesh,
+        game: &Weights,
+        default: &Weights,
+        default_rig: &BTreeMap<String, Bone>,
+    ) -> Result<Vec<Vec<(u16, f32)>>> {
+        let missing = |name: &str| Error::Source(format!("the rig has no joint {name}"));
+        let (head, jaw) = (
+            self.find("head").ok_or_else(|| missing("head"))?,
+            self.find("jaw").ok_or_else(|| missing("jaw"))?,
+        );
+        let mut dense = vec![BTreeMap::<usize, f32>::new(); mesh.raw_positions.len()];
+        for (name, list) in &game.weights {
+            let joint = self.find(name).ok_or_else(|| missing(name))?;
+            for &(v, w) in list {
+                *dense[v as usize].entry(joint).or_insert(0.0) += w;
+            }
+        }
+        // What hangs below the default rig's jaw (lower lip, chin) moves with ours, taken from the head's share.
+        let mut jaw_share = vec![0.0_f32; mesh.raw_positions.len()];
+        for (name, list) in &default.weights {
+            if hangs_below(default_rig, name, "jaw") {
+                for &(v, w) in list {
+                    jaw_share[v as usize] += w;
+                }
+            }
+        }
+        for (v, weights) in dense.iter_mut().enumerate() {
+            let of_head = weights.get(&head).copied().unwrap_or(0.0);
+            let moved = of_head.min(jaw_share[v]);
+            if moved > 0.0 {
+                weights.insert(head, of_head - moved);
+                weights.insert(jaw, moved);
+            }
+        }
+        // Rigid parts.
+        let rigid = [
+            ("helper-l-eye", "eye_l"),
+            ("helper-r-eye", "eye_r"),
+            ("helper-upper-teeth", "head"),
+            ("helper-lower-teeth", "jaw"),
+            ("helper-tongue", "jaw"),
+        ];
+        for (name, joint) in rigid {
+            let joint = self.find(joint).ok_or_else(|| missing(joint))?;
+            for v in group(mesh, name)? {
+                dense[v as usize] = BTreeMap::from([(joint, 1.0)]);
+            }
+        }
+        self.spread_twist(mesh, &mut dense)?;
+        Ok(mesh
+            .raw_of_surface
+            .iter()
+            .map(|&raw| {
+                let weights = &dense[raw as usize];
+                let sum: f32 = weights.values().sum();
+                weights.iter().filter(|(_, w)| **w > 0.0).map(|(&j, &w)| (j as u16, w / sum)).collect()
+            })
+            .collect())
+    }
+
+    /// Splits the limbs' weights over their twist joints by hat functions along the bone.
+    fn spread_twist(&self, mesh: &BaseMesh, dense: &mut [BTreeMap<usize, f32>]) -> Result<()> {
+        let mean = |vertices: &[u32]| -> Vec3 {
+            vertices.iter().map(|&v| mesh.raw_positions[v as usize]).sum::<Vec3>() / vertices.len() as f32
+        };
+        for (limb, joint) in self.joints.iter().enumerate() {
+            let Some(plan) =
+                joint.name.rsplit_once('_').and_then(|(stem, _)| TWISTS.iter().find(|t| t.limb == stem))
+            else {
+                continue;
+            };
+            let helpers: Vec<usize> = (1..=plan.places.len()).map(|i| limb + i).collect();
+            // Places of the nodes along the bone, in order: helpers and the limb itself at the other end.
+            let mut nodes: Vec<(f32, usize)> =
+                plan.places.iter().copied().zip(helpers.iter().copied()).collect();
+            nodes.push((if plan.undo { 1.0 } else { 0.0 }, limb));
+            nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (start, end) = (mean(&self.heads[limb]), mean(&self.tails[limb]));
+            let axis = (end - start) / (end - start).length_squared();
+            for (v, weights) in dense.iter_mut().enumerate() {
+                let Some(of_limb) = weights.remove(&limb) else { continue };
+                let t = (mesh.raw_positions[v] - start).dot(axis).clamp(0.0, 1.0);
+                for (joint, share) in hat(&nodes, t) {
+                    *weights.entry(joint).or_insert(0.0) += of_limb * share;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Piecewise linear shares of the nodes around `t`, smoothed (3t² − 2t³) so that no crease shows at a node.
+fn hat(nodes: &[(f32, usize)], t: f32) -> Vec<(usize, f32)> {
+    for pair in nodes.windows(2) {
+        let ((a, first), (b, second)) = (pair[0], pair[1]);
+        if t <= b {
+            let s = ((t - a) / (b - a)).clamp(0.0, 1.0);
+            let s = s * s * (3.0 - 2.0 * s);
+            return [(first, 1.0 - s), (second, s)].into_iter().filter(|(_, w)| *w > 0.0).collect();
+        }
+    }
+    nodes.last().map(|&(_, joint)| (joint, 1.0)).into_iter().collect()
+}
+
+fn hangs_below(rig: &BTreeMap<String, Bone>, name: &str, ancestor: &str) -> bool {
+    let mut current = name;
+    for _ in 0..rig.len() {
+        if current == ancestor {
+            return true;
+        }
+        match rig.get(current) {
+            Some(bone) => current = &bone.parent,
+            None => return false,
+        }
+    }
+    false
+}
+
+fn group(mesh: &BaseMesh, name: &str) -> Result<Vec<u32>> {
+    mesh.groups
+        .get(name)
+        .filter(|v| !v.is_empty())
+        .cloned()
+        .ok_or_else(|| Error::Source(format!("basemesh_vertex_groups.json has no group {name}")))
+}
+
+impl End {
+    fn vertices(&self, mesh: &BaseMesh) -> Result<Vec<u32>> {
+        match (self.strategy.as_str(), &self.cube_name, self.vertex_index, &self.vertex_indices) {
+            ("CUBE", Some(cube), ..) => group(mesh, cube),
+            ("VERTEX", _, Some(v), _) => Ok(vec![v]),
+            ("MEAN", .., Some(list)) if !list.is_empty() => Ok(list.clone()),
+            (other, ..) => Err(Error::Source(format!("rig: unknown joint strategy {other}"))),
+        }
+    }
+}
+
+fn json<T: serde::de::DeserializeOwned>(wheel: &mut Wheel, name: &str) -> Result<T> {
+    serde_json::from_str(&wheel.read_text(name)?).map_err(|e| Error::Source(format!("{name}: {e}")))
+}

@@ -1,0 +1,182 @@
+//! The shape space: principal components of T-posed cages, and everything else as a linear map of them.
+//!
+//! The components are found by randomised subspace iteration (Halko, Martinsson and Tropp 2011) on training
+//! bodies. Accessories and joints follow by least squares on the same coefficients.
+
+use faer::linalg::solvers::Solve;
+use faer::prelude::*;
+use faer::{Mat, Side};
+use glam::Vec3;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+use crate::assets::CAGE_VERTICES;
+use crate::corpus::{Corpus, Split, cage_of};
+use crate::{Error, Result};
+
+/// Number of components. 300 leave 0.06 mm; measures need as many (100 cost 0.7 mm per measure).
+pub const COMPONENTS: usize = 300;
+/// Training bodies that the components are found on.
+const FITTED_ON: usize = 7_000;
+const OVERSAMPLING: usize = 40;
+const POWER_ITERATIONS: usize = 2;
+
+/// The shape space in single precision, before it is packed into the model file.
+pub struct Basis {
+    /// Mean body: all points of [`crate::assets::Assets`], coordinate by coordinate.
+    pub mean: Vec<f32>,
+    /// One row of [`COMPONENTS`] per coordinate of `mean`; the cage's rows are orthonormal columns.
+    pub rows: Mat<f32>,
+    /// Standard deviation of each coefficient over training bodies, metres.
+    pub std: Vec<f64>,
+}
+
+impl Basis {
+    /// Fits the basis to training bodies.
+    ///
+    /// # Errors
+    /// When a factorisation fails, which would mean degenerate bodies.
+    pub fn fit(corpus: &Corpus, progress: &dyn Fn(&str)) -> Result<Self> {
+        progress("drawing bodies for the basis");
+        let numbers: Vec<u64> = (0..).filter(|n| Split::of(*n) == Split::Train).take(FITTED_ON).collect();
+        let coordinates = 3 * corpus.assets.point_count();
+        let bodies: Vec<Vec<f32>> =
+            numbers.par_iter().map(|&n| flatten(&corpus.specimen(n).points)).collect();
+        let mut mean = vec![0.0_f64; coordinates];
+        for body in &bodies {
+            for (m, x) in mean.iter_mut().zip(body) {
+                *m += f64::from(*x) / bodies.len() as f64;
+            }
+        }
+        let mean: Vec<f32> = mean.iter().map(|m| *m as f32).collect();
+        let cage = 3 * CAGE_VERTICES;
+        let all = Mat::from_fn(coordinates, bodies.len(), |i, j| bodies[j][i] - mean[i]);
+        drop(bodies);
+        let x = all.as_ref().subrows(0, cage);
+
+        progress("principal components");
+        let rank = COMPONENTS + OVERSAMPLING;
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut sample = Mat::from_fn(x.ncols(), rank, |_, _| {
+            // Uniform noise spans as well as normal noise and needs no transcendental function.
+            (rng.next_u32() as f32 / u32::MAX as f32) - 0.5
+        });
+        let mut range = (x * &sample).qr().compute_thin_Q();
+        for _ in 0..POWER_ITERATIONS {
+            sample = (x.transpose() * &range).qr().compute_thin_Q();
+            range = (x * &sample).qr().compute_thin_Q();
+        }
+        let inside = range.transpose() * x;
+        let gram: Mat<f64> = {
+            let inside = Mat::from_fn(inside.nrows(), inside.ncols(), |i, j| f64::from(inside[(i, j)]));
+            &inside * inside.transpose()
+        };
+        let eigen = gram
+            .self_adjoint_eigen(Side::Lower)
+            .map_err(|e| Error::Invalid(format!("basis: eigenvalues: {e:?}")))?;
+        // Eigenvalues ascend; take the last ones, largest first, with a fixed sign.
+        let order: Vec<usize> = (0..rank).rev().take(COMPONENTS).collect();
+        let rotation = Mat::from_fn(rank, COMPONENTS, |i, j| eigen.U()[(i, order[j])] as f32);
+        let mut components = &range * &rotation;
+        for j in 0..COMPONENTS {
+            let biggest = (0..cage)
+                .map(|i| components[(i, j)])
+                .fold(0.0_f32, |m, v| if v.abs() > m.abs() { v } else { m });
+            if biggest < 0.0 {
+                components.col_mut(j).iter_mut().for_each(|v| *v = -*v);
+            }
+        }
+
+        progress("accessories and joints");
+        let coefficients = components.transpose() * x; // (K, N)
+        let others = all.as_ref().subrows(cage, coordinates - cage); // (M, N)
+        let c64 = Mat::from_fn(COMPONENTS, coefficients.ncols(), |i, j| f64::from(coefficients[(i, j)]));
+        let normal = &c64 * c64.transpose();
+        let mixed = {
+            let m = others * coefficients.transpose(); // (M, K)
+            Mat::from_fn(COMPONENTS, m.nrows(), |i, j| f64::from(m[(j, i)]))
+        };
+        let map = normal
+            .llt(Side::Lower)
+            .map_err(|e| Error::Invalid(format!("basis: normal equations: {e:?}")))?
+            .solve(&mixed); // (K, M)
+        let rows = Mat::from_fn(coordinates, COMPONENTS, |i, j| {
+            if i < cage { components[(i, j)] } else { map[(j, i - cage)] as f32 }
+        });
+        let n = coefficients.ncols() as f64;
+        let std = (0..COMPONENTS).map(|i| (normal[(i, i)] / n).sqrt()).collect();
+        Ok(Self { mean, rows, std })
+    }
+
+    /// Coefficients of bodies, one column each, from their points' coordinates, one column each.
+    pub fn project(&self, bodies: &[Vec<f32>]) -> Mat<f32> {
+        let cage = 3 * CAGE_VERTICES;
+        let x = Mat::from_fn(cage, bodies.len(), |i, j| bodies[j][i] - self.mean[i]);
+        self.rows.as_ref().subrows(0, cage).transpose() * &x
+    }
+
+    /// All coordinates from coefficients.
+    pub fn expand(&self, coefficients: &[f32]) -> Vec<f32> {
+        let c = Mat::from_fn(COMPONENTS, 1, |i, _| coefficients[i]);
+        let x = &self.rows * &c;
+        (0..self.mean.len()).map(|i| self.mean[i] + x[(i, 0)]).collect()
+    }
+}
+
+/// Points as coordinates.
+pub fn flatten(points: &[Vec3]) -> Vec<f32> {
+    points.iter().flat_map(|p| p.to_array()).collect()
+}
+
+/// A quadratic form of the coefficients: `cᵀ M c + 2 vᵀ c + k`.
+pub struct QuadraticForm {
+    /// Symmetric matrix, row-major.
+    pub matrix: Vec<f64>,
+    /// Linear part, halved.
+    pub vector: Vec<f64>,
+    /// Value at the mean body.
+    pub constant: f64,
+}
+
+/// The paper's Laplacian loss (equation "laplacian") of the decoded cage as a quadratic form of coefficients.
+///
+/// The cotangent weights are those of the mean body, so the loss is exactly quadratic; each unordered pair of
+/// neighbours counts twice, as in the paper's sum over rings.
+pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
+    let at = |v: u32| {
+        let i = 3 * v as usize;
+        Vec3::new(basis.mean[i], basis.mean[i + 1], basis.mean[i + 2]).as_dvec3()
+    };
+    let mut weights: std::collections::BTreeMap<[u32; 2], f64> = Default::default();
+    for &[a, b, c, d] in &corpus.cage().quads {
+        for triangle in [[a, b, c], [a, c, d]] {
+            for k in 0..3 {
+                let (p, q, r) = (triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
+                let (u, v) = (at(p) - at(r), at(q) - at(r));
+                let cotangent = u.dot(v) / u.cross(v).length().max(1e-12);
+                *weights.entry([p.min(q), p.max(q)]).or_insert(0.0) += 0.5 * cotangent;
+            }
+        }
+    }
+    let pairs: Vec<([u32; 2], f64)> = weights.into_iter().collect();
+    let k = COMPONENTS;
+    let scaled = |pair: &([u32; 2], f64), axis: usize, j: usize| {
+        let ([p, q], w) = *pair;
+        let row = |v: u32| f64::from(basis.rows[(3 * v as usize + axis, j)]);
+        w * (row(p) - row(q))
+    };
+    let differences = Mat::from_fn(3 * pairs.len(), k, |i, j| scaled(&pairs[i / 3], i % 3, j));
+    let at_mean = Mat::from_fn(3 * pairs.len(), 1, |i, _| {
+        let ([p, q], w) = pairs[i / 3];
+        w * (at(p) - at(q))[i % 3]
+    });
+    let matrix = differences.transpose() * &differences;
+    let vector = differences.transpose() * &at_mean;
+    let constant: f64 = (0..at_mean.nrows()).map(|i| at_mean[(i, 0)] * at_mean[(i, 0)]).sum();
+    QuadraticForm {
+        matrix: (0..k * k).map(|i| 2.0 * matrix[(i / k, i % k)]).collect(),
+        vector: (0..k).map(|i| 2.0 * vector[(i, 0)]).collect(),
+        constant: 2.0 * constant,
+    }
+}

@@ -1,0 +1,190 @@
+//! Bodies by number: draw, shape, T-pose, refine and measure, the same for the same number everywhere.
+
+use anthronet::measure::{Definitions, Kind, Measurements, Sex};
+use anthronet::mesh::{Subdivision, Topology};
+use glam::{DVec3, Vec3};
+
+use crate::Result;
+use crate::assets::{Assets, CAGE_VERTICES, Wheel};
+use crate::sampling::Sampler;
+use crate::tpose::TPose;
+
+/// Where downloads and everything made from them are kept.
+pub const CACHE: &str = "target/anthronet";
+/// The seed of the data set; part of its version.
+pub const SEED: u64 = 20_230_907;
+/// Raised whenever the same number would give another body or other measures.
+pub const DATA_VERSION: u32 = 1;
+
+/// The endless list of bodies.
+pub struct Corpus {
+    /// The source of bodies.
+    pub assets: Assets,
+    /// The surface that measures are defined on.
+    pub subdivision: Subdivision,
+    sampler: Sampler,
+    tpose: TPose,
+}
+
+/// One body of the list.
+pub struct Specimen {
+    /// Sex.
+    pub sex: Sex,
+    /// Points of [`Assets`] in the T-pose, pelvis at the origin, metres.
+    pub points: Vec<Vec3>,
+}
+
+/// What a body is for. Nothing is ever fitted to held-out bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Split {
+    /// Basis, prior and networks are fitted to these.
+    Train,
+    /// Settings are chosen on these.
+    Validation,
+    /// Scores are told on these.
+    HeldOut,
+}
+
+impl Split {
+    /// The fixed split: one body in twenty is for validation, another is held out.
+    pub fn of(number: u64) -> Self {
+        match number % 20 {
+            7 => Self::Validation,
+            13 => Self::HeldOut,
+            _ => Self::Train,
+        }
+    }
+}
+
+impl Corpus {
+    /// Opens the source of bodies, downloading it when needed.
+    ///
+    /// # Errors
+    /// When the source cannot be had or is not what it should be.
+    pub fn open(cache: &std::path::Path) -> Result<Self> {
+        let mut wheel = Wheel::open_or_fetch(cache)?;
+        let mut assets = Assets::load(&mut wheel)?;
+        let sampler = Sampler::new(&mut assets)?;
+        let tpose = TPose::new(&assets)?;
+        let subdivision = Subdivision::new(&assets.mesh.cage)?;
+        Ok(Self { assets, subdivision, sampler, tpose })
+    }
+
+    /// The body with this number.
+    pub fn specimen(&self, number: u64) -> Specimen {
+        let person = self.sampler.draw(&self.assets, SEED, number);
+        let mut points = self.sampler.shape(&self.assets, &person);
+        self.tpose.apply(&self.assets, &mut points);
+        Specimen { sex: person.sex, points }
+    }
+
+    /// The cage's topology.
+    pub fn cage(&self) -> &Topology {
+        &self.assets.mesh.cage
+    }
+
+    /// Number of surface points: cage and accessories.
+    pub fn surface_points(&self) -> usize {
+        self.assets.mesh.raw_of_surface.len()
+    }
+}
+
+/// Measures bodies without refining the vertices that no measure needs.
+pub struct Gauge<'a> {
+    definitions: &'a Definitions,
+    // Surface vertex -> place in `stencils`.
+    place: Vec<u32>,
+    stencils: Vec<Vec<(u32, f32)>>,
+}
+
+impl<'a> Gauge<'a> {
+    /// Prepares to measure.
+    pub fn new(definitions: &'a Definitions, subdivision: &Subdivision) -> Self {
+        let mut place = vec![u32::MAX; subdivision.refined().vertex_count];
+        let mut stencils = Vec::new();
+        for (_, definition) in definitions.iter() {
+            for v in definition.vertices() {
+                if place[v as usize] == u32::MAX {
+                    place[v as usize] = stencils.len() as u32;
+                    stencils.push(subdivision.stencil(v as usize).collect());
+                }
+            }
+        }
+        Self { definitions, place, stencils }
+    }
+
+    /// The 36 measures of a body given its points.
+    pub fn read(&self, points: &[Vec3]) -> Measurements {
+        let refined: Vec<DVec3> = self
+            .stencils
+            .iter()
+            .map(|s| s.iter().map(|&(i, w)| points[i as usize].as_dvec3() * f64::from(w)).sum())
+            .collect();
+        self.definitions.read_all(|v| refined[self.place[v as usize] as usize])
+    }
+
+    /// How many vertices each kind of measure needs: a measure of cost.
+    pub fn vertices(&self, kind: Kind) -> usize {
+        let mut all: Vec<u32> =
+            self.definitions.iter().filter(|d| d.1.kind == kind).flat_map(|d| d.1.vertices()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all.len()
+    }
+}
+
+/// Whether a body is a person at all: sliders that pile up make a few that are nobody.
+///
+/// The limits are the paper's extremes ("statistics-anthro"), widened by a tenth of each measure's range, and
+/// never narrower than what a factor of 0.82–1.22 leaves; arms below 0.165 m of girth, for one, are nobody's.
+pub fn plausible(measures: &Measurements) -> bool {
+    measures.iter().zip(LIMITS.iter().cycle_sides()).all(|(&m, [low, high])| {
+        let slack = 0.1 * (high - low);
+        m >= (low - slack).min(low * 0.82) && m <= (high + slack).max(high * 1.22)
+    })
+}
+
+/// Minimum and maximum of the 24 rows of the paper's table, in the order of the measures.
+const LIMITS: [[f64; 2]; 24] = [
+    [0.55, 1.250],
+    [0.76, 1.522],
+    [0.72, 1.368],
+    [1.49, 1.991],
+    [0.248, 0.335],
+    [0.310, 0.425],
+    [0.256, 0.394],
+    [0.521, 0.554],
+    [0.320, 0.541],
+    [0.232, 0.251],
+    [0.056, 0.115],
+    [0.078, 0.141],
+    [0.149, 0.197],
+    [0.165, 0.409],
+    [0.270, 0.395],
+    [0.184, 0.367],
+    [0.197, 0.300],
+    [0.395, 0.733],
+    [0.415, 0.590],
+    [0.248, 0.458],
+    [0.348, 0.504],
+    [0.083, 0.115],
+    [0.169, 0.225],
+    [0.229, 0.306],
+];
+
+trait CycleSides<'a> {
+    fn cycle_sides(self) -> impl Iterator<Item = [f64; 2]>;
+}
+
+impl<'a, I: Iterator<Item = &'a [f64; 2]> + Clone> CycleSides<'a> for I {
+    /// Central rows once, sided rows twice.
+    fn cycle_sides(self) -> impl Iterator<Item = [f64; 2]> {
+        let sided = self.clone().skip(12);
+        self.chain(sided).copied()
+    }
+}
+
+/// The cage's part of a body's points.
+pub fn cage_of(points: &[Vec3]) -> &[Vec3] {
+    &points[..CAGE_VERTICES]
+}

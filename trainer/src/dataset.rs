@@ -1,0 +1,222 @@
+//! The data set: a hundred thousand bodies in coefficients, with their measures and joints.
+
+use std::path::{Path, PathBuf};
+
+use anthronet::measure::{Definitions, MEASURE_COUNT, Sex};
+use faer::Mat;
+use rayon::prelude::*;
+use safetensors::tensor::{Dtype, SafeTensors, TensorView};
+
+use crate::basis::{Basis, COMPONENTS, flatten};
+use crate::corpus::{Corpus, DATA_VERSION, Gauge, SEED, Split, plausible};
+use crate::{Error, Result};
+
+/// Numbers drawn; implausible bodies among them are left out.
+pub const DRAWN: u64 = 120_000;
+const BATCH: u64 = 480;
+
+/// Bodies of one split, row by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bodies {
+    /// Numbers in the corpus.
+    pub numbers: Vec<u64>,
+    /// Coefficients, `COMPONENTS` a body, metres.
+    pub coefficients: Vec<f32>,
+    /// Measures, 36 a body, metres.
+    pub measures: Vec<f32>,
+    /// 0 female, 1 male.
+    pub sex: Vec<u8>,
+}
+
+/// Basis and bodies.
+pub struct Dataset {
+    /// The shape space.
+    pub basis: Basis,
+    /// Bodies to fit to.
+    pub train: Bodies,
+    /// Bodies to choose settings on.
+    pub validation: Bodies,
+    /// Bodies to tell scores on.
+    pub held_out: Bodies,
+    /// How many drawn bodies were nobody.
+    pub rejected: usize,
+}
+
+impl Dataset {
+    /// Reads the data set from the cache, or makes it there.
+    ///
+    /// # Errors
+    /// When the corpus or the cache fails.
+    pub fn load_or_make(
+        corpus: &Corpus,
+        definitions: &Definitions,
+        cache: &Path,
+        progress: &(dyn Fn(&str, u64, u64) + Sync),
+    ) -> Result<Self> {
+        let path = cache.join(format!(
+            "dataset-v{DATA_VERSION}-{SEED}-{DRAWN}-{COMPONENTS}-{}.safetensors",
+            &definitions.hash()[..12]
+        ));
+        if path.exists() {
+            return Self::read(&path);
+        }
+        let basis = Basis::fit(corpus, &|what| progress(what, 0, 0))?;
+        let mut dataset = Self::draw(corpus, definitions, basis, progress);
+        dataset.rejected = DRAWN as usize - dataset.count();
+        dataset.write(&path)?;
+        Ok(dataset)
+    }
+
+    fn count(&self) -> usize {
+        [&self.train, &self.validation, &self.held_out].iter().map(|b| b.numbers.len()).sum()
+    }
+
+    fn draw(
+        corpus: &Corpus,
+        definitions: &Definitions,
+        basis: Basis,
+        progress: &(dyn Fn(&str, u64, u64) + Sync),
+    ) -> Self {
+        let gauge = Gauge::new(definitions, &corpus.subdivision);
+        let mut dataset = Self {
+            basis,
+            train: Bodies::default(),
+            validation: Bodies::default(),
+            held_out: Bodies::default(),
+            rejected: 0,
+        };
+        for first in (0..DRAWN).step_by(BATCH as usize) {
+            progress("measuring bodies", first, DRAWN);
+            let numbers: Vec<u64> = (first..(first + BATCH).min(DRAWN)).collect();
+            let specimens: Vec<_> = numbers
+                .par_iter()
+                .filter_map(|&n| {
+                    let specimen = corpus.specimen(n);
+                    let measures = gauge.read(&specimen.points);
+                    plausible(&measures).then(|| (n, specimen.sex, measures, flatten(&specimen.points)))
+                })
+                .collect();
+            let points: Vec<Vec<f32>> = specimens.iter().map(|s| s.3.clone()).collect();
+            let coefficients = dataset.basis.project(&points);
+            for (j, (number, sex, measures, _)) in specimens.iter().enumerate() {
+                let bodies = match Split::of(*number) {
+                    Split::Train => &mut dataset.train,
+                    Split::Validation => &mut dataset.validation,
+                    Split::HeldOut => &mut dataset.held_out,
+                };
+                bodies.numbers.push(*number);
+                bodies.coefficients.extend(coefficients.col(j).iter());
+                bodies.measures.extend(measures.map(|m| m as f32));
+                bodies.sex.push(sex.index() as u8);
+            }
+        }
+        progress("measuring bodies", DRAWN, DRAWN);
+        dataset
+    }
+
+    fn write(&self, path: &Path) -> Result<()> {
+        let rows = self.basis.mean.len();
+        let flat: Vec<f32> = (0..rows)
+            .flat_map(|i| (0..COMPONENTS).map(move |j| (i, j)))
+            .map(|ij| self.basis.rows[ij])
+            .collect();
+        let mut tensors: Vec<(String, Dtype, Vec<usize>, &[u8])> = vec![
+            ("basis.mean".into(), Dtype::F32, vec![rows], bytemuck::cast_slice(&self.basis.mean)),
+            ("basis.rows".into(), Dtype::F32, vec![rows, COMPONENTS], bytemuck::cast_slice(&flat)),
+            ("basis.std".into(), Dtype::F64, vec![COMPONENTS], bytemuck::cast_slice(&self.basis.std)),
+        ];
+        for (name, b) in
+            [("train", &self.train), ("validation", &self.validation), ("held_out", &self.held_out)]
+        {
+            let n = b.numbers.len();
+            tensors.push((format!("{name}.numbers"), Dtype::U64, vec![n], bytemuck::cast_slice(&b.numbers)));
+            tensors.push((
+                format!("{name}.coefficients"),
+                Dtype::F32,
+                vec![n, COMPONENTS],
+                bytemuck::cast_slice(&b.coefficients),
+            ));
+            tensors.push((
+                format!("{name}.measures"),
+                Dtype::F32,
+                vec![n, MEASURE_COUNT],
+                bytemuck::cast_slice(&b.measures),
+            ));
+            tensors.push((format!("{name}.sex"), Dtype::U8, vec![n], &b.sex));
+        }
+        let views = tensors
+            .iter()
+            .map(|(name, dtype, shape, data)| {
+                TensorView::new(*dtype, shape.clone(), data)
+                    .map(|v| (name.clone(), v))
+                    .map_err(|e| Error::Invalid(format!("data set: {name}: {e}")))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let partial = path.with_extension("partial");
+        safetensors::serialize_to_file(views, None, &partial)
+            .map_err(|e| Error::Invalid(format!("{}: {e}", partial.display())))?;
+        std::fs::rename(&partial, path).map_err(Error::io(path))
+    }
+
+    fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        let fail = |e: &dyn std::fmt::Display| {
+            Error::Invalid(format!("{}: {e}: delete the file to make it again", path.display()))
+        };
+        let file = SafeTensors::deserialize(&bytes).map_err(|e| fail(&e))?;
+        let get = |name: &str| file.tensor(name).map_err(|e| fail(&e));
+        let rows: Vec<f32> = bytemuck::pod_collect_to_vec(get("basis.rows")?.data());
+        let mean: Vec<f32> = bytemuck::pod_collect_to_vec(get("basis.mean")?.data());
+        if rows.len() != mean.len() * COMPONENTS {
+            return Err(fail(&"basis has the wrong size"));
+        }
+        let split = |name: &str| -> Result<Bodies> {
+            Ok(Bodies {
+                numbers: bytemuck::pod_collect_to_vec(get(&format!("{name}.numbers"))?.data()),
+                coefficients: bytemuck::pod_collect_to_vec(get(&format!("{name}.coefficients"))?.data()),
+                measures: bytemuck::pod_collect_to_vec(get(&format!("{name}.measures"))?.data()),
+                sex: get(&format!("{name}.sex"))?.data().to_vec(),
+            })
+        };
+        let mut dataset = Self {
+            basis: Basis {
+                rows: Mat::from_fn(mean.len(), COMPONENTS, |i, j| rows[i * COMPONENTS + j]),
+                mean,
+                std: bytemuck::pod_collect_to_vec(get("basis.std")?.data()),
+            },
+            train: split("train")?,
+            validation: split("validation")?,
+            held_out: split("held_out")?,
+            rejected: 0,
+        };
+        dataset.rejected = DRAWN as usize - dataset.count();
+        Ok(dataset)
+    }
+}
+
+impl Bodies {
+    /// Sex of a body.
+    pub fn sex(&self, i: usize) -> Sex {
+        if self.sex[i] == 0 { Sex::Female } else { Sex::Male }
+    }
+
+    /// Measures of a body, metres.
+    pub fn measures(&self, i: usize) -> &[f32] {
+        &self.measures[i * MEASURE_COUNT..(i + 1) * MEASURE_COUNT]
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+}
+
+/// Where the data set's cache lies by default.
+pub fn cache() -> PathBuf {
+    PathBuf::from(crate::corpus::CACHE)
+}

@@ -1,0 +1,262 @@
+//! Draws people: MakeHuman slider values that cover the paper's table of statistics ("statistics-anthro").
+//!
+//! Sex, age, muscle, weight, proportions and ethnicity are drawn over their whole range; stature is drawn
+//! uniformly and the height slider solved for it; local sliders vary around small biases that bring the means
+//! of the measures to the paper's.
+
+use std::collections::BTreeMap;
+
+use anthronet::measure::Sex;
+use glam::Vec3;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::assets::{Assets, Modifier, Target};
+use crate::{Error, Result};
+
+/// Shortest and tallest stature drawn, metres: the paper's table.
+pub const STATURE: [f64; 2] = [1.49, 1.991];
+
+const BIASES: &str = include_str!("sampling_bias.json");
+
+/// How a local slider varies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Spread {
+    Uniform(f64),
+    /// Standard deviation; cut off at twice it.
+    Normal(f64),
+}
+
+/// A drawn person: which blend shapes at which weight.
+#[derive(Clone, Debug)]
+pub struct Person {
+    /// Sex.
+    pub sex: Sex,
+    /// Target numbers and weights, without those that set the stature.
+    pub shapes: Vec<(usize, f32)>,
+    /// Wanted stature, metres.
+    pub stature: f64,
+    /// Targets that shorten the person, with weights.
+    shorter: Vec<(usize, f32)>,
+    /// Targets that lengthen the person, with weights.
+    taller: Vec<(usize, f32)>,
+}
+
+/// Draws people from a source of bodies.
+pub struct Sampler {
+    locals: Vec<(Modifier, f64, Spread)>,
+    crown: usize,
+    soles: [usize; 2],
+}
+
+/// Vertices of the cage that stature is read at while solving for it.
+const CROWN: usize = 881;
+const SOLES: [usize; 2] = [13_057, 6_461];
+/// Difference between left and right of a sided slider, standard deviation.
+const ASYMMETRY: f64 = 0.03;
+
+impl Sampler {
+    /// Prepares the sliders; adds our own toe length to the targets, which MakeHuman has no slider for.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the biases name an unknown slider.
+    pub fn new(assets: &mut Assets) -> Result<Self> {
+        let toes = toe_length(assets)?;
+        assets.targets.add_procedural("toe-length", "feet", toes);
+        let mut biases: BTreeMap<String, f64> =
+            serde_json::from_str(BIASES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))?;
+        let mut locals = Vec::new();
+        for modifier in &assets.targets.modifiers {
+            let bias = biases.remove(&modifier.name);
+            if let Some(spread) = spread(modifier) {
+                locals.push((modifier.clone(), bias.unwrap_or(0.0), spread));
+            } else if bias.is_some() {
+                return Err(Error::Invalid(format!("sampling_bias.json: {} is not sampled", modifier.name)));
+            }
+        }
+        if let Some(name) = biases.keys().next() {
+            return Err(Error::Invalid(format!("sampling_bias.json: unknown slider {name}")));
+        }
+        Ok(Self { locals, crown: CROWN, soles: SOLES })
+    }
+
+    /// Draws the person with this number of this seed; the same pair gives the same person everywhere.
+    pub fn draw(&self, assets: &Assets, seed: u64, number: u64) -> Person {
+        let mut rng = Draws(ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ number));
+        let sex = if rng.uniform() < 0.5 { Sex::Female } else { Sex::Male };
+        let age = rng.uniform();
+        let ages = [("young", 1.0 - age), ("old", age)];
+        let muscles = three(rng.beta(0.7), ["minmuscle", "averagemuscle", "maxmuscle"]);
+        let weights = three(rng.beta(0.65), ["minweight", "averageweight", "maxweight"]);
+        let proportion = rng.uniform() * 2.0 - 1.0;
+        let cups = three(rng.uniform(), ["mincup", "averagecup", "maxcup"]);
+        let firmnesses = three(rng.uniform(), ["minfirmness", "averagefirmness", "maxfirmness"]);
+        let races = rng.dirichlet(["african", "asian", "caucasian"]);
+        let stature = STATURE[0] + (STATURE[1] - STATURE[0]) * rng.uniform();
+
+        let mut person = Person { sex, shapes: Vec::new(), stature, shorter: Vec::new(), taller: Vec::new() };
+        let set = &assets.targets;
+        let add = |list: &mut Vec<(usize, f32)>, key: String, weight: f64| {
+            if let Some(number) = set.number(&key).filter(|_| weight != 0.0) {
+                list.push((number, weight as f32));
+            }
+        };
+        for (age, wa) in ages {
+            for (race, wr) in races {
+                add(&mut person.shapes, format!("macrodetails/{race}-{sex}-{age}"), wr * wa);
+            }
+            for (muscle, wm) in muscles {
+                for (weight, ww) in weights {
+                    let w = wa * wm * ww;
+                    let build = format!("{sex}-{age}-{muscle}-{weight}");
+                    add(&mut person.shapes, format!("macrodetails/universal-{build}"), w);
+                    let (kind, wp) =
+                        if proportion < 0.0 { ("uncommon", -proportion) } else { ("ideal", proportion) };
+                    add(
+                        &mut person.shapes,
+                        format!("macrodetails/proportions/{build}-{kind}proportions"),
+                        w * wp,
+                    );
+                    add(&mut person.shorter, format!("macrodetails/height/{build}-minheight"), w);
+                    add(&mut person.taller, format!("macrodetails/height/{build}-maxheight"), w);
+                    for (cup, wc) in cups {
+                        for (firmness, wf) in firmnesses {
+                            add(&mut person.shapes, format!("breast/{build}-{cup}-{firmness}"), w * wc * wf);
+                        }
+                    }
+                }
+            }
+        }
+        for (modifier, bias, spread) in &self.locals {
+            let value = bias
+                + match *spread {
+                    Spread::Uniform(half) => half * (2.0 * rng.uniform() - 1.0),
+                    Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.0, 2.0),
+                };
+            for [negative, positive] in &modifier.pairs {
+                let sided = if modifier.pairs.len() > 1 { ASYMMETRY * rng.normal() } else { 0.0 };
+                let value = value + sided;
+                let target = if value < 0.0 { negative } else { positive };
+                if let Some(number) = target {
+                    person.shapes.push((*number, value.abs() as f32));
+                }
+            }
+        }
+        person
+    }
+
+    /// The person's points in MakeHuman's pose, with the stature asked for; metres.
+    pub fn shape(&self, assets: &Assets, person: &Person) -> Vec<Vec3> {
+        let mut points = assets.base.clone();
+        for &(number, weight) in &person.shapes {
+            assets.targets.get(number).add_to(&mut points, weight);
+        }
+        // Stature is linear in the height slider on either side of its middle.
+        let stature = |points: &[Vec3]| {
+            f64::from(points[self.crown].y - 0.5 * (points[self.soles[0]].y + points[self.soles[1]].y))
+        };
+        let now = stature(&points);
+        let side = if person.stature < now { &person.shorter } else { &person.taller };
+        let mut change = vec![Vec3::ZERO; points.len()];
+        for &(number, weight) in side {
+            assets.targets.get(number).add_to(&mut change, weight);
+        }
+        let per_slider = stature(&change);
+        if per_slider.abs() > 1e-6 {
+            let slider = ((person.stature - now) / per_slider) as f32;
+            for (p, d) in points.iter_mut().zip(&change) {
+                *p += *d * slider;
+            }
+        }
+        points
+    }
+}
+
+/// How far each kind of slider goes; `None` for those that are not sampled: translations of whole parts, which
+/// only move the body in space, pregnancy, and the genital bulge.
+fn spread(modifier: &Modifier) -> Option<Spread> {
+    let name = modifier.name.as_str();
+    let whole_part = ["torso-trans", "hip-trans", "neck-trans", "head-trans", "hand-trans", "foot-trans"];
+    if whole_part.iter().any(|p| name.starts_with(p))
+        || ["stomach-pregnant", "bulge-", "leg-valgus", "hand-fingers-distance"]
+            .iter()
+            .any(|p| name.starts_with(p))
+    {
+        return None;
+    }
+    Some(match modifier.group.as_str() {
+        "head" | "neck" => Spread::Uniform(0.12),
+        "forehead" => Spread::Normal(0.12),
+        "cheek" | "chin" | "ears" | "eyebrows" | "eyes" | "mouth" | "nose" => Spread::Normal(0.2),
+        _ if name.starts_with("measure-") => Spread::Uniform(0.35),
+        _ => Spread::Uniform(0.245),
+    })
+}
+
+/// Weights of three stops of a slider from 0 to 1.
+fn three(value: f64, names: [&'static str; 3]) -> [(&'static str, f64); 3] {
+    let t = 2.0 * value;
+    if t < 1.0 {
+        [(names[0], 1.0 - t), (names[1], t), (names[2], 0.0)]
+    } else {
+        [(names[0], 0.0), (names[1], 2.0 - t), (names[2], t - 1.0)]
+    }
+}
+
+/// Toes longer by a quarter at weight one: what lies before the ball of the foot is stretched forwards.
+fn toe_length(assets: &Assets) -> Result<Target> {
+    let mut target = Target::default();
+    let heads = assets.mesh.raw_of_surface.len();
+    for side in ["l", "r"] {
+        let ball = assets
+            .rig
+            .find(&format!("ball_{side}"))
+            .ok_or_else(|| Error::Source(format!("the rig has no joint ball_{side}")))?;
+        let start = assets.base[heads + ball];
+        for (p, influences) in assets.rig.weights.iter().enumerate() {
+            let ahead = assets.base[p].z - start.z;
+            if ahead > 0.0 && influences.iter().any(|&(j, _)| usize::from(j) == ball) {
+                // Quadratic at first, so that the stretch starts without a crease.
+                let soft = ahead * ahead / (ahead + 0.01);
+                target.points.push(p as u32);
+                target.deltas.push(Vec3::Z * 0.25 * soft);
+            }
+        }
+        let toe_tip = heads + assets.rig.joints.len() + ball;
+        target.points.push(toe_tip as u32);
+        target.deltas.push(Vec3::Z * 0.25 * (assets.base[toe_tip].z - start.z).max(0.0));
+    }
+    Ok(target)
+}
+
+/// Random numbers by the portable functions of `libm`, so that every host draws the same people.
+struct Draws(ChaCha8Rng);
+
+impl Draws {
+    /// In `[0, 1)`.
+    fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.uniform(), self.uniform());
+        libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v)
+    }
+
+    /// Beta(a, a) for a < 1 (Jöhnk 1964).
+    fn beta(&mut self, a: f64) -> f64 {
+        loop {
+            let (x, y) = (libm::pow(self.uniform(), 1.0 / a), libm::pow(self.uniform(), 1.0 / a));
+            if x + y > 0.0 && x + y <= 1.0 {
+                return x / (x + y);
+            }
+        }
+    }
+
+    /// Dirichlet(1): normalised exponentials.
+    fn dirichlet<const N: usize>(&mut self, names: [&'static str; N]) -> [(&'static str, f64); N] {
+        let draws = names.map(|n| (n, -libm::log(1.0 - self.uniform())));
+        let sum: f64 = draws.iter().map(|d| d.1).sum();
+        draws.map(|(n, d)| (n, d / sum))
+    }
+}

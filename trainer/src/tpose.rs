@@ -1,0 +1,140 @@
+//! From MakeHuman's resting arms to an exact T-pose, per body.
+//!
+//! Upper arm, forearm and hand are swung in turn so that shoulder, elbow, wrist and the middle finger's knuckle
+//! lie on one line along ±X. The swing is the shortest rotation, found anew for each body: one rotation for all
+//! bodies would leave the arms up to several millimetres off. Vertices follow by linear blend skinning.
+
+use glam::{Quat, Vec3};
+
+use crate::assets::Assets;
+use crate::{Error, Result};
+
+/// The joints of one arm, and how much each point follows its three segments.
+struct Arm {
+    outward: Vec3,
+    // Point numbers of shoulder, elbow, wrist and the knuckle that gives the hand's direction.
+    chain: [usize; 4],
+    // Point, and its weights for upper arm, forearm and hand; the rest stays.
+    weights: Vec<(u32, [f32; 3])>,
+}
+
+/// Swings both arms of a body into the T-pose.
+pub struct TPose {
+    arms: [Arm; 2],
+    pelvis: usize,
+    ground: usize,
+}
+
+impl TPose {
+    /// Finds the arms in the rig.
+    ///
+    /// # Errors
+    /// [`Error::Source`] when a joint is missing.
+    pub fn new(assets: &Assets) -> Result<Self> {
+        let joint = |name: &str| {
+            assets.rig.find(name).ok_or_else(|| Error::Source(format!("the rig has no joint {name}")))
+        };
+        let heads = assets.mesh.raw_of_surface.len();
+        let arm = |side: &str, outward: Vec3| -> Result<Arm> {
+            let names = ["upperarm", "lowerarm", "hand", "middle_01"];
+            let mut joints = [0; 4];
+            for (slot, name) in joints.iter_mut().zip(names) {
+                *slot = joint(&format!("{name}_{side}"))?;
+            }
+            Ok(Arm { outward, chain: joints.map(|j| heads + j), weights: weights(assets, &joints) })
+        };
+        Ok(Self {
+            arms: [arm("l", Vec3::X)?, arm("r", Vec3::NEG_X)?],
+            pelvis: heads + joint("pelvis")?,
+            ground: heads + joint("Root")?,
+        })
+    }
+
+    /// Puts the arms straight and the pelvis at the origin; `points` are those of [`Assets`].
+    ///
+    /// Twist joints are moved to their place along the limb.
+    pub fn apply(&self, assets: &Assets, points: &mut [Vec3]) {
+        for arm in &self.arms {
+            arm.apply(points);
+        }
+        let heads = assets.mesh.raw_of_surface.len();
+        let tails = heads + assets.rig.joints.len();
+        for &(joint, place) in &assets.rig.twists {
+            let Some(limb) = assets.rig.joints[joint].parent else { continue };
+            let (start, end) = (points[heads + limb], points[tails + limb]);
+            points[heads + joint] = start.lerp(end, place);
+            // Twist joints point the way their limb does, a fixed share of its length long.
+            points[tails + joint] = points[heads + joint] + (end - start) * 0.25;
+        }
+        // Root: below the pelvis, on the ground, between the feet.
+        let origin = points[self.pelvis];
+        let root = points[self.ground];
+        points[self.ground] = Vec3::new(origin.x, root.y, origin.z);
+        for p in points {
+            *p -= origin;
+        }
+    }
+}
+
+impl Arm {
+    fn apply(&self, points: &mut [Vec3]) {
+        let [shoulder, elbow, wrist, knuckle] = self.chain.map(|p| points[p]);
+        let direction = |from: Vec3, to: Vec3| (to - from).normalize_or(self.outward);
+        let upper = Quat::from_rotation_arc(direction(shoulder, elbow), self.outward);
+        let lower = Quat::from_rotation_arc(upper * direction(elbow, wrist), self.outward) * upper;
+        let hand = Quat::from_rotation_arc(lower * direction(wrist, knuckle), self.outward) * lower;
+        let new_elbow = shoulder + self.outward * (elbow - shoulder).length();
+        let new_wrist = new_elbow + self.outward * (wrist - elbow).length();
+        for &(p, [u, l, h]) in &self.weights {
+            let x = points[p as usize];
+            let moved = (shoulder + upper * (x - shoulder)) * u
+                + (new_elbow + lower * (x - elbow)) * l
+                + (new_wrist + hand * (x - wrist)) * h;
+            points[p as usize] = moved + x * (1.0 - u - l - h);
+        }
+        // Exactly on the line, whatever rounding did.
+        points[self.chain[1]] = new_elbow;
+        points[self.chain[2]] = new_wrist;
+        points[self.chain[3]] = new_wrist + self.outward * (knuckle - wrist).length();
+    }
+}
+
+/// Which of the three segments a joint belongs to: the one nearest above it.
+fn segment(assets: &Assets, joints: &[usize; 4], joint: usize) -> Option<usize> {
+    let mut current = Some(joint);
+    while let Some(j) = current {
+        if let Some(segment) = joints[..3].iter().position(|&of_arm| of_arm == j) {
+            return Some(segment);
+        }
+        current = assets.rig.joints[j].parent;
+    }
+    None
+}
+
+fn weights(assets: &Assets, joints: &[usize; 4]) -> Vec<(u32, [f32; 3])> {
+    let mut out = Vec::new();
+    for (p, influences) in assets.rig.weights.iter().enumerate() {
+        let mut sums = [0.0; 3];
+        for &(joint, w) in influences {
+            if let Some(s) = segment(assets, joints, joint.into()) {
+                sums[s] += w;
+            }
+        }
+        if sums != [0.0; 3] {
+            out.push((p as u32, sums));
+        }
+    }
+    // A joint's head is carried by its parent, its tail by itself.
+    let heads = assets.mesh.raw_of_surface.len();
+    let count = assets.rig.joints.len();
+    for (j, joint) in assets.rig.joints.iter().enumerate() {
+        for (point, carrier) in [(heads + j, joint.parent), (heads + count + j, Some(j))] {
+            if let Some(s) = carrier.and_then(|c| segment(assets, joints, c)) {
+                let mut one = [0.0; 3];
+                one[s] = 1.0;
+                out.push((point as u32, one));
+            }
+        }
+    }
+    out
+}

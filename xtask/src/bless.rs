@@ -1,0 +1,61 @@
+//! `cargo xtask bless`: the goldens, and how a file is compared with its golden.
+//!
+//! `tests/golden/hashes.json` maps the name of a request to the SHA-256 of the .glb made from it. The same request
+//! and seed give the same bytes on every host, so the hashes change only with the model or the code.
+
+use crate::requests::PEOPLE;
+use crate::tools::{self, Outcome};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Name of the request to hexadecimal hash.
+pub(crate) type Hashes = BTreeMap<String, String>;
+
+pub(crate) fn run() -> Outcome {
+    let anthronet = tools::command_line()?;
+    let scratch = tools::target().join("bless");
+    std::fs::create_dir_all(&scratch).map_err(|e| format!("{}: cannot create: {e}", scratch.display()))?;
+    let mut hashes = Hashes::new();
+    for person in PEOPLE {
+        let file = scratch.join(format!("{}.glb", person.name));
+        tools::run(Command::new(&anthronet).arg("generate").args(person.arguments).arg("-o").arg(&file))?;
+        hashes.insert(person.name.to_owned(), hash(&file)?);
+    }
+    let before = golden()?.unwrap_or_default();
+    for (name, new) in &hashes {
+        match before.get(name) {
+            Some(old) if old == new => println!("same     {name}"),
+            Some(_) => println!("changed  {name}"),
+            None => println!("new      {name}"),
+        }
+    }
+    let text = serde_json::to_string_pretty(&hashes).map_err(|e| e.to_string())?;
+    tools::write(&golden_path(), &(text + "\n"))
+}
+
+fn golden_path() -> PathBuf {
+    tools::root().join("tests/golden/hashes.json")
+}
+
+/// The committed hashes; `None` before the first `bless`.
+pub(crate) fn golden() -> Outcome<Option<Hashes>> {
+    let path = golden_path();
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = tools::read(&path)?;
+    serde_json::from_str(&text).map(Some).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// SHA-256 of a file in hexadecimal.
+pub(crate) fn hash(path: &Path) -> Outcome<String> {
+    let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot read: {e}", path.display()))?;
+    let mut text = String::new();
+    for byte in Sha256::digest(&bytes) {
+        write!(text, "{byte:02x}").map_err(|e| e.to_string())?;
+    }
+    Ok(text)
+}

@@ -1,0 +1,77 @@
+//! `cargo xtask check`: what a reader may take for granted.
+
+use crate::layering;
+use crate::tools::{self, Outcome, cargo};
+use std::process::Command;
+
+pub(crate) fn run() -> Outcome {
+    // The fast ones first; every one of them is run, so that one round shows all there is to mend.
+    let mut failures = Vec::new();
+    let mut keep = |result: Outcome| failures.extend(result.err());
+    let cargo_program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    keep(tools::run(
+        Command::new(cargo_program).current_dir(tools::root()).args(["fmt", "--all", "--check"]),
+    ));
+    keep(layers());
+    // One set of features for lints, documentation and tests, so that the heavy dependencies are built once each way.
+    keep(tools::run(cargo("clippy").args([
+        "--workspace",
+        "--all-targets",
+        "--all-features",
+        "--",
+        "-D",
+        "warnings",
+    ])));
+    // Libraries only: the command shares its name with the library, and its documentation is its --help.
+    keep(tools::run(
+        cargo("doc")
+            .args(["--workspace", "--lib", "--no-deps", "--all-features"])
+            .env("RUSTDOCFLAGS", "-D warnings"),
+    ));
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+}
+
+/// The rooms of the library against the table of who may use whom.
+fn layers() -> Outcome {
+    let violations = layering::violations(&tools::root().join("core/src"))?;
+    for violation in &violations {
+        eprintln!("{violation}");
+    }
+    match violations.len() {
+        0 => {
+            println!("layering of core: no room uses one above it");
+            Ok(())
+        }
+        n => Err(format!("layering of core: {n} lines use a room that they may not use")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tools::{read, root};
+
+    #[test]
+    fn continuous_integration_calls_what_the_readme_says() {
+        let command = "\ncargo xtask test\n";
+        for file in ["README.md", ".ci/run"] {
+            assert!(read(&root().join(file)).unwrap().contains(command), "{file} lacks `{}`", command.trim());
+        }
+    }
+
+    #[test]
+    fn every_dependency_has_its_reason_and_its_licence_written_down() {
+        let manifest = read(&root().join("Cargo.toml")).unwrap();
+        let (_, dependencies) = manifest.split_once("[workspace.dependencies]\n").unwrap();
+        let names = dependencies.lines().take_while(|line| !line.starts_with('[')).filter_map(|line| {
+            let (name, value) = line.split_once(" = ")?;
+            (!value.contains("path = ")).then_some(name)
+        });
+        let [reasons, licences] =
+            ["CHANGELOG.md", "THIRD_PARTY.md"].map(|file| read(&root().join(file)).unwrap());
+        for name in names {
+            let quoted = format!("`{name}`");
+            assert!(reasons.contains(&quoted), "CHANGELOG.md does not say what {quoted} is for");
+            assert!(licences.contains(&format!("| {quoted} |")), "THIRD_PARTY.md does not list {quoted}");
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! What the cross-boundary tests need, installed into `target/test-env` with pinned versions.
+//!
+//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module)
+//! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js)
+//!
+//! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
+
+use crate::tools::{self, Outcome};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Blender's shared libraries on Debian and Ubuntu, which its Python module does not carry.
+const BLENDER_LIBRARIES: &[&str] = &[
+    "libgl1",
+    "libglvnd0",
+    "libglx0",
+    "libsm6",
+    "libice6",
+    "libx11-6",
+    "libxext6",
+    "libxfixes3",
+    "libxi6",
+    "libxrender1",
+    "libxkbcommon0",
+];
+
+/// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
+pub(crate) struct Environment {
+    /// Python with numpy and scipy.
+    pub(crate) python: Result<PathBuf, String>,
+    /// That Python can `import bpy`.
+    pub(crate) blender: Result<(), String>,
+    /// Folder with `node_modules`, in which scripts have to lie, and the node program.
+    pub(crate) node: Result<(PathBuf, PathBuf), String>,
+}
+
+/// Installs whatever is not there yet.
+///
+/// What this machine cannot have (an old Python, a platform without a wheel) is a reason to skip; an installation
+/// that should work and does not is an error.
+pub(crate) fn prepare() -> Outcome<Environment> {
+    let home = tools::target().join("test-env");
+    let (base, version) = match find_python() {
+        Ok(found) => found,
+        Err(reason) => {
+            return Ok(Environment {
+                python: Err(reason.clone()),
+                blender: Err(reason.clone()),
+                node: Err(reason),
+            });
+        }
+    };
+    let python = virtual_environment(&home.join("venv"), &base)?;
+    let blender = match version {
+        (3, 11) => import_blender(&python)?,
+        (major, minor) => Err(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}")),
+    };
+    let node = node_packages(&home.join("node"), &python)?;
+    Ok(Environment { python: Ok(python), blender, node: Ok(node) })
+}
+
+/// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
+fn find_python() -> Result<(PathBuf, (u32, u32)), String> {
+    let mut best: Option<(PathBuf, (u32, u32))> = None;
+    let mut seen = Vec::new();
+    for name in ["python3.11", "python3", "python"] {
+        let script = "import sys; print(sys.version_info[0], sys.version_info[1])";
+        let Ok(text) = tools::output(Command::new(name).args(["-c", script])) else { continue };
+        let mut numbers = text.split_whitespace().filter_map(|word| word.parse().ok());
+        let (Some(major), Some(minor)) = (numbers.next(), numbers.next()) else { continue };
+        seen.push(format!("{name} {major}.{minor}"));
+        let better = match best {
+            None => (major, minor) >= (3, 11),
+            Some((_, version)) => (major, minor) == (3, 11) && version != (3, 11),
+        };
+        if better {
+            best = Some((name.into(), (major, minor)));
+        }
+    }
+    best.ok_or_else(|| format!("Python 3.11 or newer is needed, found {}", or_none(&seen)))
+}
+
+fn or_none(seen: &[String]) -> String {
+    if seen.is_empty() { "none".to_owned() } else { seen.join(", ") }
+}
+
+/// A program of a virtual environment.
+fn program(venv: &Path, name: &str) -> PathBuf {
+    let folder = if cfg!(windows) { "Scripts" } else { "bin" };
+    venv.join(folder).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// The virtual environment's Python, after installing the pinned packages.
+fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
+    let requirements = tools::root().join("tests/requirements.txt");
+    let python = program(venv, "python");
+    installed_once(venv, &tools::read(&requirements)?, || {
+        let create = || tools::run(Command::new(base).args(["-m", "venv", "--clear"]).arg(venv));
+        // Debian and Ubuntu ship Python without its `venv` module.
+        if let Err(message) = create() {
+            apt_install(&["python3-venv"]).map_err(|e| format!("{message}; {e}"))?;
+            create()?;
+        }
+        let pip =
+            ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--requirement"];
+        tools::run(Command::new(&python).args(pip).arg(&requirements))
+    })?;
+    Ok(python)
+}
+
+/// Imports Blender, installing its shared libraries where that is needed and allowed.
+fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
+    let import =
+        || tools::output(Command::new(python).args(["-c", "import bpy; print(bpy.app.version_string)"]));
+    let Err(message) = import() else { return Ok(Ok(())) };
+    if message.contains("No module named 'bpy'") {
+        return Ok(Err("bpy 5.0.1 has no wheel for this platform".to_owned()));
+    }
+    match apt_install(BLENDER_LIBRARIES) {
+        Ok(()) => import().map(|_| Ok(())),
+        Err(reason) => Ok(Err(format!("{message}; {reason}"))),
+    }
+}
+
+/// Installs system packages where that is possible without asking anybody.
+fn apt_install(packages: &[&str]) -> Outcome {
+    let wanted = packages.join(" ");
+    let root = cfg!(unix) && tools::output(Command::new("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
+    if !root || tools::output(Command::new("apt-get").arg("--version")).is_err() {
+        return Err(format!("install by hand: {wanted}"));
+    }
+    let quiet = |command: &mut Command| tools::run(command.env("DEBIAN_FRONTEND", "noninteractive"));
+    quiet(Command::new("apt-get").args(["update", "-qq"]))?;
+    quiet(Command::new("apt-get").args(["install", "-qq", "-y", "--no-install-recommends"]).args(packages))
+}
+
+/// The folder with the npm packages and the node program.
+fn node_packages(folder: &Path, python: &Path) -> Outcome<(PathBuf, PathBuf)> {
+    let bin = python.parent().unwrap_or(Path::new("."));
+    let [node, npm] = ["node", "npm"].map(|name| bin.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)));
+    let tests = tools::root().join("tests");
+    let lock = tools::read(&tests.join("package-lock.json"))?;
+    installed_once(folder, &lock, || {
+        tools::write(&folder.join("package.json"), &tools::read(&tests.join("package.json"))?)?;
+        tools::write(&folder.join("package-lock.json"), &lock)?;
+        tools::run(Command::new(&npm).current_dir(folder).args([
+            "ci",
+            "--no-audit",
+            "--no-fund",
+            "--loglevel=error",
+        ]))
+    })?;
+    Ok((folder.to_path_buf(), node))
+}
+
+/// Runs an installation unless the folder's stamp says that it was made from the same description.
+fn installed_once(folder: &Path, description: &str, install: impl FnOnce() -> Outcome) -> Outcome {
+    let stamp = folder.join("installed-from");
+    if std::fs::read_to_string(&stamp).is_ok_and(|made_from| made_from == description) {
+        return Ok(());
+    }
+    install()?;
+    tools::write(&stamp, description)
+}

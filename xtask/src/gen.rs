@@ -1,0 +1,29 @@
+//! `cargo xtask gen`: the pictures in `docs/`, made by the commands that a user has.
+
+use crate::requests;
+use crate::tools::{self, Outcome};
+use std::process::Command;
+
+pub(crate) fn run() -> Outcome {
+    let anthronet = tools::command_line()?;
+    let root = tools::root();
+    let scratch = tools::target().join("gen");
+    for folder in [&scratch, &root.join("docs")] {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    }
+    let person = scratch.join("person.glb");
+    tools::run(Command::new(&anthronet).arg("generate").args(requests::README).arg("-o").arg(&person))?;
+    let pictures: [(&[&std::ffi::OsStr], &str); 2] = [
+        (&["preview".as_ref(), person.as_os_str()], "docs/preview.png"),
+        (&["contact-sheet".as_ref()], "docs/people.png"),
+    ];
+    for (arguments, picture) in pictures {
+        let picture = root.join(picture);
+        tools::run(Command::new(&anthronet).args(arguments).arg("-o").arg(&picture))?;
+        if !picture.is_file() {
+            return Err(format!("{}: the command succeeded and wrote nothing", picture.display()));
+        }
+    }
+    println!("look at docs/preview.png and docs/people.png before you commit them");
+    Ok(())
+}

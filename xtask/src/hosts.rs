@@ -1,0 +1,235 @@
+//! The cross-boundary tests: files of the released command in programs that are not ours.
+//!
+//! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
+//! `skipped NAME: why`; all its other lines are for the reader.
+
+use crate::environment::{self, Environment};
+use crate::requests::PEOPLE;
+use crate::tools::{self, Outcome};
+use crate::{bless, requests};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Cases so far.
+#[derive(Default)]
+struct Tally {
+    passed: u32,
+    failed: u32,
+    skipped: u32,
+}
+
+impl Tally {
+    /// Prints and counts one case.
+    fn case(&mut self, name: &str, result: Outcome) {
+        match result {
+            Ok(()) => self.line(&format!("ok {name}")),
+            Err(why) => self.line(&format!("FAILED {name}: {why}")),
+        }
+    }
+
+    fn skip(&mut self, name: &str, why: &str) {
+        self.line(&format!("skipped {name}: {why}"));
+    }
+
+    /// Prints a line and counts it if it is a case.
+    fn line(&mut self, line: &str) {
+        println!("{line}");
+        match line.split(' ').next() {
+            Some("ok") => self.passed += 1,
+            Some("FAILED") => self.failed += 1,
+            Some("skipped") => self.skipped += 1,
+            _ => {}
+        }
+    }
+
+    /// Runs a script and counts the cases that it prints; a script that breaks off is a failed case of its own.
+    fn script(&mut self, name: &str, command: &mut Command) {
+        println!("-- {name}");
+        let before = self.passed + self.failed + self.skipped;
+        let failed_before = self.failed;
+        let status = command.stdout(Stdio::piped()).spawn().and_then(|mut child| {
+            if let Some(output) = child.stdout.take() {
+                for line in BufReader::new(output).split(b'\n') {
+                    self.line(String::from_utf8_lossy(&line?).trim_end());
+                }
+            }
+            child.wait()
+        });
+        match status {
+            Err(e) => self.case(name, Err(format!("did not start: {e}"))),
+            Ok(status) if !status.success() && self.failed == failed_before => {
+                self.case(name, Err(format!("broke off: {status}")));
+            }
+            Ok(_) if self.passed + self.failed + self.skipped == before => {
+                self.case(name, Err("ran no case".to_owned()));
+            }
+            Ok(_) => {}
+        }
+    }
+}
+
+pub(crate) fn run() -> Outcome {
+    let anthronet = tools::command_line()?;
+    let environment = environment::prepare()?;
+    let folder = tools::target().join("test-env/out");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: cannot empty: {e}", folder.display()))?;
+    }
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+
+    let mut tally = Tally::default();
+    println!("cross-boundary tests");
+    same_bytes(&anthronet, &folder, &mut tally)?;
+    let files = files(&anthronet, &folder, &mut tally);
+    in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
+
+    println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
+    match tally.failed {
+        0 => Ok(()),
+        n => Err(format!("{n} cross-boundary tests failed")),
+    }
+}
+
+/// `anthronet generate` with these arguments into a file.
+fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Outcome {
+    let mut command = Command::new(anthronet);
+    command.arg("generate").args(arguments).arg("-o").arg(file);
+    if let Some(threads) = threads {
+        command.env("RAYON_NUM_THREADS", threads.to_string());
+    }
+    tools::output(&mut command).map(drop)
+}
+
+/// The same request gives the same bytes, whatever the number of threads, and the bytes of the golden.
+fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
+    let golden = bless::golden()?;
+    for person in PEOPLE {
+        let hash = |threads| -> Outcome<String> {
+            let file = folder.join(format!("{}_{threads}_threads.glb", person.name));
+            generate(anthronet, person.arguments, &file, Some(threads))?;
+            bless::hash(&file)
+        };
+        let hashes = [1, 2, 8].into_iter().map(hash).collect::<Outcome<Vec<_>>>();
+        let hashes = match hashes {
+            Ok(hashes) => hashes,
+            Err(why) => {
+                tally.case(&format!("generate {}", person.name), Err(why));
+                continue;
+            }
+        };
+        let same = hashes.iter().all(|hash| *hash == hashes[0]);
+        let differ = || format!("1, 2 and 8 threads gave {}", hashes.join(", "));
+        tally.case(
+            &format!("same bytes over threads: {}", person.name),
+            same.then_some(()).ok_or_else(differ),
+        );
+
+        let name = format!("same bytes as the golden: {}", person.name);
+        match golden.as_ref().map(|golden| golden.get(person.name)) {
+            None => tally.skip(&name, "tests/golden/hashes.json is missing, `cargo xtask bless` writes it"),
+            Some(None) => tally.case(&name, Err("not in tests/golden/hashes.json".to_owned())),
+            Some(Some(expected)) => {
+                let differs = || format!("expected {expected}, got {}", hashes[0]);
+                tally.case(&name, (*expected == hashes[0]).then_some(()).ok_or_else(differs));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One file of every kind: all people, all levels of detail, both numbers of influences, both containers.
+fn files(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Vec<PathBuf> {
+    let mut wanted: Vec<(String, Vec<&str>)> = Vec::new();
+    for person in PEOPLE {
+        for lod in ["0", "1", "2", "3"] {
+            let arguments = [person.arguments, &["--lod", lod]].concat();
+            wanted.push((format!("{}_lod{lod}.glb", person.name), arguments));
+        }
+        let arguments = [person.arguments, &["--influences", "8"]].concat();
+        wanted.push((format!("{}_8_influences.glb", person.name), arguments));
+    }
+    wanted.push(("readme.gltf".to_owned(), requests::README.to_vec()));
+    let mut files = Vec::new();
+    for (name, arguments) in wanted {
+        let file = folder.join(&name);
+        match generate(anthronet, &arguments, &file, None) {
+            Ok(()) => files.push(file),
+            Err(why) => tally.case(&format!("generate {name}"), Err(why)),
+        }
+    }
+    files
+}
+
+/// The Khronos validator, numpy and scipy, three.js, Blender.
+fn in_other_programs(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    files: &[PathBuf],
+    tally: &mut Tally,
+) -> Outcome {
+    let tests = tools::root().join("tests");
+    let python = |program: &Path, script: &str| {
+        let mut command = Command::new(program);
+        command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tests.join(script));
+        command
+    };
+    let node = |script: &str| -> Outcome<Result<Command, String>> {
+        let (home, program) = match &environment.node {
+            Ok(found) => found,
+            Err(reason) => return Ok(Err(reason.clone())),
+        };
+        // Node looks for packages from the script's own folder upwards.
+        let copy = home.join(script);
+        tools::write(&copy, &tools::read(&tests.join(script))?)?;
+        let mut command = Command::new(program);
+        command.arg(copy);
+        Ok(Ok(command))
+    };
+
+    match node("validate.mjs")? {
+        Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
+        Err(reason) => tally.skip("Khronos glTF validator", &reason),
+    }
+    let Ok(program) = &environment.python else {
+        let reason = environment.python.as_ref().err().map_or("", String::as_str);
+        for name in ["measures by numpy and scipy", "three.js", "Blender"] {
+            tally.skip(name, reason);
+        }
+        return Ok(());
+    };
+    tally.script("measures by numpy and scipy", python(program, "measure_glb.py").arg(anthronet).arg(folder));
+
+    // What the two programs below have to agree with, once per file.
+    for (stem, arguments) in [
+        ("posed_4", [requests::README, &["--influences", "4"]].concat()),
+        ("posed_8", [requests::README, &["--influences", "8"]].concat()),
+    ] {
+        let file = folder.join(format!("{stem}.glb"));
+        if let Err(why) = generate(anthronet, &arguments, &file, None) {
+            tally.case(&format!("generate {stem}.glb"), Err(why));
+            continue;
+        }
+        tally.script(
+            &format!("reference skinning of {stem}.glb"),
+            python(program, "pose_reference.py").arg(&file),
+        );
+        // three.js reads no more than four influences.
+        if stem == "posed_4" {
+            match node("threejs.mjs")? {
+                Ok(mut command) => tally.script("three.js", command.arg(&file)),
+                Err(reason) => tally.skip("three.js", &reason),
+            }
+        }
+        let name = format!("Blender, {stem}.glb");
+        match &environment.blender {
+            Ok(()) => {
+                let picture = (stem == "posed_4").then(|| folder.join("blender.png"));
+                tally.script(&name, python(program, "blender_import.py").arg(&file).args(picture));
+            }
+            Err(reason) => tally.skip(&name, reason),
+        }
+    }
+    Ok(())
+}

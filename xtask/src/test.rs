@@ -1,0 +1,31 @@
+//! `cargo xtask test`: everything that shows that the project works.
+
+use crate::tools::{self, Outcome, cargo};
+use crate::{check, hosts};
+
+/// A part of the tests that can be asked for alone.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Part {
+    /// Formatting, lints, documentation, layering
+    Check,
+    /// Unit, property and integration tests of the workspace
+    Rust,
+    /// Cross-boundary tests: the files in programs that are not ours
+    Hosts,
+}
+
+/// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
+pub(crate) fn run(only: Option<Part>) -> Outcome {
+    let wanted = |part| only.is_none_or(|one| one == part);
+    let mut failures = Vec::new();
+    if wanted(Part::Check) {
+        failures.extend(check::run().err());
+    }
+    if wanted(Part::Rust) {
+        failures.extend(tools::run(cargo("test").args(["--workspace", "--all-features"])).err());
+    }
+    if wanted(Part::Hosts) {
+        failures.extend(hosts::run().err());
+    }
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+}
