@@ -37,6 +37,28 @@ pub struct SkeletonShape {
     pub tails: Vec<Vec3>,
 }
 
+impl SkeletonShape {
+    /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
+    /// micrometres off it: the T-pose is exact.
+    pub fn straighten(&mut self, skeleton: &Skeleton) {
+        for side in ["l", "r"] {
+            let Some(shoulder) = skeleton.find(&format!("upperarm_{side}")) else { continue };
+            let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
+            for (j, name) in skeleton.names().iter().enumerate() {
+                let of_arm = name.ends_with(side)
+                    && ["upperarm", "lowerarm", "hand"].iter().any(|part| name.starts_with(part));
+                if !of_arm {
+                    continue;
+                }
+                self.heads[j] = self.heads[j].with_y(y).with_z(z);
+                if !name.starts_with("hand") {
+                    self.tails[j] = self.tails[j].with_y(y).with_z(z);
+                }
+            }
+        }
+    }
+}
+
 impl Skeleton {
     /// A hierarchy from names and parents.
     ///

@@ -127,18 +127,18 @@ fn says_what_is_wrong_and_where() {
         ("expected a file beside or below", |j| j["buffers"][0]["uri"] = json!("%2Fetc/passwd")),
         ("expected a file beside or below", |j| j["buffers"][0]["uri"] = json!("file:///etc/passwd")),
         ("expected base64", |j| j["buffers"][0]["uri"] = json!("data:x;base64,$$$$")),
-        ("count 1000000000 is beyond", |j| set_all(j, "accessors", "count", json!(1_000_000_000))),
-        ("count 40000 reaches beyond", |j| set_all(j, "accessors", "count", json!(40_000))),
-        ("reaches beyond", |j| set_all(j, "accessors", "byteOffset", json!(u64::MAX))),
-        ("reaches beyond", |j| set_all(j, "bufferViews", "byteOffset", json!(u64::MAX))),
-        ("reaches beyond its buffer", |j| set_all(j, "bufferViews", "byteLength", json!(u64::MAX))),
-        ("reaches beyond", |j| set_all(j, "bufferViews", "byteStride", json!(u64::MAX))),
-        ("byteStride is smaller", |j| set_all(j, "bufferViews", "byteStride", json!(0))),
-        ("buffer does not exist", |j| set_all(j, "bufferViews", "buffer", json!(7))),
-        ("bufferView does not exist", |j| set_all(j, "accessors", "bufferView", json!(99))),
-        ("has no bufferView", |j| set_all(j, "accessors", "bufferView", Value::Null)),
-        ("is not of f32 vectors", |j| set_all(j, "accessors", "componentType", json!(5123))),
-        ("unknown component type", |j| set_all(j, "accessors", "componentType", json!(1))),
+        ("count 1000000000 is beyond", |j| set_all(j, "accessors", "count", &json!(1_000_000_000))),
+        ("count 40000 reaches beyond", |j| set_all(j, "accessors", "count", &json!(40_000))),
+        ("reaches beyond", |j| set_all(j, "accessors", "byteOffset", &json!(u64::MAX))),
+        ("reaches beyond", |j| set_all(j, "bufferViews", "byteOffset", &json!(u64::MAX))),
+        ("reaches beyond its buffer", |j| set_all(j, "bufferViews", "byteLength", &json!(u64::MAX))),
+        ("reaches beyond", |j| set_all(j, "bufferViews", "byteStride", &json!(u64::MAX))),
+        ("byteStride is smaller", |j| set_all(j, "bufferViews", "byteStride", &json!(0))),
+        ("buffer does not exist", |j| set_all(j, "bufferViews", "buffer", &json!(7))),
+        ("bufferView does not exist", |j| set_all(j, "accessors", "bufferView", &json!(99))),
+        ("has no bufferView", |j| set_all(j, "accessors", "bufferView", &Value::Null)),
+        ("is not of f32 vectors", |j| set_all(j, "accessors", "componentType", &json!(5123))),
+        ("unknown component type", |j| set_all(j, "accessors", "componentType", &json!(1))),
         ("POSITION: accessor 999 of", |j| {
             j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(999);
         }),
@@ -177,7 +177,7 @@ fn says_what_is_wrong_and_where() {
     }
 }
 
-fn set_all(json: &mut Value, list: &str, field: &str, value: Value) {
+fn set_all(json: &mut Value, list: &str, field: &str, value: &Value) {
     for item in json[list].as_array_mut().unwrap() {
         item[field] = value.clone();
     }
@@ -196,7 +196,9 @@ fn names_numbers_that_are_not_finite() {
 #[test]
 fn many_nodes_cannot_blow_one_mesh_up() {
     let instances = |count: usize| {
-        move |json: &mut Value| json["nodes"].as_array_mut().unwrap().extend(vec![json!({"mesh": 0, "skin": 0}); count])
+        move |json: &mut Value| {
+            json["nodes"].as_array_mut().unwrap().extend(vec![json!({"mesh": 0, "skin": 0}); count]);
+        }
     };
     let message = read(&changed(instances(70_000))).unwrap_err();
     assert!(message.contains("expected at most 65536 meshes"), "{message}");
@@ -243,7 +245,7 @@ fn pointers(value: &Value, at: String, numbers: &mut Vec<String>) {
     match value {
         Value::Number(_) => numbers.push(at),
         Value::Array(items) => {
-            items.iter().enumerate().for_each(|(i, v)| pointers(v, format!("{at}/{i}"), numbers))
+            items.iter().enumerate().for_each(|(i, v)| pointers(v, format!("{at}/{i}"), numbers));
         }
         Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, format!("{at}/{k}"), numbers)),
         _ => {}
