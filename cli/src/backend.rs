@@ -3,25 +3,26 @@
 use std::path::Path;
 
 use anthronet::Error;
-use anthronet::condition::{Fill, Report, Request};
-use anthronet::export::{Scene, SceneMaterial, SceneMesh, SkinTone};
-use anthronet::measure::{MeasureId, Sex};
+use anthronet::condition::{Fill, Request};
+use anthronet::export::{Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone};
+use anthronet::measure::{Mass, MeasureId, Sex, enclosed_volume};
+use anthronet::mesh::Lod;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
+use serde_json::json;
 
 use crate::failure::{Failure, Result};
 use crate::generate::{FileChoice, JointNamesChoice};
-use crate::measure::Measured;
+use crate::measure::{Measured, NamedValue};
 use crate::render::{Figure, Material, Part};
+use crate::surface::level0;
 use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
 
 /// The generator with its prior and definitions.
-pub(crate) struct Model(());
+pub(crate) struct Model(anthronet::model::Model);
 
 /// A generated body with its report.
-pub(crate) struct Person {
-    report: Report,
-}
+pub(crate) struct Person(anthronet::Body);
 
 /// What is printed about a person.
 pub(crate) struct Summary {
@@ -41,52 +42,76 @@ pub(crate) struct Usual {
     pub(crate) correlation: f64,
 }
 
-const NOT_WIRED: &str = "this build has no model";
-
 impl Model {
     /// The model file that `ANTHRONET_MODEL` names, else the built-in one.
     pub(crate) fn open() -> Result<Self> {
-        // let model = match std::env::var_os("ANTHRONET_MODEL").filter(|path| !path.is_empty()) {
-        //     Some(path) => anthronet::Model::open(path)?,
-        //     None => anthronet::Model::embedded()?,
-        // };
-        Err(Failure::failed(NOT_WIRED))
+        Ok(Self(anthronet::model::Model::from_environment()?))
     }
 
     /// Makes a person. With `typed` a bad field is the command line's: bad usage instead of a failure.
-    pub(crate) fn generate(&self, _request: &Request, _typed: bool) -> Result<Person> {
-        // self.0.generate(request).map(Person).map_err(|e| if typed { usage_if_request(e) } else { e.into() })
-        Err(Failure::failed(NOT_WIRED))
+    pub(crate) fn generate(&self, request: &Request, typed: bool) -> Result<Person> {
+        let body = self.0.generate(request);
+        body.map(Person).map_err(|error| if typed { usage_if_request(error) } else { error.into() })
     }
 
     /// The person at `t`, 0 to 1, between two requests.
-    pub(crate) fn interpolate(&self, _first: &Request, _second: &Request, _t: f64) -> Result<Person> {
-        Err(Failure::failed(NOT_WIRED))
+    pub(crate) fn interpolate(&self, first: &Request, second: &Request, t: f64) -> Result<Person> {
+        Ok(Person(self.0.interpolate(first, second, t)?))
     }
 
     /// Measures, joints, versions and scores, as documented for `info --json`.
     pub(crate) fn info(&self) -> Result<serde_json::Value> {
-        Err(Failure::failed(NOT_WIRED))
+        let model = &self.0;
+        let (character, ranges) = (model.character(), model.ranges());
+        let measures = model.definitions().iter().map(|(id, definition)| {
+            let mut measure = json!({
+                "name": definition.name,
+                "kind": definition.kind,
+                "points": definition.points,
+                "normal": definition.normal.to_array(),
+                "axis": definition.axis.map(|axis| axis.to_array()),
+                "standard": definition.standard(),
+                "min": ranges[id.index()].min,
+                "max": ranges[id.index()].max,
+            });
+            if !definition.edges.is_empty() {
+                measure["edges"] = json!(definition.edges);
+            }
+            measure
+        });
+        let skeleton = character.skeleton();
+        let joints = skeleton.names().iter().zip(skeleton.parents()).map(|(name, parent)| {
+            let parent = parent.and_then(|p| skeleton.names().get(p as usize));
+            json!({"name": name, "parent": parent})
+        });
+        let levels = Lod::ALL.map(|lod| character.vertex_count(lod));
+        Ok(json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "measures": measures.collect::<Vec<_>>(),
+            "joints": joints.collect::<Vec<_>>(),
+            "vertices_per_lod": levels,
+            "latent_size": model.latent_size(),
+            "measures_sha256": model.definitions().hash(),
+            "model": model.provenance(),
+        }))
     }
 
     /// What is usual for a sex, from the prior.
-    pub(crate) fn usual(&self, _sex: SexChoice) -> Usual {
-        // let prior = self.0.prior().of(core_sex(sex)); usual(prior.mean(), prior.covariance())
-        Usual { height: (1.741, 0.144), waist: (0.82, 0.14), correlation: 0.2 }
+    fn usual(&self, sex: SexChoice) -> Usual {
+        let prior = self.0.prior().of(core_sex(sex));
+        usual(prior.mean(), prior.covariance())
     }
 }
 
 impl Person {
     /// The report as JSON.
-    pub(crate) fn report_json(&self) -> Result<String> {
-        Ok(self.report.to_json())
+    pub(crate) fn report_json(&self) -> String {
+        self.0.report().to_json()
     }
 
     /// Writes the file; its ending chooses the format.
     pub(crate) fn write(&self, path: &Path, choice: &FileChoice<'_>) -> Result<()> {
-        // Scene::from_body(&self.body, &SceneOptions { lod, influences, joint_names, skin_tone, .. })
-        let scene: Scene = self.scene(choice)?;
-        Ok(anthronet::export::write_scene(&scene, path)?)
+        Ok(anthronet::export::write_scene(&self.scene(choice)?, path)?)
     }
 
     /// The person as the renderer takes it.
@@ -96,13 +121,19 @@ impl Person {
     }
 
     fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
-        let (_tone, _names) = (tone(choice.skin_tone)?, core_joint_names(choice.joint_names));
-        Err(Failure::failed(NOT_WIRED))
+        let options = SceneOptions {
+            lod: Lod::try_from(choice.lod)?,
+            influences: choice.influences,
+            joint_names: core_joint_names(choice.joint_names),
+            skin_tone: tone(choice.skin_tone)?,
+            ..SceneOptions::default()
+        };
+        Ok(Scene::from_body(&self.0, &options)?)
     }
 
     /// What is printed.
     pub(crate) fn summary(&self) -> Summary {
-        let report = &self.report;
+        let report = self.0.report();
         let obtained = |name| report.measures.iter().find(|m| m.name == name).map_or(0.0, |m| m.obtained);
         Summary {
             sex: report.sex.name(),
@@ -118,9 +149,20 @@ impl Person {
     }
 }
 
-/// All measures of a file's body.
-pub(crate) fn measure_file(_model: &Model, _path: &Path) -> Result<Measured> {
-    Err(Failure::failed(NOT_WIRED))
+/// All measures of a file's body: its first mesh, at any level of detail.
+pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
+    let in_file = |failure: Failure| Failure::failed(format!("{}: {failure}", path.display()));
+    let scene = anthronet::import::open(path)?;
+    let mesh = scene.meshes.first().ok_or_else(|| in_file(Failure::failed("has no mesh")))?;
+    let points = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
+    let surface = level0(&model.0, points).map_err(in_file)?;
+    let at = |v: u32| surface.get(v as usize).copied().unwrap_or_default();
+    let values = model.0.definitions().read_all(at);
+    let volume = enclosed_volume(at, &model.0.character().subdivision().refined().quads);
+    let stature = MeasureId::from_name("height").map_or(0.0, |id| values[id.index()]);
+    let Mass { volume_m3, mass_kg, bmi } = Mass::new(volume, stature);
+    let named = MeasureId::all().zip(values).map(|(id, value)| NamedValue { name: id.name(), value });
+    Ok(Measured { measures: named.collect(), mass_kg, volume_m3, bmi })
 }
 
 /// A character file as the renderer takes it, moved so that its lowest point stands on the ground.
@@ -225,7 +267,7 @@ fn tone(text: Option<&str>) -> Result<SkinTone> {
 }
 
 /// Mean, deviation and correlation of height and waist. `covariance` is (36, 36), row by row.
-pub(crate) fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
+fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
     let index = |name| MeasureId::from_name(name).map_or(0, MeasureId::index);
     let (h, w) = (index("height"), index("waist_circumference"));
     let cov = |a: usize, b: usize| covariance.get(a * mean.len() + b).copied().unwrap_or(0.0);
@@ -236,7 +278,7 @@ pub(crate) fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
 }
 
 /// A neutral scene as the renderer takes it: materials by name, quads split.
-pub(crate) fn figure_from_scene(scene: &Scene) -> Result<Figure> {
+fn figure_from_scene(scene: &Scene) -> Result<Figure> {
     let material = |mesh: &SceneMesh| scene.materials.get(mesh.material as usize);
     let kind = |mesh: &SceneMesh| {
         let by_material = material(mesh).map_or(Material::Skin, |m| Material::from_name(&m.name));

@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
 /// How the file is to be.
 pub(crate) struct FileChoice<'a> {
     pub(crate) lod: u8,
-    pub(crate) influences: u8,
+    pub(crate) influences: usize,
     pub(crate) joint_names: JointNamesChoice,
     pub(crate) skin_tone: Option<&'a str>,
 }
@@ -104,8 +104,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     };
     person.write(&arguments.output, &choice)?;
     match &arguments.report {
-        Some(path) if path == Path::new("-") => print(&(person.report_json()? + "\n"))?,
-        Some(path) => backend::write(path, (person.report_json()? + "\n").as_bytes())?,
+        Some(path) if path == Path::new("-") => print(&(person.report_json() + "\n"))?,
+        Some(path) => backend::write(path, (person.report_json() + "\n").as_bytes())?,
         None => {}
     }
 

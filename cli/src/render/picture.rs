@@ -413,9 +413,9 @@ impl Picture {
     }
 }
 
-/// 0 at a tile's left and right edge, 1 from an eighth of its width on: shadows end before the neighbour begins.
+/// 0 at a tile's left and right edge, 1 from a quarter of its width on: shadows end before the neighbour begins.
 fn away_from_sides(x: usize, width: usize) -> f32 {
-    let t = (8.0 * (x.min(width - 1 - x) as f32 + 0.5) / width as f32).min(1.0);
+    let t = (4.0 * (x.min(width - 1 - x) as f32 + 0.5) / width as f32).min(1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
