@@ -15,8 +15,8 @@ use crate::failure::{Failure, Result};
 use crate::generate::{FileChoice, JointNamesChoice};
 use crate::measure::{Measured, NamedValue};
 use crate::render::{Figure, Material, Part};
-use crate::surface::level0;
 use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
+use crate::surface::level0;
 
 /// The generator with its prior and definitions.
 pub(crate) struct Model(anthronet::model::Model);
@@ -97,7 +97,7 @@ impl Model {
     }
 
     /// What is usual for a sex, from the prior.
-    fn usual(&self, sex: SexChoice) -> Usual {
+    pub(crate) fn usual(&self, sex: SexChoice) -> Usual {
         let prior = self.0.prior().of(core_sex(sex));
         usual(prior.mean(), prior.covariance())
     }
