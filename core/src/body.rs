@@ -46,8 +46,13 @@ impl Model {
         }
         let (a, b) = (self.solve(from)?, self.solve(to)?);
         let between = |x: f64, y: f64| x + (y - x) * t;
-        let start: Vec<f64> =
-            a.outcome.coefficients.iter().zip(&b.outcome.coefficients).map(|(x, y)| between(*x, *y)).collect();
+        let start: Vec<f64> = a
+            .outcome
+            .coefficients
+            .iter()
+            .zip(&b.outcome.coefficients)
+            .map(|(x, y)| between(*x, *y))
+            .collect();
         let measures: [Option<f64>; 36] =
             std::array::from_fn(|i| Some(between(a.outcome.obtained[i], b.outcome.obtained[i])));
         let outcome: SolveOutcome = self.solve_from(&start, &measures)?;

@@ -2,22 +2,25 @@
 //!
 //! `cargo run --release -p anthronet-trainer --example generator_speed -- [key=value]…`, where the keys are those
 //! of the configuration (JSON values) and `count`, `epochs`, `batch`, `rate`, `warmup`, `freeze`, `threads`,
-//! `paper`.
+//! `paper`, and `data` (a data set file of the trainer in place of the synthetic bodies).
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anthronet::model::config::GeneratorConfig;
-use anthronet_trainer::generator::{ShapeStatistics, TrainingOptions, synthetic_set, train};
+use anthronet_trainer::generator::{ShapeStatistics, TrainingOptions, TrainingSet, synthetic_set, train};
+use safetensors::SafeTensors;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut options = TrainingOptions { epochs: 3, quiet: true, ..TrainingOptions::default() };
     let mut count = 20_000;
+    let mut data = None;
     let mut json: BTreeMap<String, serde_json::Value> = BTreeMap::new();
     for argument in std::env::args().skip(1) {
         let (key, value) = argument.split_once('=').ok_or("expected key=value")?;
         match key {
             "count" => count = value.parse()?,
+            "data" => data = Some(std::fs::read(value)?),
             "epochs" => options.epochs = value.parse()?,
             "batch" => options.batch = value.parse()?,
             "rate" => options.learning_rate = value.parse()?,
@@ -35,7 +38,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let k = config.coefficients;
     let statistics = ShapeStatistics { vertex_count: 13_380, coefficient_std: vec![1.0; k], laplacian: None };
-    let (training, validation) = (synthetic_set(count, k, 1), synthetic_set(2000, k, 2));
+    let (training, validation) = match data {
+        Some(bytes) => {
+            let file = SafeTensors::deserialize(&bytes)?;
+            let (training, validation) =
+                (read(&file, "train", k, count)?, read(&file, "validation", k, 2000)?);
+            count = training.count;
+            (training, validation)
+        }
+        None => (synthetic_set(count, k, 1), synthetic_set(2000, k, 2)),
+    };
     options.out_dir = std::env::temp_dir().join(format!("generator_speed_{}", std::process::id()));
     let start = Instant::now();
     let out = train(&training, &validation, &statistics, &config, &options)?;
@@ -48,4 +60,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("latent std {:.2?}", out.latent_std);
     println!("{seconds:.1} s, {:.0} bodies/s", (count * options.epochs) as f64 / seconds);
     Ok(())
+}
+
+/// At most `most` bodies of one split of a data set.
+fn read(
+    file: &SafeTensors<'_>,
+    split: &str,
+    k: usize,
+    most: usize,
+) -> Result<TrainingSet, Box<dyn std::error::Error>> {
+    let get = |name: &str| file.tensor(&format!("{split}.{name}"));
+    let mut sex = get("sex")?.data().to_vec();
+    sex.truncate(most);
+    let count = sex.len();
+    let mut coefficients: Vec<f32> = bytemuck::pod_collect_to_vec(get("coefficients")?.data());
+    let mut measures: Vec<f32> = bytemuck::pod_collect_to_vec(get("measures")?.data());
+    coefficients.truncate(count * k);
+    measures.truncate(count * 36);
+    Ok(TrainingSet { count, k, coefficients, measures, sex })
 }

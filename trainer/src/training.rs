@@ -3,8 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use anthronet::condition::fourier::normal;
-use candle_core::backprop::GradStore;
-use candle_core::{CpuStorage, InplaceOp2, Layout, Var, bail};
+use candle_core::{CpuStorage, InplaceOp2, Layout, Tensor, Var, bail};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -58,8 +57,7 @@ impl Adam {
     /// When the variables are not those of [`Adam::new`], or candle fails.
     pub fn step<'a>(
         &mut self,
-        variables: impl IntoIterator<Item = &'a Var>,
-        gradients: &GradStore,
+        variables: impl IntoIterator<Item = (&'a Var, &'a Tensor)>,
         rate: f64,
     ) -> Result<()> {
         self.steps += 1;
@@ -67,10 +65,9 @@ impl Adam {
         let correct_1 = 1.0 - libm::pow(f64::from(Self::BETA_1), t);
         let correct_2 = 1.0 - libm::pow(f64::from(Self::BETA_2), t);
         let mut moments = self.moments.iter();
-        for variable in variables {
+        for (variable, gradient) in variables {
             let moments =
                 moments.next().ok_or_else(|| Error::Invalid("more variables than Adam has".into()))?;
-            let Some(gradient) = gradients.get(variable.as_tensor()) else { continue };
             let update = Update {
                 moments,
                 rate: (rate / correct_1) as f32,
@@ -179,7 +176,7 @@ impl EpochRandom {
 
 #[cfg(test)]
 mod tests {
-    use candle_core::{Device, Tensor};
+    use candle_core::Device;
 
     use super::*;
 
@@ -191,7 +188,8 @@ mod tests {
         let schedule = OneCycle { peak: 0.3, warmup: 0.2, steps: 300 };
         for step in 0..300 {
             let loss = (x.as_tensor() - &goal).unwrap().sqr().unwrap().sum_all().unwrap();
-            adam.step([&x], &loss.backward().unwrap(), schedule.rate(step)).unwrap();
+            let gradients = loss.backward().unwrap();
+            adam.step([(&x, gradients.get(&x).unwrap())], schedule.rate(step)).unwrap();
         }
         let found = x.to_vec1::<f32>().unwrap();
         assert!((found[0] - 1.0).abs() < 1e-3 && (found[1] - 5.0).abs() < 1e-3, "{found:?}");

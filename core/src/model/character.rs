@@ -143,9 +143,9 @@ impl Character {
     /// # Errors
     /// None for a character that [`Character::new`] accepted.
     pub fn body_weights(&self) -> Result<&SkinWeights> {
-        let made = self.refined_weights.get_or_init(|| {
-            self.weights.rows(0..self.cage.vertex_count).refine(&self.subdivision)
-        });
+        let made = self
+            .refined_weights
+            .get_or_init(|| self.weights.rows(0..self.cage.vertex_count).refine(&self.subdivision));
         made.as_ref().map_err(|e| Error::invalid("skin weights", e.to_string()))
     }
 }

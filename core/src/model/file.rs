@@ -106,7 +106,12 @@ impl ModelParts {
         arrays.topology("cage", &self.cage);
         for (level, mesh) in ["lod2", "lod3"].iter().zip(&self.reduced) {
             arrays.add(&format!("{level}.vertices"), Dtype::U32, vec![mesh.vertices.len()], &mesh.vertices);
-            arrays.add(&format!("{level}.triangles"), Dtype::U32, vec![mesh.triangles.len(), 3], &mesh.triangles);
+            arrays.add(
+                &format!("{level}.triangles"),
+                Dtype::U32,
+                vec![mesh.triangles.len(), 3],
+                &mesh.triangles,
+            );
             arrays.add(
                 &format!("{level}.triangle_uvs"),
                 Dtype::U32,
@@ -169,11 +174,9 @@ impl ModelParts {
         let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
         let (_, header) = SafeTensors::read_metadata(bytes)
             .map_err(|e| fail(format!("not a whole safetensors file: {e}")))?;
-        let text = header
-            .metadata()
-            .as_ref()
-            .and_then(|m| m.get(METADATA_KEY))
-            .ok_or_else(|| fail("expected metadata `anthronet`, got none: not a model of AnthroNet".into()))?;
+        let text = header.metadata().as_ref().and_then(|m| m.get(METADATA_KEY)).ok_or_else(|| {
+            fail("expected metadata `anthronet`, got none: not a model of AnthroNet".into())
+        })?;
         let version: serde_json::Value =
             serde_json::from_str(text).map_err(|e| fail(format!("metadata: {e}")))?;
         if version["format_version"] != FORMAT_VERSION {
@@ -349,7 +352,11 @@ impl Reader<'_> {
     }
 
     /// The array's content as a list of `T`, whose size must divide it.
-    fn get<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(&self, name: &str, dtype: Dtype) -> Result<Vec<T>> {
+    fn get<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+        &self,
+        name: &str,
+        dtype: Dtype,
+    ) -> Result<Vec<T>> {
         let view = self.file.tensor(name).map_err(|e| self.fail(format!("array `{name}`: {e}")))?;
         if view.dtype() != dtype || view.data().len() % size_of::<T>() != 0 {
             return Err(self.fail(format!(

@@ -86,8 +86,11 @@ impl Model {
     /// [`Error::Io`] when it cannot be read, [`Error::Model`] when it is no model that fits this library.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path)
-            .map_err(|source| Error::Io { path: path.to_owned(), action: "read", source })?;
+        let bytes = std::fs::read(path).map_err(|source| Error::Io {
+            path: path.to_owned(),
+            action: "read",
+            source,
+        })?;
         Self::read(&bytes, &path.display().to_string())
     }
 
@@ -141,7 +144,10 @@ impl Model {
             return Err(fail("joint arrays are not finite".into()));
         }
         if parts.config.coefficients != k {
-            return Err(fail(format!("the network has {} outputs for {k} components", parts.config.coefficients)));
+            return Err(fail(format!(
+                "the network has {} outputs for {k} components",
+                parts.config.coefficients
+            )));
         }
         let standard = |i: usize| -> Result<Measurements> {
             let data = &parts.standardisation[i];

@@ -122,7 +122,8 @@ impl MeasuredSpace {
                 at[place as usize][*axis] = self.coordinate(place, *axis, c);
             }
             let share = 1.0 / definition.points.len() as f64;
-            let level: f64 = definition.points.iter().map(|p| p.place(|v| at[v as usize])[*axis] * share).sum();
+            let level: f64 =
+                definition.points.iter().map(|p| p.place(|v| at[v as usize])[*axis] * share).sum();
             let mut cut: Vec<u32> = definition
                 .edges
                 .iter()
@@ -184,7 +185,8 @@ fn dot(row: &[f32], c: &[f64]) -> f64 {
             lanes[k] += f64::from(r[k]) * c[k];
         }
     }
-    let mut sum = ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
+    let mut sum =
+        ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
     for (r, c) in row_rest.iter().zip(c_rest) {
         sum += f64::from(*r) * c;
     }

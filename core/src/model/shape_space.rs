@@ -144,7 +144,8 @@ impl ShapeSpace {
                     delta.iter().zip(&self.fine[k * n..]).map(|(d, &x)| d * f64::from(x)).sum::<f64>()
                 } else {
                     let k = k - fine;
-                    let sum: f64 = delta.iter().zip(&self.coarse[k * n..]).map(|(d, &x)| d * f64::from(x)).sum();
+                    let sum: f64 =
+                        delta.iter().zip(&self.coarse[k * n..]).map(|(d, &x)| d * f64::from(x)).sum();
                     sum * f64::from(self.scales[k])
                 }
             })

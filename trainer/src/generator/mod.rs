@@ -4,7 +4,8 @@
 //! [`train`] fits the linear skip in closed form, trains the network on what it leaves over, and returns the
 //! arrays that `anthronet::model::network` runs.
 
-mod data;
+mod backward;
+pub(crate) mod data;
 mod export;
 pub(crate) mod network;
 pub(crate) mod ops;

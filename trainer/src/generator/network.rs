@@ -12,7 +12,8 @@ use candle_core::{Device, Result, Tensor, Var};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::data::{Batch, Frame};
+use super::backward::Trace;
+use super::data::Frame;
 use super::ops::{EPSILON, Normalise, ScaleShiftPrelu};
 
 /// How batch norm behaves.
@@ -67,41 +68,46 @@ impl Block {
         })
     }
 
-    fn forward(&mut self, x: &Tensor, norm: Norm) -> Result<Tensor> {
-        let x = x.matmul(&self.weight)?;
-        let (x, scale, shift) = match norm {
+    /// The block's output, and what its backward pass needs.
+    pub(crate) fn forward(&mut self, x: &Tensor, norm: Norm) -> Result<(Tensor, Trace)> {
+        let linear = x.matmul(&self.weight)?;
+        let (unit, scale, shift, batch) = match norm {
             Norm::Batch(momentum) => {
                 let op = Normalise::default();
-                let statistics = op.statistics.clone();
-                let rows = x.dim(0)? as f32;
-                let unit = x.apply_op1(op)?;
-                let batch = statistics.lock().unwrap_or_else(PoisonError::into_inner);
-                let unbiased = rows / (rows - 1.0).max(1.0);
-                for (r, b) in self.running_mean.iter_mut().zip(&batch.mean) {
-                    *r += momentum * (b - *r);
-                }
-                for (r, b) in self.running_variance.iter_mut().zip(&batch.variance) {
-                    *r += momentum * (b * unbiased - *r);
-                }
-                drop(batch);
-                (unit, self.norm_scale.as_tensor().clone(), self.norm_shift.as_tensor().clone())
+                let copy = Normalise { statistics: op.statistics.clone() };
+                let unit = linear.apply_op1(op)?;
+                self.follow(&copy, x.dim(0)?, momentum);
+                (unit, self.norm_scale.as_tensor().clone(), self.norm_shift.as_tensor().clone(), Some(copy))
             }
             Norm::Running => {
-                let (inverse, mean) = self.running()?;
-                let scale = (self.norm_scale.as_tensor() * inverse)?;
+                let (inverse, mean) = self.running();
+                let size = mean.len();
+                let scale = (self.norm_scale.as_tensor() * Tensor::from_vec(inverse, size, &Device::Cpu)?)?;
+                let mean = Tensor::from_slice(mean, size, &Device::Cpu)?;
                 let shift = (self.norm_shift.as_tensor() - (&scale * mean)?)?;
-                (x, scale, shift)
+                (linear, scale, shift, None)
             }
         };
-        x.apply_op2(&Tensor::stack(&[&scale, &shift, self.slope.as_tensor()], 0)?, ScaleShiftPrelu)
+        let parameters = Tensor::stack(&[&scale, &shift, self.slope.as_tensor()], 0)?;
+        let out = unit.apply_op2(&parameters, ScaleShiftPrelu)?;
+        Ok((out, Trace::new(x, unit, parameters, batch)))
+    }
+
+    /// Blends the statistics of a batch into the running ones.
+    fn follow(&mut self, op: &Normalise, rows: usize, momentum: f32) {
+        let batch = op.statistics.lock().unwrap_or_else(PoisonError::into_inner);
+        let unbiased = rows as f32 / (rows as f32 - 1.0).max(1.0);
+        for (r, b) in self.running_mean.iter_mut().zip(&batch.mean) {
+            *r += momentum * (b - *r);
+        }
+        for (r, b) in self.running_variance.iter_mut().zip(&batch.variance) {
+            *r += momentum * (b * unbiased - *r);
+        }
     }
 
     /// 1/σ and μ of the running statistics.
-    fn running(&self) -> Result<(Tensor, Tensor)> {
-        let inverse: Vec<f32> = self.running_variance.iter().map(|v| 1.0 / (v + EPSILON).sqrt()).collect();
-        let mean = self.running_mean.clone();
-        let size = mean.len();
-        Ok((Tensor::from_vec(inverse, size, &Device::Cpu)?, Tensor::from_vec(mean, size, &Device::Cpu)?))
+    pub(crate) fn running(&self) -> (Vec<f32>, &[f32]) {
+        (self.running_variance.iter().map(|v| 1.0 / (v + EPSILON).sqrt()).collect(), &self.running_mean)
     }
 }
 
@@ -115,7 +121,7 @@ impl Dense {
         })
     }
 
-    fn forward(&self, x: &Tensor) -> Result<Tensor> {
+    pub(crate) fn forward(&self, x: &Tensor) -> Result<Tensor> {
         x.matmul(&self.weight)?.broadcast_add(&self.bias)
     }
 }
@@ -135,6 +141,7 @@ pub(crate) struct Network {
 }
 
 /// What a forward pass gives, `(N, …)`.
+#[cfg(test)]
 pub(crate) struct Forward {
     pub(crate) mean: Tensor,
     pub(crate) log_variance: Tensor,
@@ -213,7 +220,7 @@ impl Network {
 
     /// The features h_a of conditions.
     pub(crate) fn features(&mut self, conditions: &Tensor, norm: Norm) -> Result<Tensor> {
-        self.condition.forward(conditions, norm) // (N, 128 w)
+        Ok(self.condition.forward(conditions, norm)?.0) // (N, 128 w)
     }
 
     /// Mean and log variance of z.
@@ -223,10 +230,10 @@ impl Network {
         features: &Tensor,
         norm: Norm,
     ) -> Result<(Tensor, Tensor)> {
-        let h = self.mesh.forward(residuals, norm)?; // (N, 128 w)
+        let h = self.mesh.forward(residuals, norm)?.0; // (N, 128 w)
         let h = Tensor::cat(&[&h, features], 1)?; // (N, 256 w)
-        let h = self.fusion[0].forward(&h, norm)?; // (N, 128 w)
-        let h = self.fusion[1].forward(&h, norm)?; // (N, 64 w)
+        let h = self.fusion[0].forward(&h, norm)?.0; // (N, 128 w)
+        let h = self.fusion[1].forward(&h, norm)?.0; // (N, 64 w)
         let mut mean = self.latent_mean.forward(&h)?; // (N, latent)
         if let Some((mesh, _)) = &self.latent_skip {
             mean = (mean + residuals.matmul(mesh)?)?;
@@ -238,7 +245,7 @@ impl Network {
     pub(crate) fn decode(&mut self, z: &Tensor, features: &Tensor, norm: Norm) -> Result<Tensor> {
         let mut x = Tensor::cat(&[z, features], 1)?; // (N, latent + 128 w)
         for block in &mut self.decoder {
-            x = block.forward(&x, norm)?; // (N, 64 w), (N, 128 w), (N, 256 w)
+            x = block.forward(&x, norm)?.0; // (N, 64 w), (N, 128 w), (N, 256 w)
         }
         let output = self.output.forward(&x)?; // (N, K)
         match &self.latent_skip {
@@ -247,8 +254,14 @@ impl Network {
         }
     }
 
-    /// One pass with z = μ + σ ε, where ε is `(N, latent)`, or z = μ.
-    pub(crate) fn forward(&mut self, batch: &Batch, noise: Option<&Tensor>, norm: Norm) -> Result<Forward> {
+    /// One pass that candle can differentiate, with z = μ + σ ε, where ε is `(N, latent)`, or z = μ.
+    #[cfg(test)]
+    pub(crate) fn forward(
+        &mut self,
+        batch: &super::data::Batch,
+        noise: Option<&Tensor>,
+        norm: Norm,
+    ) -> Result<Forward> {
         let features = self.features(&batch.conditions, norm)?;
         let (mean, log_variance) = self.encode(&batch.residuals, &features, norm)?;
         let z = match noise {

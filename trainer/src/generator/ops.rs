@@ -36,6 +36,17 @@ fn with_values<R>(tensor: &Tensor, f: impl FnOnce(&[f32]) -> R) -> Result<R> {
     }
 }
 
+/// `f` of every pair of numbers of two tensors of one shape, on the caller's thread.
+pub(crate) fn combine(a: &Tensor, b: &Tensor, f: impl Fn(f32, f32) -> f32) -> Result<Tensor> {
+    if a.shape() != b.shape() {
+        bail!("expected two tensors of one shape, got {:?} and {:?}", a.shape(), b.shape());
+    }
+    let out = with_values(a, |a| {
+        with_values(b, |b| a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect::<Vec<f32>>())
+    })??;
+    Tensor::from_vec(out, a.shape(), &Device::Cpu)
+}
+
 fn rows_and_columns(layout: &Layout) -> Result<(usize, usize)> {
     layout.shape().dims2()
 }

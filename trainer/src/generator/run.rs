@@ -10,7 +10,7 @@ use super::export::export;
 use super::network::{Network, Norm};
 use super::{Metrics, ShapeStatistics, TrainedGenerator, TrainingOptions, TrainingSet};
 use crate::checkpoint::{Checkpoint, Identity};
-use crate::losses::{Laplacian, Reconstruction, divergence};
+use crate::losses::{Losses, Parts};
 use crate::progress::Progress;
 use crate::training::{Adam, EpochRandom, OneCycle};
 use crate::{Error, Result};
@@ -98,8 +98,7 @@ struct Run<'a> {
     frame: Frame,
     training: Prepared,
     validation: Prepared,
-    reconstruction: Reconstruction,
-    laplacian: Option<Laplacian>,
+    losses: Losses,
     network: Network,
     adam: Adam,
     schedule: OneCycle,
@@ -117,9 +116,8 @@ impl<'a> Run<'a> {
         options: &'a TrainingOptions,
     ) -> Result<Self> {
         let frame = Frame::fit(training, config)?;
-        let laplacian = statistics.laplacian.as_ref().filter(|_| config.gamma > 0.0);
-        let laplacian =
-            laplacian.map(|f| Laplacian::new(&f.matrix, &f.vector, f.constant, &frame.scale)).transpose()?;
+        let losses =
+            Losses::new(config, &frame.scale, statistics.vertex_count, statistics.laplacian.as_ref())?;
         let network = Network::new(config, &frame, options.seed)?;
         let steps = options.epochs * training.count.div_ceil(options.batch);
         let sizes: Vec<usize> = network.variables().iter().map(|(_, v)| v.elem_count()).collect();
@@ -127,10 +125,9 @@ impl<'a> Run<'a> {
             config,
             options,
             vertex_count: statistics.vertex_count,
-            training: frame.prepare(training, laplacian.is_some()),
+            training: frame.prepare(training, losses.needs_offsets()),
             validation: frame.prepare(validation, true),
-            reconstruction: Reconstruction::new(&frame.scale, statistics.vertex_count)?,
-            laplacian,
+            losses,
             network,
             adam: Adam::new(sizes),
             schedule: OneCycle { peak: options.learning_rate, warmup: options.warmup, steps },
@@ -197,8 +194,8 @@ impl<'a> Run<'a> {
                 continue;
             }
             let noise = random.normals(rows.len() * self.config.latent);
-            let losses = self.step(rows, noise, norm)?;
-            for (s, l) in sums.iter_mut().zip(losses) {
+            let parts = self.step(rows, noise, norm)?;
+            for (s, l) in sums.iter_mut().zip([parts.reconstruction, parts.divergence, parts.laplacian]) {
                 *s += l;
             }
             batches += 1.0;
@@ -206,28 +203,18 @@ impl<'a> Run<'a> {
         Ok(sums.map(|s| s / batches))
     }
 
-    fn step(&mut self, rows: &[usize], noise: Vec<f32>, norm: Norm) -> Result<[f64; 3]> {
+    fn step(&mut self, rows: &[usize], noise: Vec<f32>, norm: Norm) -> Result<Parts> {
         let batch = self.training.batch(rows)?;
         let noise = Tensor::from_vec(noise, (rows.len(), self.config.latent), &Device::Cpu)?;
-        let forward = self.network.forward(&batch, Some(&noise), norm)?;
-        let reconstruction = self.reconstruction.loss(&forward.output, &batch.residuals)?;
-        let divergence = divergence(&forward.mean, &forward.log_variance)?;
-        let mut loss = ((&reconstruction * self.config.alpha)? + (&divergence * self.config.beta)?)?;
-        let mut parts = [scalar(&reconstruction)?, scalar(&divergence)?, 0.0];
-        if let (Some(laplacian), Some(offsets)) = (&self.laplacian, &batch.offsets) {
-            let term = laplacian.loss(&forward.output, offsets)?;
-            parts[2] = scalar(&term)?;
-            loss = (loss + (term * self.config.gamma)?)?;
-        }
-        if parts.iter().any(|p| !p.is_finite()) {
+        let (parts, gradients) = self.network.gradients(&batch, &noise, norm, &self.losses)?;
+        if !self.losses.weighted(&parts).is_finite() {
             let (epoch, rate) = (self.epoch, self.options.learning_rate);
             let message = format!("the loss is not finite in epoch {epoch}: try a rate below {rate}");
             return Err(Error::Invalid(message));
         }
-        let gradients = loss.backward()?;
         let rate = self.schedule.rate(self.adam.steps() as usize);
         let variables = self.network.variables();
-        self.adam.step(variables.iter().map(|(_, v)| *v), &gradients, rate)?;
+        self.adam.step(variables.iter().map(|(_, v)| *v).zip(&gradients), rate)?;
         Ok(parts)
     }
 
@@ -246,7 +233,7 @@ impl<'a> Run<'a> {
             let noise = Tensor::from_vec(random.normals(rows.len() * latent), shape, &Device::Cpu)?;
             let features = self.network.features(&batch.conditions, Norm::Running)?;
             let (mean, log_variance) = self.network.encode(&batch.residuals, &features, Norm::Running)?;
-            divergence_sum += scalar(&divergence(&mean, &log_variance)?)? * rows.len() as f64;
+            divergence_sum += self.losses.latent_gradient(&mean, &log_variance)?.0 * rows.len() as f64;
             let z = (&mean + ((&log_variance * 0.5)?.exp()? * noise)?)?;
             let mut outputs = Vec::new();
             for z in [&mean, &mean.zeros_like()?, &z] {
@@ -307,8 +294,4 @@ impl<'a> Run<'a> {
         let path = self.options.out_dir.join(CHECKPOINT);
         Checkpoint::of(&self.network, &self.adam, self.epoch, &self.history)?.write(&path, &self.identity)
     }
-}
-
-fn scalar(tensor: &Tensor) -> Result<f64> {
-    Ok(f64::from(tensor.to_scalar::<f32>()?))
 }
