@@ -4,7 +4,6 @@
 //! bodies. Accessories and joints follow by least squares on the same coefficients.
 
 use faer::linalg::solvers::Solve;
-use faer::prelude::*;
 use faer::{Mat, Side};
 use glam::Vec3;
 use rand_chacha::ChaCha8Rng;
@@ -12,7 +11,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 use crate::assets::CAGE_VERTICES;
-use crate::corpus::{Corpus, Split, cage_of};
+use crate::corpus::{Corpus, Split};
 use crate::{Error, Result};
 
 /// Number of components. 300 leave 0.06 mm; measures need as many (100 cost 0.7 mm per measure).

@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 
 use crate::Result;
 use crate::assets::{Assets, CAGE_VERTICES, Wheel};
+use crate::evaluation::paper_row;
 use crate::sampling::Sampler;
 use crate::tpose::TPose;
 
@@ -138,50 +139,11 @@ impl<'a> Gauge<'a> {
 /// The limits are the paper's extremes ("statistics-anthro"), widened by a tenth of each measure's range, and
 /// never narrower than what a factor of 0.82–1.22 leaves; arms below 0.165 m of girth, for one, are nobody's.
 pub fn plausible(measures: &Measurements) -> bool {
-    measures.iter().zip(LIMITS.iter().cycle_sides()).all(|(&m, [low, high])| {
+    measures.iter().enumerate().all(|(i, &m)| {
+        let [_, _, low, high] = paper_row(i);
         let slack = 0.1 * (high - low);
         m >= (low - slack).min(low * 0.82) && m <= (high + slack).max(high * 1.22)
     })
-}
-
-/// Minimum and maximum of the 24 rows of the paper's table, in the order of the measures.
-const LIMITS: [[f64; 2]; 24] = [
-    [0.55, 1.250],
-    [0.76, 1.522],
-    [0.72, 1.368],
-    [1.49, 1.991],
-    [0.248, 0.335],
-    [0.310, 0.425],
-    [0.256, 0.394],
-    [0.521, 0.554],
-    [0.320, 0.541],
-    [0.232, 0.251],
-    [0.056, 0.115],
-    [0.078, 0.141],
-    [0.149, 0.197],
-    [0.165, 0.409],
-    [0.270, 0.395],
-    [0.184, 0.367],
-    [0.197, 0.300],
-    [0.395, 0.733],
-    [0.415, 0.590],
-    [0.248, 0.458],
-    [0.348, 0.504],
-    [0.083, 0.115],
-    [0.169, 0.225],
-    [0.229, 0.306],
-];
-
-trait CycleSides<'a> {
-    fn cycle_sides(self) -> impl Iterator<Item = [f64; 2]>;
-}
-
-impl<'a, I: Iterator<Item = &'a [f64; 2]> + Clone> CycleSides<'a> for I {
-    /// Central rows once, sided rows twice.
-    fn cycle_sides(self) -> impl Iterator<Item = [f64; 2]> {
-        let sided = self.clone().skip(12);
-        self.chain(sided).copied()
-    }
 }
 
 /// The cage's part of a body's points.

@@ -1,19 +1,24 @@
 //! Makes the model of `anthronet`: source bodies (CC0), sampling, data set, basis, networks, evaluation.
 //!
 //! The tour, in the order in which data flows: [`assets`] reads the MakeHuman data, [`sampling`] draws people,
-//! [`tpose`] straightens their arms, [`dataset`] measures a hundred thousand of them in the coefficients of
-//! [`basis`].
+//! [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] lays the measures on their mean,
+//! [`dataset`] measures a hundred thousand of them in the coefficients of [`basis`], [`generator`] trains the
+//! network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it; [`commands`] ties them together.
 
 pub mod assets;
 pub mod basis;
 mod checkpoint;
+pub mod commands;
 pub mod corpus;
 pub mod dataset;
 mod error;
+pub mod evaluation;
 pub mod generator;
 pub mod landmarks;
 mod losses;
+pub mod pack;
 mod progress;
+pub mod reduce;
 pub mod sampling;
 pub mod tpose;
 pub mod training;

@@ -1,0 +1,302 @@
+//! Scores on held-out bodies, and the statistics of the sampled ones beside the paper's.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anthronet::condition::Request;
+use anthronet::export::{Scene, SceneOptions, gltf::to_glb};
+use anthronet::measure::{MEASURE_COUNT, MeasureId, Measurements};
+use anthronet::model::Model;
+use anthronet::random::Random;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::corpus::{Corpus, Gauge, cage_of};
+use crate::dataset::Bodies;
+use crate::{Error, Result};
+
+/// Scores of the generator, millimetres unless said.
+#[derive(Clone, Debug, Serialize)]
+pub struct GeneratorScores {
+    /// Held-out bodies.
+    pub bodies: usize,
+    /// Mean vertex distance on level 0, z = encoder mean.
+    pub p2p_mm: f64,
+    /// The same with z = 0: what the measures leave open.
+    pub p2p_z0_mm: f64,
+    /// Mean vertex distance of the body's own coefficients: what the shape space cannot say.
+    pub p2p_shape_space_mm: f64,
+    /// Mean absolute error of each measure before the solve, z = encoder mean; `mean` is over all.
+    pub measures_mm: BTreeMap<String, f64>,
+    /// Requests, all measures given or a random part of them, met and measured again from the written .glb.
+    pub requests: usize,
+    /// Requests among them that were refused.
+    pub refused: usize,
+    /// Worst given measure of all those.
+    pub after_solve_max_mm: f64,
+    /// Mean of each request's worst.
+    pub after_solve_mean_of_worst_mm: f64,
+    /// Solve steps, mean.
+    pub solve_steps: f64,
+    /// Mean absolute error of measures that were not given, by what was given besides the sex.
+    pub fill_mm: BTreeMap<String, f64>,
+    /// Share of measures that were not given inside their 90 % interval, by what was given.
+    pub fill_coverage90: BTreeMap<String, f64>,
+}
+
+struct OfBody {
+    p2p: f64,
+    p2p_z0: f64,
+    p2p_space: f64,
+    errors: Measurements,
+    // Worst given measure, steps; nothing when refused.
+    solved: Option<(f64, usize)>,
+    fill: Vec<(f64, f64)>,
+}
+
+/// What is given in the partial requests that the prior is scored on.
+const PARTIAL: [(&str, &[&str]); 4] = [
+    ("sex", &[]),
+    ("height", &["height"]),
+    ("height, waist", &["height", "waist_circumference"]),
+    (
+        "height, waist, chest, hip",
+        &["height", "waist_circumference", "chest_circumference", "hip_circumference"],
+    ),
+];
+
+/// Scores a model on held-out bodies.
+///
+/// # Errors
+/// When a body cannot be generated for another reason than being refused.
+pub fn generator(
+    model: &Model,
+    corpus: &Corpus,
+    held_out: &Bodies,
+    count: usize,
+    progress: &(dyn Fn() + Sync),
+) -> Result<GeneratorScores> {
+    let gauge = Gauge::new(model.definitions(), &corpus.subdivision);
+    let count = count.min(held_out.len());
+    let of_bodies = (0..count)
+        .into_par_iter()
+        .map(|i| {
+            let result = score(model, corpus, &gauge, held_out.numbers[i]);
+            progress();
+            result
+        })
+        .collect::<Result<Vec<OfBody>>>()?;
+    let n = count as f64;
+    let mean = |of: &dyn Fn(&OfBody) -> f64| of_bodies.iter().map(of).sum::<f64>() / n;
+    let mut measures_mm = BTreeMap::new();
+    let mut total = 0.0;
+    for id in MeasureId::all() {
+        let error = mean(&|b| b.errors[id.index()]);
+        total += error / MEASURE_COUNT as f64;
+        measures_mm.insert(id.name().to_owned(), error);
+    }
+    measures_mm.insert("mean".into(), total);
+    let solved: Vec<(f64, usize)> = of_bodies.iter().filter_map(|b| b.solved).collect();
+    let met = solved.len().max(1) as f64;
+    let fill = |k: usize, what: &dyn Fn(&(f64, f64)) -> f64| mean(&|b| what(&b.fill[k]));
+    Ok(GeneratorScores {
+        bodies: count,
+        p2p_mm: mean(&|b| b.p2p),
+        p2p_z0_mm: mean(&|b| b.p2p_z0),
+        p2p_shape_space_mm: mean(&|b| b.p2p_space),
+        measures_mm,
+        requests: count,
+        refused: count - solved.len(),
+        after_solve_max_mm: solved.iter().map(|s| s.0).fold(0.0, f64::max),
+        after_solve_mean_of_worst_mm: solved.iter().map(|s| s.0).sum::<f64>() / met,
+        solve_steps: solved.iter().map(|s| s.1 as f64).sum::<f64>() / met,
+        fill_mm: PARTIAL.iter().enumerate().map(|(k, p)| (p.0.to_owned(), fill(k, &|f| f.0))).collect(),
+        fill_coverage90: PARTIAL
+            .iter()
+            .enumerate()
+            .map(|(k, p)| (p.0.to_owned(), fill(k, &|f| f.1)))
+            .collect(),
+    })
+}
+
+fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Result<OfBody> {
+    let specimen = corpus.specimen(number);
+    let cage = cage_of(&specimen.points);
+    let truth = corpus.subdivision.refine(cage)?;
+    let measures = gauge.read(&specimen.points);
+    let own = model.shape_space().project(cage);
+    let z = model
+        .encode(&measures, specimen.sex, &own)
+        .ok_or_else(|| Error::Invalid("the model file carries no encoder".into()))?;
+    let distance = |coefficients: &[f64]| -> Result<f64> {
+        let body = model.shape_space().body(coefficients);
+        Ok(1000.0 * mean_distance(&corpus.subdivision.refine(cage_of(&body))?, &truth))
+    };
+    let decoded = model.decode(&measures, specimen.sex, &z);
+    let none = vec![0.0; model.latent_size()];
+    let obtained = model.measures_of(&decoded);
+
+    let mut request = Request { sex: Some(specimen.sex), ..Request::default() };
+    // Every second request gives only a part of the measures.
+    let mut random = Random::new(number, 77);
+    let keep = if number % 2 == 0 { 1.0 } else { random.uniform() };
+    for (slot, value) in request.measures.iter_mut().zip(measures) {
+        *slot = (random.uniform() < keep).then_some(value);
+    }
+    Ok(OfBody {
+        p2p: distance(&decoded)?,
+        p2p_z0: distance(&model.decode(&measures, specimen.sex, &none))?,
+        p2p_space: distance(&own)?,
+        errors: std::array::from_fn(|i| 1000.0 * (obtained[i] - measures[i]).abs()),
+        solved: solve(model, &request)?,
+        fill: PARTIAL
+            .iter()
+            .map(|(_, given)| fill(model, &specimen.sex, &measures, given))
+            .collect::<Result<_>>()?,
+    })
+}
+
+/// Generates, writes a .glb, reads it again and measures: the worst given measure in mm.
+fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
+    let body = match model.generate(request) {
+        Ok(body) => body,
+        Err(anthronet::Error::Infeasible(_)) => return Ok(None),
+        Err(e) => return Err(e.into()),
+    };
+    let glb = to_glb(&Scene::from_body(&body, &SceneOptions::default())?)?;
+    let file = anthronet::import::gltf::from_bytes(&glb, Path::new("body.glb"))?;
+    let mesh = file.meshes.first().ok_or_else(|| Error::Invalid("the written .glb has no mesh".into()))?;
+    let again = model.definitions().read_all(|v| mesh.positions[v as usize].as_dvec3());
+    let worst =
+        request.given().map(|(id, asked)| 1000.0 * (again[id.index()] - asked).abs()).fold(0.0, f64::max);
+    Ok(Some((worst, body.report().iterations)))
+}
+
+/// Mean absolute error (mm) of the filled measures, and how many lie in their interval.
+fn fill(
+    model: &Model,
+    sex: &anthronet::measure::Sex,
+    measures: &Measurements,
+    given: &[&str],
+) -> Result<(f64, f64)> {
+    let mut known = [None; MEASURE_COUNT];
+    for name in given {
+        let id = MeasureId::from_name(name).ok_or_else(|| Error::Invalid(format!("no measure {name}")))?;
+        known[id.index()] = Some(measures[id.index()]);
+    }
+    let conditional = model.prior().of(*sex).condition(&known)?;
+    let (low, high) = conditional.interval90();
+    let open: Vec<usize> = (0..MEASURE_COUNT).filter(|i| known[*i].is_none()).collect();
+    let n = open.len() as f64;
+    let error = open.iter().map(|&i| 1000.0 * (conditional.mean()[i] - measures[i]).abs()).sum::<f64>() / n;
+    let inside = open.iter().filter(|&&i| (low[i]..=high[i]).contains(&measures[i])).count() as f64 / n;
+    Ok((error, inside))
+}
+
+fn mean_distance(a: &[Vec3], b: &[Vec3]) -> f64 {
+    a.iter().zip(b).map(|(p, q)| DVec3::distance(p.as_dvec3(), q.as_dvec3())).sum::<f64>() / a.len() as f64
+}
+
+impl std::fmt::Display for GeneratorScores {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "generator on {} held-out bodies (the paper's number in brackets)", self.bodies)?;
+        writeln!(f, "  mean vertex distance, z = encoder mean   {:8.3} mm  (3.83)", self.p2p_mm)?;
+        writeln!(f, "  mean vertex distance, z = 0              {:8.3} mm", self.p2p_z0_mm)?;
+        writeln!(f, "  mean vertex distance of the shape space  {:8.3} mm", self.p2p_shape_space_mm)?;
+        writeln!(f, "measures before the solve, mean absolute error")?;
+        let papers = [
+            ("chest_circumference", "46.9"),
+            ("hip_circumference", "9.79"),
+            ("waist_circumference", "12.3"),
+            ("arm_circumference_left", "6.22"),
+            ("calf_circumference_left", "4.53"),
+            ("thigh_circumference_left", "9.93"),
+        ];
+        for (name, error) in &self.measures_mm {
+            let paper = papers.iter().find(|p| p.0 == name).map_or(String::new(), |p| format!("  ({})", p.1));
+            writeln!(f, "  {name:40} {error:8.3} mm{paper}")?;
+        }
+        writeln!(f, "after the solve, measured again from the written .glb")?;
+        writeln!(f, "  requests, refused                        {:8} {}", self.requests, self.refused)?;
+        writeln!(f, "  worst given measure of all               {:8.5} mm", self.after_solve_max_mm)?;
+        writeln!(
+            f,
+            "  mean of each request's worst             {:8.5} mm",
+            self.after_solve_mean_of_worst_mm
+        )?;
+        writeln!(f, "  steps                                    {:8.2}", self.solve_steps)?;
+        writeln!(f, "measures that were not given: error, and share inside the 90 % interval")?;
+        for (given, error) in &self.fill_mm {
+            let inside = 100.0 * self.fill_coverage90.get(given).copied().unwrap_or(0.0);
+            writeln!(f, "  given {given:34} {error:8.2} mm {inside:7.1} %")?;
+        }
+        Ok(())
+    }
+}
+
+/// One row of the table of statistics: ours over all sampled bodies, and the paper's.
+#[derive(Clone, Debug, Serialize)]
+pub struct StatisticsRow {
+    /// Measure, with its side.
+    pub name: String,
+    /// Mean, deviation, least, most; metres.
+    pub ours: [f64; 4],
+    /// The same of the paper's 100k bodies ("statistics-anthro").
+    pub paper: [f64; 4],
+}
+
+/// Mean, deviation, least, most of the paper's table, in the order of the measures (sided rows once).
+const PAPER: [[f64; 4]; 24] = [
+    [0.828, 0.174, 0.55, 1.250],
+    [1.061, 0.159, 0.76, 1.522],
+    [0.988, 0.154, 0.72, 1.368],
+    [1.760, 0.144, 1.49, 1.991],
+    [0.295, 0.012, 0.248, 0.335],
+    [0.376, 0.030, 0.310, 0.425],
+    [0.324, 0.029, 0.256, 0.394],
+    [0.546, 0.009, 0.521, 0.554],
+    [0.431, 0.044, 0.320, 0.541],
+    [0.245, 0.004, 0.232, 0.251],
+    [0.092, 0.013, 0.056, 0.115],
+    [0.120, 0.012, 0.078, 0.141],
+    [0.177, 0.011, 0.149, 0.197],
+    [0.283, 0.052, 0.165, 0.409],
+    [0.329, 0.029, 0.270, 0.395],
+    [0.270, 0.038, 0.184, 0.367],
+    [0.254, 0.027, 0.197, 0.300],
+    [0.551, 0.073, 0.395, 0.733],
+    [0.512, 0.046, 0.415, 0.590],
+    [0.354, 0.042, 0.248, 0.458],
+    [0.424, 0.040, 0.348, 0.504],
+    [0.098, 0.007, 0.083, 0.115],
+    [0.198, 0.014, 0.169, 0.225],
+    [0.269, 0.019, 0.229, 0.306],
+];
+
+/// The paper's row of a measure.
+pub fn paper_row(index: usize) -> [f64; 4] {
+    PAPER[if index < 24 { index } else { index - 12 }]
+}
+
+/// Statistics of all measures over some splits of the data set.
+pub fn statistics(splits: &[&Bodies]) -> Vec<StatisticsRow> {
+    MeasureId::all()
+        .map(|id| {
+            let values: Vec<f64> = splits
+                .iter()
+                .flat_map(|b| (0..b.len()).map(|i| f64::from(b.measures(i)[id.index()])))
+                .collect();
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let deviation = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = values.iter().copied().fold(0.0, f64::max);
+            StatisticsRow {
+                name: id.name().to_owned(),
+                ours: [mean, deviation, least, most],
+                paper: paper_row(id.index()),
+            }
+        })
+        .collect()
+}
