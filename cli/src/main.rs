@@ -1,2 +1,89 @@
-//! The anthronet command.
-fn main() {}
+//! The `anthronet` command: tape measures in, a rigged character file out.
+//!
+//! One file per command. `backend` (with `surface`) is the only one that calls the library, `train` the only one that calls the
+//! trainer; `render` makes pictures; `units` reads lengths. Exit codes: 0 done, 1 failed, 2 bad usage. Files appear
+//! whole or not at all.
+
+mod backend;
+mod contact_sheet;
+mod failure;
+mod generate;
+mod info;
+mod measure;
+mod preview;
+mod progress;
+mod render;
+mod request;
+mod surface;
+mod train;
+mod units;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::failure::Result;
+
+/// Type tape measures, get a person: rigged, skinned, ready for Blender, Unity or the web.
+///
+/// Lengths are metres unless a unit follows: 1.7, 170cm, 1700mm, 67in, 5ft7in. `anthronet info` lists the 36
+/// measures; one without its side, such as arm_length, sets both sides. What is not given is filled in from what is
+/// likely beside it.
+#[derive(Parser)]
+#[command(
+    name = "anthronet",
+    version,
+    max_term_width = 100,
+    after_help = "Examples:\n  \
+        anthronet generate --sex female -m height=170cm -m waist_circumference=72cm -o anna.glb\n  \
+        anthronet preview anna.glb -o anna.png\n  \
+        anthronet measure anna.glb\n\n\
+        Exit codes: 0 done, 1 failed, 2 bad usage. ANTHRONET_MODEL names a model file to use instead of the built-in one."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Generate(generate::Arguments),
+    Measure(measure::Arguments),
+    Info(info::Arguments),
+    Preview(preview::Arguments),
+    ContactSheet(contact_sheet::Arguments),
+    Evaluate(train::EvaluateArguments),
+    Train(train::TrainArguments),
+}
+
+fn run(command: &Command) -> Result<()> {
+    match command {
+        Command::Generate(arguments) => generate::run(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Preview(arguments) => preview::run(arguments),
+        Command::ContactSheet(arguments) => contact_sheet::run(arguments),
+        Command::Evaluate(arguments) => train::evaluate(arguments),
+        Command::Train(arguments) => train::train(arguments),
+    }
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

@@ -1,5 +1,6 @@
 //! Conditional human bodies from tape measures.
 
+mod body;
 pub mod condition;
 mod error;
 pub mod export;
@@ -10,4 +11,5 @@ pub mod model;
 pub mod random;
 pub mod rig;
 
+pub use body::Body;
 pub use error::{Error, Result};

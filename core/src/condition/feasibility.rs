@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::chi_squared;
 use super::prior::{GivenMeasures, SexPrior};
-use super::request::group_by;
+use super::request::{group_by, groups};
 use super::text::{list, metres};
 use crate::Result;
 use crate::measure::{MEASURE_COUNT, MeasureId, Sex};
@@ -16,6 +16,12 @@ use crate::measure::{MEASURE_COUNT, MeasureId, Sex};
 /// Largest number of names (both sides of a measure count as one) that the search for a conflict goes through in
 /// full; 24 names give 12,950 sets. Larger conflicts are found by leaving names out one by one.
 const FULL_SEARCH: usize = 4;
+
+/// Number of conflicts that are told apart. A request with more is wrong all over and is best moved as a whole.
+const ROUNDS: usize = 3;
+
+/// Names that a message spells out; of more, it tells those that move most.
+const SPELT_OUT: usize = 6;
 
 /// How far inside the limit a nearest value is put, so that it is still feasible when rounded to the millimetre.
 const NEAREST_SCALE: f64 = 0.98;
@@ -62,7 +68,8 @@ pub struct ConflictMeasure {
     pub nearest: f64,
 }
 
-/// A smallest set of given measures that do not go together.
+/// A smallest set of given measures that do not go together, or that do not fit beside earlier conflicts; a measure is
+/// in one conflict only.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// The measures, in order.
@@ -108,11 +115,18 @@ impl Feasibility {
             conflicts: Vec::new(),
             nearest: *given,
         };
-        // Negated so that a distance that overflows to infinity or NaN counts as too far.
-        if !(distance <= result.refuse) {
+        // A distance that overflows counts as too far.
+        if distance.is_nan() || distance > result.refuse {
             let search = Search::new(prior, given, limits)?;
             let sets = search.resolve(&mut result.nearest)?;
-            result.conflicts = sets.iter().map(|set| describe(set, given, &result.nearest, sex)).collect();
+            let mut covered = Vec::new();
+            for set in &sets {
+                let (known, fresh): (Vec<usize>, Vec<usize>) = set.iter().partition(|i| covered.contains(*i));
+                if !fresh.is_empty() {
+                    result.conflicts.push(describe(&fresh, !known.is_empty(), given, &result.nearest, sex));
+                }
+                covered.extend(fresh);
+            }
         }
         Ok(result)
     }
@@ -187,9 +201,7 @@ impl<'a> Search<'a> {
     fn resolve(&self, current: &mut GivenMeasures) -> Result<Vec<Vec<usize>>> {
         let mut sets = Vec::new();
         let everything: Vec<_> = self.names.iter().flatten().copied().collect();
-        // Each round makes one set feasible. A request that needs more rounds than this is wrong all over, and is then
-        // best moved as a whole.
-        for _ in 0..6 {
+        for _ in 0..ROUNDS {
             if self.excess(&everything, current)? <= 1.0 {
                 return Ok(sets);
             }
@@ -323,8 +335,14 @@ fn next_combination(choice: &mut [usize], n: usize) -> bool {
     false
 }
 
-/// The conflict in words.
-fn describe(set: &[usize], asked: &GivenMeasures, nearest: &GivenMeasures, sex: Sex) -> Conflict {
+/// The conflict in words. `beside` says that the set conflicts only together with measures of earlier conflicts.
+fn describe(
+    set: &[usize],
+    beside: bool,
+    asked: &GivenMeasures,
+    nearest: &GivenMeasures,
+    sex: Sex,
+) -> Conflict {
     let given = subset(asked, set);
     let measures = MeasureId::all()
         .filter_map(|id| {
@@ -332,23 +350,37 @@ fn describe(set: &[usize], asked: &GivenMeasures, nearest: &GivenMeasures, sex: 
             Some(ConflictMeasure { name: id.name(), asked, nearest })
         })
         .collect();
-    let mut asked_texts = Vec::new();
-    let mut nearest_texts = Vec::new();
-    for group in super::request::groups(&given) {
-        let value = |of: &GivenMeasures| group.ids.first().and_then(|id| of[id.index()]).unwrap_or(f64::NAN);
-        asked_texts.push(format!("{} {} m", group.name, metres(value(asked))));
-        nearest_texts.push(format!("{} m", metres(value(nearest))));
+    let mut moves: Vec<(String, f64, f64)> = groups(&given)
+        .into_iter()
+        .map(|group| {
+            let value =
+                |of: &GivenMeasures| group.ids.first().and_then(|id| of[id.index()]).unwrap_or(f64::NAN);
+            (group.name, value(&given), value(nearest))
+        })
+        .collect();
+    let count = moves.len();
+    if count > SPELT_OUT {
+        let share = |m: &(String, f64, f64)| (m.2 - m.1).abs() / m.1.abs().max(f64::MIN_POSITIVE);
+        moves.sort_by(|a, b| share(b).total_cmp(&share(a)));
+        moves.truncate(3);
     }
-    let verb = match asked_texts.len() {
-        1 => "is out of reach",
-        _ => "do not go together",
+    let asked_text =
+        list(&moves.iter().map(|m| format!("{} {} m", m.0, metres(m.1))).collect::<Vec<_>>(), "and");
+    let nearest_text = list(&moves.iter().map(|m| format!("{} m", metres(m.2))).collect::<Vec<_>>(), "and");
+    let message = if count > SPELT_OUT {
+        format!(
+            "{count} measures do not go together for a {sex}, most of all {asked_text}: nearest feasible are {nearest_text}"
+        )
+    } else {
+        let verb = match (beside, count) {
+            (true, 1) => "does not fit beside these",
+            (true, _) => "do not fit beside these",
+            (false, 1) => "is out of reach",
+            (false, _) => "do not go together",
+        };
+        let is = if count == 1 { "is" } else { "are" };
+        format!("{asked_text} {verb} for a {sex}: nearest feasible {is} {nearest_text}")
     };
-    let message = format!(
-        "{} {verb} for a {sex}: nearest feasible {} {}",
-        list(&asked_texts, "and"),
-        if nearest_texts.len() == 1 { "is" } else { "are" },
-        list(&nearest_texts, "and")
-    );
     Conflict { measures, message }
 }
 

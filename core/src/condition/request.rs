@@ -410,10 +410,10 @@ fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
         .collect();
     ordered.push(("neck_circumference".to_owned(), "chest_circumference".to_owned()));
     for (small, large) in ordered {
-        if let (Some(a), Some(b)) = (value(&small), value(&large)) {
-            if a >= b {
-                return larger(&small, a, &large, b, "it must be the smaller of the two");
-            }
+        if let (Some(a), Some(b)) = (value(&small), value(&large))
+            && a >= b
+        {
+            return larger(&small, a, &large, b, "it must be the smaller of the two");
         }
     }
     Ok(())

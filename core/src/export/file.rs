@@ -70,7 +70,7 @@ struct Pending {
 }
 
 impl Pending {
-    fn new(path: &Path, write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>) -> Result<Self> {
+    fn new(path: &Path, write: impl FnOnce(&mut fs::File) -> io::Result<()>) -> Result<Self> {
         let create = || {
             let target = target_of(path)?;
             let folder = match target.parent() {
@@ -88,7 +88,7 @@ impl Pending {
         };
         let (mut file, target) = create().map_err(|source| fault(path, "create", source))?;
         // A full disk may only be reported when the data is really written.
-        let written = write(&mut file).and_then(|()| file.as_file().sync_all());
+        let written = write(file.as_file_mut()).and_then(|()| file.as_file().sync_all());
         written.map_err(|source| fault(path, "write", source))?;
         Ok(Self { file, target, path: path.into() })
     }
@@ -148,7 +148,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.glb");
         write_atomic(&path, b"old").unwrap();
-        let full = |file: &mut NamedTempFile| {
+        let full = |file: &mut fs::File| {
             file.write_all(b"half of the n")?;
             Err(io::ErrorKind::StorageFull.into())
         };

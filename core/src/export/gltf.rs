@@ -13,7 +13,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf_json::{
-    Asset, Buffer, Extras, Index, Material, Mesh, Node, Root, Scene as GltfScene, Skin, Value,
+    Asset, Buffer, Extras, Index, Material, Mesh, Node, Scene as GltfScene, Skin, Value,
     accessor::Accessor,
     extensions::material::{IndexOfRefraction, Ior, Specular, SpecularFactor},
     extras::RawValue,

@@ -4,6 +4,7 @@
 //! the ending of the path and puts the bytes on the disk whole or not at all.
 
 pub(crate) mod accessor;
+mod character;
 pub mod file;
 pub mod gltf;
 pub mod obj;
@@ -12,6 +13,7 @@ pub mod skin_tone;
 #[cfg(test)]
 pub(crate) mod synthetic;
 
+pub use character::SceneOptions;
 pub use file::{write_atomic, write_scene};
 pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh};
 pub use skin_tone::SkinTone;

@@ -261,8 +261,7 @@ impl Scene {
         }
         for (i, normal) in mesh.normals.iter().enumerate() {
             let length = Vec3::from(*normal).length();
-            // A NaN fails the comparison too.
-            if !((length - 1.0).abs() <= NORMAL_LENGTH_TOLERANCE) {
+            if length.is_nan() || (length - 1.0).abs() > NORMAL_LENGTH_TOLERANCE {
                 return Err(format!("normal {i} has length {length}, expected 1"));
             }
         }
@@ -296,10 +295,10 @@ impl Scene {
             let slots = vertex * per_vertex..(vertex + 1) * per_vertex;
             let (joints, weights) = (&mesh.joint_indices[slots.clone()], &mesh.joint_weights[slots]);
             let sum: f32 = weights.iter().sum();
-            if !((sum - 1.0).abs() <= WEIGHT_SUM_TOLERANCE) {
+            if sum.is_nan() || (sum - 1.0).abs() > WEIGHT_SUM_TOLERANCE {
                 return Err(format!("weights of vertex {vertex} sum to {sum}, expected 1"));
             }
-            if weights.iter().any(|w| !(*w >= 0.0)) || weights.windows(2).any(|w| w[0] < w[1]) {
+            if weights.iter().any(|w| *w < 0.0) || weights.windows(2).any(|w| w[0] < w[1]) {
                 return Err(format!(
                     "weights of vertex {vertex} are not descending and non-negative: {weights:?}"
                 ));
@@ -400,10 +399,10 @@ mod tests {
             ("vertex 0 sum to 1.5", |s| s.meshes[0].joint_weights[0] += 0.5),
             ("vertex 0 sum to NaN", |s| s.meshes[0].joint_weights[0] = f32::NAN),
             ("vertex 0 are not descending", |s| {
-                s.meshes[0].joint_weights[..4].copy_from_slice(&[0.4, 0.6, 0., 0.])
+                s.meshes[0].joint_weights[..4].copy_from_slice(&[0.4, 0.6, 0., 0.]);
             }),
             ("vertex 0 are not descending", |s| {
-                s.meshes[0].joint_weights[..4].copy_from_slice(&[1.1, 0., 0., -0.1])
+                s.meshes[0].joint_weights[..4].copy_from_slice(&[1.1, 0., 0., -0.1]);
             }),
             ("vertex 0 uses joint 9 of 3", |s| s.meshes[0].joint_indices[0] = 9),
             ("uses joint 1 twice", |s| {

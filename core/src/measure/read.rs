@@ -170,10 +170,13 @@ mod tests {
             axis: None,
             edges: Vec::new(),
         };
-        let slice =
-            Definition { kind: Kind::Slice, points: vec![one(35), one(50)], edges, ..base.clone() };
-        let length =
-            Definition { kind: Kind::Length, points: vec![one(3), one(77)], normal: DVec3::ZERO, ..base.clone() };
+        let slice = Definition { kind: Kind::Slice, points: vec![one(35), one(50)], edges, ..base.clone() };
+        let length = Definition {
+            kind: Kind::Length,
+            points: vec![one(3), one(77)],
+            normal: DVec3::ZERO,
+            ..base.clone()
+        };
         let along = Definition { axis: Some(DVec3::Y), ..length.clone() };
         (points, vec![base, slice, length, along])
     }

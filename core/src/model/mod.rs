@@ -1,6 +1,17 @@
-//! The generator: its configuration, networks and file.
+//! The trained model: its file, its networks, its shape space, and the path from a request to coefficients.
 
+mod character;
 pub mod config;
+mod file;
+mod generator;
+mod measured_space;
 pub mod network;
 #[cfg(test)]
 mod network_tests;
+mod shape_space;
+
+pub use character::{Accessory, Character, ReducedMesh};
+pub use file::{FORMAT_VERSION, ModelParts, Provenance, topology_hash};
+pub use generator::{MODEL_VARIABLE, Model, Solved};
+pub use measured_space::MeasuredSpace;
+pub use shape_space::ShapeSpace;

@@ -37,6 +37,28 @@ pub struct SkeletonShape {
     pub tails: Vec<Vec3>,
 }
 
+impl SkeletonShape {
+    /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
+    /// micrometres off it: the T-pose is exact.
+    pub fn straighten(&mut self, skeleton: &Skeleton) {
+        for side in ["l", "r"] {
+            let Some(shoulder) = skeleton.find(&format!("upperarm_{side}")) else { continue };
+            let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
+            for (j, name) in skeleton.names().iter().enumerate() {
+                let of_arm = name.ends_with(side)
+                    && ["upperarm", "lowerarm", "hand"].iter().any(|part| name.starts_with(part));
+                if !of_arm {
+                    continue;
+                }
+                self.heads[j] = self.heads[j].with_y(y).with_z(z);
+                if !name.starts_with("hand") {
+                    self.tails[j] = self.tails[j].with_y(y).with_z(z);
+                }
+            }
+        }
+    }
+}
+
 impl Skeleton {
     /// A hierarchy from names and parents.
     ///
@@ -92,7 +114,12 @@ impl Skeleton {
         if shape.heads.len() != self.len() || shape.tails.len() != self.len() {
             return Err(Error::invalid(
                 "skeleton shape",
-                format!("expected {} joints, got {} and {}", self.len(), shape.heads.len(), shape.tails.len()),
+                format!(
+                    "expected {} joints, got {} and {}",
+                    self.len(),
+                    shape.heads.len(),
+                    shape.tails.len()
+                ),
             ));
         }
         Ok((0..self.len())
@@ -124,8 +151,9 @@ fn orientation(bone: Vec3, lean: Vec3) -> Mat3 {
     let y = bone.try_normalize().unwrap_or(Vec3::Y);
     let off_axis = |v: Vec3| (v - y * v.dot(y)).try_normalize();
     // A bone along its own leaning direction takes the next axis.
-    let z = if y.dot(lean).abs() < 0.99 { off_axis(lean) } else { off_axis(Vec3::new(lean.z, lean.x, lean.y)) }
-        .unwrap_or(Vec3::Z);
+    let z =
+        if y.dot(lean).abs() < 0.99 { off_axis(lean) } else { off_axis(Vec3::new(lean.z, lean.x, lean.y)) }
+            .unwrap_or(Vec3::Z);
     Mat3::from_cols(y.cross(z), y, z)
 }
 
@@ -137,8 +165,18 @@ mod tests {
         let names = ["Root", "upperarm_l", "upperarm_r", "foot_l"].map(String::from).to_vec();
         let skeleton = Skeleton::new(names, vec![None, Some(0), Some(0), Some(0)]).unwrap();
         let shape = SkeletonShape {
-            heads: vec![Vec3::ZERO, Vec3::new(0.2, 1.4, 0.0), Vec3::new(-0.2, 1.4, 0.0), Vec3::new(0.1, 0.1, 0.0)],
-            tails: vec![Vec3::Y, Vec3::new(0.5, 1.4, 0.0), Vec3::new(-0.5, 1.4, 0.0), Vec3::new(0.1, 0.0, 0.15)],
+            heads: vec![
+                Vec3::ZERO,
+                Vec3::new(0.2, 1.4, 0.0),
+                Vec3::new(-0.2, 1.4, 0.0),
+                Vec3::new(0.1, 0.1, 0.0),
+            ],
+            tails: vec![
+                Vec3::Y,
+                Vec3::new(0.5, 1.4, 0.0),
+                Vec3::new(-0.5, 1.4, 0.0),
+                Vec3::new(0.1, 0.0, 0.15),
+            ],
         };
         (skeleton, shape)
     }

@@ -30,7 +30,12 @@ impl SkinWeights {
     /// # Errors
     /// [`Error::Invalid`] when rows are inconsistent, a joint is not one of `joint_count`, a weight is negative or
     /// not finite, or a vertex follows nothing.
-    pub fn new(offsets: Vec<u32>, joints: Vec<u16>, mut weights: Vec<f32>, joint_count: usize) -> Result<Self> {
+    pub fn new(
+        offsets: Vec<u32>,
+        joints: Vec<u16>,
+        mut weights: Vec<f32>,
+        joint_count: usize,
+    ) -> Result<Self> {
         let fail = |message: String| Err(Error::invalid("skin weights", message));
         let rows_fit = offsets.first() == Some(&0)
             && offsets.windows(2).all(|w| w[0] <= w[1])
@@ -72,8 +77,17 @@ impl SkinWeights {
         self.joints[range.clone()].iter().copied().zip(self.weights[range].iter().copied())
     }
 
-    /// The rows of some vertices, in their order.
+    /// The rows of a range of vertices.
     pub fn rows(&self, vertices: std::ops::Range<usize>) -> Self {
+        self.collect(vertices)
+    }
+
+    /// The rows of some vertices, in their order.
+    pub fn select(&self, vertices: &[u32]) -> Self {
+        self.collect(vertices.iter().map(|v| *v as usize))
+    }
+
+    fn collect(&self, vertices: impl Iterator<Item = usize>) -> Self {
         let mut out = Self { offsets: vec![0], ..Self::default() };
         for v in vertices {
             for (j, w) in self.of(v) {

@@ -94,6 +94,20 @@ fn is_feasible(p: &SexPrior, given: &GivenMeasures, limits: &Limits) -> bool {
 }
 
 #[test]
+fn a_request_wrong_all_over_gets_a_short_answer() {
+    let p = sex_prior(0.0, 0.0);
+    let mut random = Random::new(1, 3);
+    let given = std::array::from_fn(|i| {
+        let deviation = p.covariance()[i * (MEASURE_COUNT + 1)].sqrt();
+        Some(p.mean()[i] + 3.0 * deviation * random.normal())
+    });
+    let found = Feasibility::assess(&p, Sex::Female, &given, &Limits::default()).unwrap();
+    let last = &found.conflicts.last().unwrap().message;
+    assert!(last.contains(" measures do not go together for a female, most of all "), "{last}");
+    assert!(found.message().len() < 1000, "{}", found.message());
+}
+
+#[test]
 fn absurd_numbers_are_answered_too() {
     for value in [1e12, 1e200, f64::MAX, -f64::MAX] {
         let found = assess(&[("height", value), ("waist_circumference", 0.8)]);
@@ -130,9 +144,12 @@ proptest! {
         let found = Feasibility::assess(&p, Sex::Female, &given, &limits).unwrap();
         prop_assert_eq!(found.is_feasible(), found.distance <= found.refuse);
         prop_assert!(is_feasible(&p, &found.nearest, &limits), "{:?}", found);
-        for i in 0..MEASURE_COUNT {
-            prop_assert_eq!(found.nearest[i].is_some(), mask[i]);
-        }
+        prop_assert_eq!(found.nearest.map(|v| v.is_some()).to_vec(), mask.clone());
+        let mut named: Vec<_> = found.conflicts.iter().flat_map(names).collect();
+        let count = named.len();
+        named.sort_unstable();
+        named.dedup();
+        prop_assert_eq!(named.len(), count);
         // What no conflict names stays as it was asked.
         for id in MeasureId::all() {
             if !found.conflicts.iter().any(|c| c.measures.iter().any(|m| m.name == id.name())) {

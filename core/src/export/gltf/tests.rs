@@ -20,7 +20,7 @@ impl Parsed {
         assert_eq!(&bytes[16..20], b"JSON");
         assert_eq!(&bytes[json_end + 4..json_end + 8], b"BIN\0");
         assert_eq!(json_end + 8 + word(json_end), bytes.len());
-        assert!(json_end % 4 == 0 && bytes.len() % 4 == 0);
+        assert!(json_end.is_multiple_of(4) && bytes.len().is_multiple_of(4));
         let json = serde_json::from_slice(&bytes[20..json_end]).unwrap();
         Self { json, bin: bytes[json_end + 8..].to_vec() }
     }

@@ -1,0 +1,345 @@
+//! The only file that calls the library: from the command line's words to its types and back.
+
+use std::path::Path;
+
+use anthronet::Error;
+use anthronet::condition::{Fill, Request};
+use anthronet::export::{Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone};
+use anthronet::measure::{Mass, MeasureId, Sex, enclosed_volume};
+use anthronet::mesh::Lod;
+use anthronet::rig::humanoid::JointNames;
+use glam::Vec3;
+use serde_json::json;
+
+use crate::failure::{Failure, Result};
+use crate::generate::{FileChoice, JointNamesChoice};
+use crate::measure::{Measured, NamedValue};
+use crate::render::{Figure, Material, Part};
+use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
+use crate::surface::level0;
+
+/// The generator with its prior and definitions.
+pub(crate) struct Model(anthronet::model::Model);
+
+/// A generated body with its report.
+pub(crate) struct Person(anthronet::Body);
+
+/// What is printed about a person.
+pub(crate) struct Summary {
+    pub(crate) sex: &'static str,
+    /// Metres.
+    pub(crate) height: f64,
+    pub(crate) mass_kg: f64,
+    /// The given measure that the body misses by most, with how much; `None` when none was given.
+    pub(crate) worst_residual_mm: Option<(&'static str, f64)>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Mean and standard deviation (metres) of two measures of one sex, and how they go together.
+pub(crate) struct Usual {
+    pub(crate) height: (f64, f64),
+    pub(crate) waist: (f64, f64),
+    pub(crate) correlation: f64,
+}
+
+impl Model {
+    /// The model file that `ANTHRONET_MODEL` names, else the built-in one.
+    pub(crate) fn open() -> Result<Self> {
+        Ok(Self(anthronet::model::Model::from_environment()?))
+    }
+
+    /// Makes a person. With `typed` a bad field is the command line's: bad usage instead of a failure.
+    pub(crate) fn generate(&self, request: &Request, typed: bool) -> Result<Person> {
+        let body = self.0.generate(request);
+        body.map(Person).map_err(|error| if typed { usage_if_request(error) } else { error.into() })
+    }
+
+    /// The person at `t`, 0 to 1, between two requests.
+    pub(crate) fn interpolate(&self, first: &Request, second: &Request, t: f64) -> Result<Person> {
+        Ok(Person(self.0.interpolate(first, second, t)?))
+    }
+
+    /// Measures, joints, versions and scores, as documented for `info --json`.
+    pub(crate) fn info(&self) -> Result<serde_json::Value> {
+        let model = &self.0;
+        let (character, ranges) = (model.character(), model.ranges());
+        let measures = model.definitions().iter().map(|(id, definition)| {
+            let mut measure = json!({
+                "name": definition.name,
+                "kind": definition.kind,
+                "points": definition.points,
+                "normal": definition.normal.to_array(),
+                "axis": definition.axis.map(|axis| axis.to_array()),
+                "standard": definition.standard(),
+                "min": ranges[id.index()].min,
+                "max": ranges[id.index()].max,
+            });
+            if !definition.edges.is_empty() {
+                measure["edges"] = json!(definition.edges);
+            }
+            measure
+        });
+        let skeleton = character.skeleton();
+        let joints = skeleton.names().iter().zip(skeleton.parents()).map(|(name, parent)| {
+            let parent = parent.and_then(|p| skeleton.names().get(p as usize));
+            json!({"name": name, "parent": parent})
+        });
+        let levels = Lod::ALL.map(|lod| character.vertex_count(lod));
+        Ok(json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "measures": measures.collect::<Vec<_>>(),
+            "joints": joints.collect::<Vec<_>>(),
+            "vertices_per_lod": levels,
+            "latent_size": model.latent_size(),
+            "measures_sha256": model.definitions().hash(),
+            "model": model.provenance(),
+        }))
+    }
+
+    /// What is usual for a sex, from the prior.
+    pub(crate) fn usual(&self, sex: SexChoice) -> Usual {
+        let prior = self.0.prior().of(core_sex(sex));
+        usual(prior.mean(), prior.covariance())
+    }
+}
+
+impl Person {
+    /// The report as JSON.
+    pub(crate) fn report_json(&self) -> String {
+        self.0.report().to_json()
+    }
+
+    /// Writes the file; its ending chooses the format.
+    pub(crate) fn write(&self, path: &Path, choice: &FileChoice<'_>) -> Result<()> {
+        Ok(anthronet::export::write_scene(&self.scene(choice)?, path)?)
+    }
+
+    /// The person as the renderer takes it.
+    pub(crate) fn figure(&self, lod: u8, skin_tone: Option<&str>) -> Result<Figure> {
+        let joint_names = JointNamesChoice::Native;
+        figure_from_scene(&self.scene(&FileChoice { lod, influences: 4, joint_names, skin_tone })?)
+    }
+
+    fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
+        let options = SceneOptions {
+            lod: Lod::try_from(choice.lod)?,
+            influences: choice.influences,
+            joint_names: core_joint_names(choice.joint_names),
+            skin_tone: tone(choice.skin_tone)?,
+            ..SceneOptions::default()
+        };
+        Ok(Scene::from_body(&self.0, &options)?)
+    }
+
+    /// What is printed.
+    pub(crate) fn summary(&self) -> Summary {
+        let report = self.0.report();
+        let obtained = |name| report.measures.iter().find(|m| m.name == name).map_or(0.0, |m| m.obtained);
+        Summary {
+            sex: report.sex.name(),
+            height: obtained("height"),
+            mass_kg: report.mass_kg,
+            worst_residual_mm: report
+                .measures
+                .iter()
+                .filter_map(|m| m.residual.map(|r| (m.name, r.abs() * 1000.0)))
+                .max_by(|a, b| a.1.total_cmp(&b.1)),
+            warnings: report.warnings.clone(),
+        }
+    }
+}
+
+/// All measures of a file's body: its first mesh, at any level of detail.
+pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
+    let in_file = |failure: Failure| Failure::failed(format!("{}: {failure}", path.display()));
+    let scene = anthronet::import::open(path)?;
+    let mesh = scene.meshes.first().ok_or_else(|| in_file(Failure::failed("has no mesh")))?;
+    let points = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
+    let surface = level0(&model.0, points).map_err(in_file)?;
+    let at = |v: u32| surface.get(v as usize).copied().unwrap_or_default();
+    let values = model.0.definitions().read_all(at);
+    let volume = enclosed_volume(at, &model.0.character().subdivision().refined().quads);
+    let stature = MeasureId::from_name("height").map_or(0.0, |id| values[id.index()]);
+    let Mass { volume_m3, mass_kg, bmi } = Mass::new(volume, stature);
+    let named = MeasureId::all().zip(values).map(|(id, value)| NamedValue { name: id.name(), value });
+    Ok(Measured { measures: named.collect(), mass_kg, volume_m3, bmi })
+}
+
+/// A character file as the renderer takes it, moved so that its lowest point stands on the ground.
+pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
+    let scene = anthronet::import::open(path)?;
+    let lowest =
+        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
+    let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
+    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name)).map(|mesh| mesh.base_color);
+    // A file without colours reads as white, which is no skin.
+    let [r, g, b, _] = skin.filter(|c| *c != [1.0; 4]).unwrap_or_else(|| SkinTone::default().base_color());
+    let parts = scene
+        .meshes
+        .into_iter()
+        .map(|mesh| Part {
+            material: Material::from_name(&mesh.name),
+            positions: mesh.positions.iter().map(|p| *p - Vec3::Y * lowest).collect(),
+            triangles: mesh.triangles,
+        })
+        .collect();
+    Figure::new(parts, Vec3::new(r, g, b))
+        .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))
+}
+
+/// Writes a file whole or not at all.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    Ok(anthronet::export::write_atomic(path, bytes)?)
+}
+
+/// Refuses options that no file can have, before any work is done.
+pub(crate) fn check_choice(choice: &FileChoice<'_>) -> Result<()> {
+    tone(choice.skin_tone).map(drop)
+}
+
+/// The request that the options describe: the file's, then what the command line says.
+pub(crate) fn request(arguments: &RequestArguments) -> Result<Request> {
+    let mut request = match &arguments.request {
+        Some(path) => request_from_json(&read_text(path)?)
+            .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))?,
+        None => Request::default(),
+    };
+    if let Some(sex) = arguments.sex {
+        request.sex = Some(core_sex(sex));
+    }
+    for (name, metres) in arguments.sorted_measures()? {
+        request.set(name, metres).map_err(usage_if_request)?;
+    }
+    if let Some(seed) = arguments.seed {
+        request.seed = seed;
+    }
+    if let Some(z) = &arguments.z {
+        request.z = Some(z.clone());
+    }
+    if let Some(fill) = arguments.fill {
+        request.fill = match fill {
+            FillChoice::Mean => Fill::Mean,
+            FillChoice::Sample => Fill::Sample,
+        };
+    }
+    request.nearest |= arguments.nearest;
+    Ok(request)
+}
+
+/// A request from its JSON.
+pub(crate) fn request_from_json(text: &str) -> Result<Request> {
+    Ok(Request::from_json(text)?)
+}
+
+/// A wrong field is bad usage where the field was typed on the command line.
+fn usage_if_request(error: Error) -> Failure {
+    match error {
+        Error::Request { .. } => Failure::usage(error.to_string()),
+        other => other.into(),
+    }
+}
+
+fn core_sex(sex: SexChoice) -> Sex {
+    match sex {
+        SexChoice::Female => Sex::Female,
+        SexChoice::Male => Sex::Male,
+    }
+}
+
+fn core_joint_names(names: JointNamesChoice) -> JointNames {
+    match names {
+        JointNamesChoice::Native => JointNames::Native,
+        JointNamesChoice::Unity => JointNames::Unity,
+        JointNamesChoice::Mixamo => JointNames::Mixamo,
+        JointNamesChoice::Vrm => JointNames::Vrm,
+        JointNamesChoice::Blender => JointNames::Blender,
+    }
+}
+
+fn tone(text: Option<&str>) -> Result<SkinTone> {
+    match text {
+        Some(text) => text.parse().map_err(|error| match error {
+            Error::Request { message, .. } => Failure::usage(format!("--skin-tone: {message}")),
+            other => other.into(),
+        }),
+        None => Ok(SkinTone::default()),
+    }
+}
+
+/// Mean, deviation and correlation of height and waist. `covariance` is (36, 36), row by row.
+fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
+    let index = |name| MeasureId::from_name(name).map_or(0, MeasureId::index);
+    let (h, w) = (index("height"), index("waist_circumference"));
+    let cov = |a: usize, b: usize| covariance.get(a * mean.len() + b).copied().unwrap_or(0.0);
+    let (sh, sw) = (cov(h, h).sqrt(), cov(w, w).sqrt());
+    let at = |i: usize| mean.get(i).copied().unwrap_or(0.0);
+    let correlation = cov(h, w) / (sh * sw).max(1e-12);
+    Usual { height: (at(h), sh), waist: (at(w), sw), correlation }
+}
+
+/// A neutral scene as the renderer takes it: materials by name, quads split.
+fn figure_from_scene(scene: &Scene) -> Result<Figure> {
+    let material = |mesh: &SceneMesh| scene.materials.get(mesh.material as usize);
+    let kind = |mesh: &SceneMesh| {
+        let by_material = material(mesh).map_or(Material::Skin, |m| Material::from_name(&m.name));
+        if by_material == Material::Skin { Material::from_name(&mesh.name) } else { by_material }
+    };
+    let parts = scene
+        .meshes
+        .iter()
+        .map(|mesh| {
+            let quads = mesh.quads.positions.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+            Part {
+                material: kind(mesh),
+                positions: mesh.positions.iter().map(|p| Vec3::from_array(*p)).collect(),
+                triangles: quads.chain(mesh.triangles.positions.iter().copied()).collect(),
+            }
+        })
+        .collect();
+    let skin = scene.meshes.iter().find(|mesh| kind(mesh) == Material::Skin).and_then(material);
+    let [r, g, b, _] =
+        skin.map_or_else(|| SkinTone::default().base_color(), |m: &SceneMaterial| m.base_color);
+    Figure::new(parts, Vec3::new(r, g, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_reads_the_covariance() {
+        let mut covariance = vec![0.0; 36 * 36];
+        let mut mean = vec![0.0; 36];
+        let (h, w) = (3, 0);
+        (mean[h], mean[w]) = (1.7, 0.8);
+        covariance[h * 36 + h] = 0.01;
+        covariance[w * 36 + w] = 0.04;
+        covariance[h * 36 + w] = 0.01;
+        let usual = usual(&mean, &covariance);
+        assert_eq!((usual.height.0, usual.waist.0), (1.7, 0.8));
+        assert!((usual.height.1 - 0.1).abs() < 1e-12 && (usual.waist.1 - 0.2).abs() < 1e-12);
+        assert!((usual.correlation - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn options_go_before_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("r.json");
+        std::fs::write(
+            &file,
+            r#"{"sex": "male", "measures": {"height": 1.8, "arm_length": 0.33}, "seed": 3}"#,
+        )
+        .unwrap();
+        let arguments = RequestArguments {
+            request: Some(file),
+            sex: Some(SexChoice::Female),
+            measures: vec![("height".into(), 1.7)],
+            ..RequestArguments::default()
+        };
+        let request = request(&arguments).unwrap();
+        assert_eq!(request.sex, Some(Sex::Female));
+        assert_eq!(request.measures[3], Some(1.7));
+        assert_eq!(request.seed, 3);
+        assert_eq!(request.given().count(), 3);
+    }
+}

@@ -1,0 +1,53 @@
+//! Why the command ends without doing its work, and with which exit code.
+
+use std::fmt;
+use std::path::Path;
+
+/// What the command's fallible functions return.
+pub(crate) type Result<T> = std::result::Result<T, Failure>;
+
+/// A reason to stop.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The command line asks for something that does not exist or contradicts itself: exit code 2.
+    Usage(String),
+    /// The work was understood and could not be done: exit code 1.
+    Failed(String),
+}
+
+impl Failure {
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self::Usage(message.into())
+    }
+
+    pub(crate) fn failed(message: impl Into<String>) -> Self {
+        Self::Failed(message.into())
+    }
+
+    /// The system's refusal to `action` (read, write, create) a file.
+    pub(crate) fn io(action: &str, path: &Path, error: &std::io::Error) -> Self {
+        Self::Failed(format!("{}: cannot {action}: {error}", path.display()))
+    }
+
+    /// 1 failed, 2 bad usage.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Failed(_) => 1,
+            Self::Usage(_) => 2,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(message) | Self::Failed(message) => f.write_str(message),
+        }
+    }
+}
+
+impl From<anthronet::Error> for Failure {
+    fn from(error: anthronet::Error) -> Self {
+        Self::Failed(error.to_string())
+    }
+}

@@ -1,0 +1,25 @@
+//! A small, deterministic software renderer: a figure of named parts in, a shaded picture out.
+//!
+//! Triangles are rasterised by the `euc` crate. Light is gathered once per figure: 256 directions over the sphere, each
+//! with its own depth map, say which part of the surroundings every vertex sees; each view then sums the radiance
+//! of the studio over the directions that are open. That gives soft key, fill and rim light, ambient occlusion and
+//! the contact shadow on the ground from one mechanism, without ray tracing and without random numbers.
+//!
+//! Only exactly rounded operations of the standard library and the `libm` crate are used, so that a picture has the
+//! same bytes on every host, whatever the number of threads.
+
+mod camera;
+mod figure;
+mod font;
+mod image;
+mod light;
+mod material;
+mod picture;
+mod raster;
+mod visibility;
+
+pub(crate) use camera::View;
+pub(crate) use figure::{Figure, Material, Part};
+pub(crate) use font::{draw_text, text_width};
+pub(crate) use image::Image;
+pub(crate) use picture::{LitFigure, Picture, Tile, draw_views};

@@ -1,0 +1,113 @@
+//! `anthronet train` and `anthronet evaluate`, the commands that need networks. Built only with the feature `train`;
+//! without it they say how to get it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use crate::failure::Result;
+
+/// Which table to compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Table {
+    /// Errors of the generator on held-out bodies.
+    Generator,
+    /// Mean, deviation, least and most of every measure over the sampled bodies.
+    Statistics,
+}
+
+/// Score the model against held-out bodies, or print the statistics of the sampled ones.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --table statistics --json"
+)]
+pub(crate) struct EvaluateArguments {
+    /// Which table.
+    #[arg(long, default_value = "generator")]
+    pub(crate) table: Table,
+
+    /// Print JSON; errors in millimetres.
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// How many bodies.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) bodies: Option<u32>,
+}
+
+/// Train a network from nothing. Long; shows its progress and can be resumed.
+#[derive(Args)]
+#[command(after_help = "Example:\n  cargo anthronet-train train generator --resume")]
+pub(crate) struct TrainArguments {
+    #[command(subcommand)]
+    pub(crate) network: Network,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Network {
+    Generator(GeneratorArguments),
+}
+
+/// The conditional autoencoder that makes bodies from measures.
+#[derive(Args)]
+pub(crate) struct GeneratorArguments {
+    /// Go on from the last checkpoint.
+    #[arg(long)]
+    pub(crate) resume: bool,
+
+    /// Passes over the bodies; left out, as configured.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) epochs: Option<u32>,
+
+    /// Folder for the model and its checkpoints; left out, as configured.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// The paper's plain network, without the linear skip.
+    #[arg(long)]
+    pub(crate) plain: bool,
+}
+
+#[cfg(not(feature = "train"))]
+fn no_networks(command: &str) -> crate::failure::Failure {
+    crate::failure::Failure::usage(format!(
+        "this build has no networks: run `cargo anthronet-train {command}` in the source tree"
+    ))
+}
+
+#[cfg(not(feature = "train"))]
+pub(crate) fn evaluate(_: &EvaluateArguments) -> Result<()> {
+    Err(no_networks("evaluate"))
+}
+
+#[cfg(not(feature = "train"))]
+pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
+    let Network::Generator(_) = &arguments.network;
+    Err(no_networks("train generator"))
+}
+
+#[cfg(feature = "train")]
+pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
+    use crate::failure::Failure;
+    let table = match arguments.table {
+        Table::Generator => "generator",
+        Table::Statistics => "statistics",
+    };
+    let bodies = arguments.bodies.map(|n| n as usize);
+    let text = anthronet_trainer::commands::evaluate(table, arguments.json, bodies)
+        .map_err(|e| Failure::failed(e.to_string()))?;
+    crate::progress::print(&text)
+}
+
+#[cfg(feature = "train")]
+pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
+    use crate::failure::Failure;
+    let Network::Generator(generator) = &arguments.network;
+    anthronet_trainer::commands::train_generator(
+        generator.resume,
+        generator.epochs.map(|n| n as usize),
+        generator.out.as_deref(),
+        generator.plain,
+    )
+    .map_err(|e| Failure::failed(e.to_string()))
+}

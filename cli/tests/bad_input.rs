@@ -1,0 +1,239 @@
+//! Bad input gives the right exit code and a message that names the field, never a panic, never half a file.
+
+mod common;
+
+use std::fs;
+
+use common::{Run, anthronet, files_in, folder, model_is_built_in, write};
+
+/// Runs `generate` with these options into a fresh folder, which must stay empty.
+fn generate(options: &[&str]) -> Run {
+    let folder = folder();
+    let out = folder.path().join("out.glb");
+    let mut all = vec!["generate"];
+    all.extend_from_slice(options);
+    let out = out.to_string_lossy().into_owned();
+    all.extend(["-o", &out]);
+    let run = anthronet(&all, &[]);
+    assert_eq!(files_in(folder.path()), Vec::<String>::new(), "{options:?} left files behind");
+    run
+}
+
+#[test]
+fn values_that_are_no_length_are_bad_usage() {
+    for value in ["NaN", "inf", "-inf", "-1.7", "0", "", "tall", "1,70", "1.7.0", "5ft13in", "1e999", "170kg"]
+    {
+        generate(&["-m", &format!("height={value}")]).fails(2, &["height"]);
+    }
+    generate(&["-m", "height"]).fails(2, &["NAME=VALUE"]);
+    generate(&["-m", "=1.7"]).fails(2, &["name"]);
+    generate(&["-m", "height=1.7", "-m", "height=1.8"]).fails(2, &["height", "twice"]);
+}
+
+#[test]
+fn an_unknown_name_gets_a_suggestion() {
+    generate(&["-m", "heigth=1.7"]).fails(2, &["heigth", "did you mean", "height"]);
+    generate(&["-m", "waist=0.8"]).fails(2, &["waist", "waist_circumference"]);
+    generate(&["-m", "stature=1.7"]).fails(2, &["stature", "height"]);
+    generate(&["-m", "weight=70"]).fails(2, &["weight", "cannot be set"]);
+}
+
+#[test]
+fn options_that_do_not_exist_are_bad_usage() {
+    generate(&["--sex", "other"]).fails(2, &["--sex", "female", "male"]);
+    generate(&["--lod", "4"]).fails(2, &["--lod"]);
+    generate(&["--influences", "5"]).fails(2, &["--influences", "4", "8"]);
+    generate(&["--joint-names", "maya"]).fails(2, &["--joint-names", "native", "mixamo"]);
+    generate(&["--skin-tone", "11"]).fails(2, &["--skin-tone", "11"]);
+    generate(&["--skin-tone", "#12345"]).fails(2, &["--skin-tone"]);
+    generate(&["--seed", "-1"]).fails(2, &["--seed"]);
+    generate(&["--z", "1,two"]).fails(2, &["--z", "two"]);
+    generate(&["--fill", "zero"]).fails(2, &["--fill", "mean", "sample"]);
+    generate(&["--at", "0.5"]).fails(2, &["--interpolate"]);
+    generate(&["--interpolate", "other.json"]).fails(2, &["--at"]);
+    generate(&["--interpolate", "other.json", "--at", "1.5"]).fails(2, &["--at", "0 to 1"]);
+    generate(&["--no-such-option"]).fails(2, &["--no-such-option"]);
+}
+
+#[test]
+fn the_output_is_required_and_its_ending_known() {
+    anthronet(&["generate", "-m", "height=1.7"], &[]).fails(2, &["--output"]);
+    anthronet(&["preview", "a.glb"], &[]).fails(2, &["--output"]);
+    anthronet(&["contact-sheet"], &[]).fails(2, &["--output"]);
+    let folder = folder();
+    for name in ["a.stl", "a", "a.glb.txt", "glb"] {
+        let path = folder.path().join(name);
+        let path = path.to_string_lossy();
+        anthronet(&["generate", "-o", &path], &[]).fails(2, &[name, ".glb .gltf .obj"]);
+        anthronet(&["contact-sheet", "-o", &path], &[]).fails(2, &[name, ".png"]);
+    }
+    assert!(files_in(folder.path()).is_empty());
+    anthronet(&["measure", "a.fbx"], &[]).fails(2, &["a.fbx", ".glb .gltf .obj"]);
+    anthronet(&["preview", "a.fbx", "-o", "a.png"], &[]).fails(2, &["a.fbx", ".json"]);
+    anthronet(&["preview", "a.glb", "-o", "a.png", "--size", "0x4"], &[]).fails(2, &["--size", "0x4"]);
+    anthronet(&["preview", "a.glb", "-o", "a.png", "--views", "below"], &[]).fails(2, &["--views", "front"]);
+    anthronet(&["contact-sheet", "-o", "a.png", "--count", "0"], &[]).fails(2, &["--count"]);
+    anthronet(&[], &[]).fails(2, &["Usage"]);
+    anthronet(&["no-such-command"], &[]).fails(2, &["no-such-command"]);
+}
+
+#[test]
+fn a_bad_request_file_is_a_failure_that_names_file_and_field() {
+    let folder = folder();
+    for (text, expected) in [
+        ("", "request"),
+        ("{\"measures\": {\"height\": 1.7", "line 1"),
+        ("[1, 2]", "request"),
+        ("{\"measures\": {\"heigth\": 1.7}}", "did you mean"),
+        ("{\"measures\": {\"height\": \"tall\"}}", "height"),
+        ("{\"measure\": {}}", "measure"),
+        ("{\"sex\": \"other\"}", "sex"),
+        ("{\"seed\": -4}", "line 1"),
+    ] {
+        let file = write(&folder, "r.json", text.as_bytes());
+        generate(&["--request", &file]).fails(1, &["r.json", expected]);
+    }
+    let file = write(&folder, "r.json", b"\xff\xfe\x00");
+    generate(&["--request", &file]).fails(1, &["r.json"]);
+    generate(&["--request", "/no/such/file.json"]).fails(1, &["/no/such/file.json", "cannot read"]);
+    generate(&["--request", "/"]).fails(1, &["cannot read"]);
+}
+
+#[test]
+fn a_millimetre_value_without_its_unit_gets_a_hint() {
+    if model_is_built_in() {
+        generate(&["-m", "height=1700"]).fails(2, &["height", "did you mean 1.7"]);
+        generate(&["-m", "height=170"]).fails(2, &["height", "did you mean 1.7"]);
+        generate(&["-m", "height=0.3"]).fails(2, &["height"]);
+    }
+}
+
+#[test]
+fn contradictions_are_named() {
+    if !model_is_built_in() {
+        return;
+    }
+    generate(&["-m", "height=1.6", "-m", "waist_circumference=1.7"])
+        .fails(2, &["waist_circumference", "height"]);
+    let folder = folder();
+    let file = write(&folder, "r.json", br#"{"measures": {"height": 1.6, "waist_circumference": 1.7}}"#);
+    generate(&["--request", &file]).fails(1, &["waist_circumference", "height"]);
+    // Each in its range, not in one body.
+    generate(&["--sex", "female", "-m", "height=1.95", "-m", "thigh_length=0.30", "-m", "calf_length=0.30"])
+        .fails(1, &["thigh_length"]);
+    generate(&["--z", "0,0"]).fails(2, &["z", "2"]);
+    generate(&["--z", "NaN,0,0,0,0,0,0,0,0,0"]).fails(2, &["z"]);
+}
+
+#[test]
+fn a_damaged_model_file_is_named() {
+    let folder = folder();
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../model/anthronet.safetensors");
+    let mut cases = vec![
+        ("empty.safetensors", Vec::new()),
+        ("noise.safetensors", (0..5000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect()),
+        ("huge_header.safetensors", b"\xff\xff\xff\xff\xff\xff\xff\x7f{}".to_vec()),
+        ("no_tensors.safetensors", b"\x02\0\0\0\0\0\0\0{}".to_vec()),
+    ];
+    if let Ok(good) = fs::read(source) {
+        cases.push(("truncated.safetensors", good[..good.len() / 2].to_vec()));
+        cases.push(("short.safetensors", good[..good.len().saturating_sub(1)].to_vec()));
+        let mut flipped = good;
+        if let Some(byte) = flipped.get_mut(40) {
+            *byte ^= 0x55;
+        }
+        cases.push(("flipped.safetensors", flipped));
+    }
+    for (name, bytes) in cases {
+        let model = write(&folder, name, &bytes);
+        let out = folder.path().join("out.glb");
+        let run = anthronet(&["generate", "-o", &out.to_string_lossy()], &[("ANTHRONET_MODEL", &model)]);
+        run.fails(1, &[name]);
+        assert!(!out.exists(), "{name}");
+    }
+    let out = folder.path().join("out.glb");
+    let missing = [("ANTHRONET_MODEL", "/no/such/model.safetensors")];
+    anthronet(&["generate", "-o", &out.to_string_lossy()], &missing)
+        .fails(1, &["/no/such/model.safetensors"]);
+    anthronet(&["info"], &missing).fails(1, &["/no/such/model.safetensors"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named_and_left_alone() {
+    if !model_is_built_in() {
+        return;
+    }
+    let folder = folder();
+    let file = write(&folder, "file", b"a file, not a folder");
+    let inside = format!("{file}/out.glb");
+    anthronet(&["generate", "-o", &inside], &[]).fails(1, &["out.glb"]);
+    anthronet(&["generate", "-o", &format!("{}/no/such/out.glb", folder.path().display())], &[])
+        .fails(1, &["out.glb", "cannot create"]);
+    fs::create_dir(folder.path().join("dir.glb")).unwrap();
+    anthronet(&["generate", "-o", &folder.path().join("dir.glb").to_string_lossy()], &[])
+        .fails(1, &["dir.glb"]);
+    if cfg!(target_os = "linux") {
+        // A file system that takes no files, whoever asks.
+        anthronet(&["generate", "-o", "/proc/out.glb"], &[]).fails(1, &["/proc/out.glb", "cannot create"]);
+    }
+    assert_eq!(files_in(folder.path()), ["dir.glb", "file"]);
+    assert_eq!(fs::read(&file).unwrap(), b"a file, not a folder");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_that_is_full_is_named_and_stays_a_device() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    if !model_is_built_in() {
+        return;
+    }
+    let folder = folder();
+    let out = folder.path().join("full.glb");
+    symlink("/dev/full", &out).unwrap();
+    anthronet(&["generate", "-o", &out.to_string_lossy()], &[]).fails(1, &["full.glb"]);
+    assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
+    assert_eq!(files_in(folder.path()), ["full.glb"]);
+    // Standard output on a full disk.
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let status = std::process::Command::new(env!("CARGO_BIN_EXE_anthronet"))
+        .arg("info")
+        .stdout(full)
+        .output()
+        .unwrap();
+    assert_eq!(status.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&status.stderr).starts_with("error: standard output"));
+}
+
+#[test]
+fn files_that_are_no_characters_are_refused_by_name() {
+    if !model_is_built_in() {
+        return;
+    }
+    let folder = folder();
+    for (name, bytes) in [
+        ("empty.glb", &b""[..]),
+        ("short.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f"),
+        ("noise.obj", b"v 1 2\nf 1 2 3\n"),
+        ("nan.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"),
+        ("triangle.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("text.gltf", b"{}"),
+    ] {
+        let file = write(&folder, name, bytes);
+        anthronet(&["measure", &file], &[]).fails(1, &[name]);
+        if name != "triangle.obj" {
+            let out = folder.path().join("out.png");
+            anthronet(&["preview", &file, "-o", &out.to_string_lossy()], &[]).fails(1, &[name]);
+            assert!(!out.exists(), "{name}");
+        }
+    }
+    anthronet(&["measure", "/no/such/file.glb"], &[]).fails(1, &["/no/such/file.glb"]);
+}
+
+#[cfg(not(feature = "train"))]
+#[test]
+fn commands_that_need_networks_say_how_to_get_them() {
+    anthronet(&["evaluate"], &[]).fails(2, &["this build has no networks", "cargo anthronet-train"]);
+    anthronet(&["train", "generator"], &[])
+        .fails(2, &["this build has no networks", "cargo anthronet-train"]);
+}

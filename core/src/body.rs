@@ -1,0 +1,175 @@
+//! A body: what [`Model::generate`] returns.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::Result;
+use crate::condition::{Report, Request, SolveOutcome};
+use crate::measure::{Mass, MeasureId, Measurements, Sex, enclosed_volume};
+use crate::mesh::vertex_normals;
+use crate::model::{Character, Model, Solved};
+use crate::rig::{Joint, Skeleton};
+
+/// A person in the bind pose: T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres.
+#[derive(Clone, Debug)]
+pub struct Body {
+    character: Arc<Character>,
+    coefficients: Vec<f64>,
+    // Level 0, then the accessories' points.
+    points: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    joints: Vec<Joint>,
+    report: Report,
+    measurements: Measurements,
+    mass: Mass,
+}
+
+impl Model {
+    /// Makes the body that a request describes.
+    ///
+    /// # Errors
+    /// [`crate::Error::Request`] for a bad field, [`crate::Error::Infeasible`] for measures that no one person has.
+    pub fn generate(&self, request: &Request) -> Result<Body> {
+        let solved = self.solve(request)?;
+        Body::new(self, request, &solved)
+    }
+
+    /// The body between two requests (the paper's Fig. 4): measures and identity at the share `t` of the way, met
+    /// exactly. The sex of the nearer end is reported.
+    ///
+    /// # Errors
+    /// As [`generate`](Self::generate), and when `t` is not in 0..=1.
+    pub fn interpolate(&self, from: &Request, to: &Request, t: f64) -> Result<Body> {
+        if !(0.0..=1.0).contains(&t) {
+            return Err(crate::Error::request("t", format!("expected 0 to 1, got {t}")));
+        }
+        let (a, b) = (self.solve(from)?, self.solve(to)?);
+        let between = |x: f64, y: f64| x + (y - x) * t;
+        let start: Vec<f64> = a
+            .outcome
+            .coefficients
+            .iter()
+            .zip(&b.outcome.coefficients)
+            .map(|(x, y)| between(*x, *y))
+            .collect();
+        let measures: [Option<f64>; 36] =
+            std::array::from_fn(|i| Some(between(a.outcome.obtained[i], b.outcome.obtained[i])));
+        let outcome: SolveOutcome = self.solve_from(&start, &measures)?;
+        let near = if t < 0.5 { &a } else { &b };
+        let mut request = if t < 0.5 { from.clone() } else { to.clone() };
+        request.measures = measures;
+        request.sex = Some(near.prepared.sex);
+        let mut prepared = near.prepared.clone();
+        prepared.given = measures;
+        for (i, value) in measures.iter().flatten().enumerate() {
+            prepared.low90[i] = *value;
+            prepared.high90[i] = *value;
+        }
+        prepared.z = a.prepared.z.iter().zip(&b.prepared.z).map(|(x, y)| between(*x, *y)).collect();
+        Body::new(self, &request, &Solved { prepared, decoded: start, outcome })
+    }
+}
+
+impl Body {
+    fn new(model: &Model, request: &Request, solved: &Solved) -> Result<Self> {
+        let character = model.character().clone();
+        let coefficients = solved.outcome.coefficients.clone();
+        let surface = model.shape_space().body(&coefficients);
+        let cage = character.cage().vertex_count;
+        let mut points = character.subdivision().refine(&surface[..cage])?;
+        let mut shape = model.joints_of(&coefficients);
+        shape.straighten(character.skeleton());
+
+        // Feet on the ground: the lowest vertex of the body.
+        let floor = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        points.extend_from_slice(&surface[cage..]);
+        for p in points.iter_mut().chain(&mut shape.heads).chain(&mut shape.tails) {
+            p.y -= floor;
+        }
+        if let Some(root) = shape.heads.first_mut() {
+            *root = Vec3::ZERO;
+        }
+        let refined = character.subdivision().refined();
+        let body = &points[..refined.vertex_count];
+        let mut normals = vertex_normals(body, &refined.quads, character.faces_around());
+        for accessory in character.accessories() {
+            let start = refined.vertex_count + accessory.start - cage;
+            let own = &points[start..start + accessory.topology.vertex_count];
+            let around = crate::mesh::VertexFaces::new(own.len(), &accessory.topology.quads);
+            normals.extend(vertex_normals(own, &accessory.topology.quads, &around));
+        }
+        let volume = enclosed_volume(|v| body[v as usize].as_dvec3(), &refined.quads);
+        let measurements = solved.outcome.obtained;
+        let height = MeasureId::from_name("height").map_or(0, MeasureId::index);
+        let mass = Mass::new(volume, measurements[height]);
+        let report = Report::new(
+            request,
+            &solved.prepared,
+            model.prior(),
+            &solved.outcome,
+            mass.mass_kg,
+            mass.volume_m3,
+        );
+        let joints = character.skeleton().bind(&shape)?;
+        Ok(Self { character, coefficients, points, normals, joints, report, measurements, mass })
+    }
+
+    /// The sex that the body was conditioned on.
+    pub fn sex(&self) -> Sex {
+        self.report.sex
+    }
+
+    /// What came of the request.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// The 36 measures, metres.
+    pub fn measurements(&self) -> &Measurements {
+        &self.measurements
+    }
+
+    /// Volume, mass and body mass index.
+    pub fn mass(&self) -> Mass {
+        self.mass
+    }
+
+    /// Coefficients in the shape space, metres.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
+    /// What the body shares with all others: topology, skeleton, skin weights.
+    pub fn character(&self) -> &Character {
+        &self.character
+    }
+
+    /// The joint hierarchy.
+    pub fn skeleton(&self) -> &Skeleton {
+        self.character.skeleton()
+    }
+
+    /// Vertices of level 0, in model order; the first ones are those of level 1.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.points[..self.character.subdivision().refined().vertex_count]
+    }
+
+    /// Unit normals of the vertices of level 0.
+    pub fn normals(&self) -> &[Vec3] {
+        &self.normals[..self.vertices().len()]
+    }
+
+    /// Points and normals of an accessory, by its place in [`Character::accessories`]; `None` beyond the last.
+    pub fn accessory(&self, index: usize) -> Option<(&[Vec3], &[Vec3])> {
+        let accessory = self.character.accessories().get(index)?;
+        let start = self.vertices().len() + accessory.start - self.character.cage().vertex_count;
+        let range = start..start + accessory.topology.vertex_count;
+        Some((&self.points[range.clone()], &self.normals[range]))
+    }
+
+    /// The joints in the bind pose, parents first.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+}

@@ -1,0 +1,151 @@
+//! What is the same for everybody: topology, levels of detail, accessories, skeleton and skin weights.
+
+use std::sync::OnceLock;
+
+use crate::mesh::{Lod, Subdivision, Topology, VertexFaces};
+use crate::rig::{Skeleton, SkinWeights};
+use crate::{Error, Result};
+
+/// A submesh that moves with the body: eyes, teeth, tongue or lashes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accessory {
+    /// `eyes`, `teeth`, `tongue` or `lashes`.
+    pub name: String,
+    /// First of its points among the points of the shape space.
+    pub start: usize,
+    /// Topology over its own vertices.
+    pub topology: Topology,
+}
+
+/// Triangles over some of the cage's vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReducedMesh {
+    /// The vertices in use, ascending.
+    pub vertices: Vec<u32>,
+    /// Triangles over places in `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates of the corners, as numbers of the cage's.
+    pub triangle_uvs: Vec<[u32; 3]>,
+}
+
+/// The constant half of every body.
+#[derive(Debug)]
+pub struct Character {
+    cage: Topology,
+    subdivision: Subdivision,
+    faces_around: VertexFaces,
+    reduced: [ReducedMesh; 2],
+    accessories: Vec<Accessory>,
+    skeleton: Skeleton,
+    // Of the cage, then of the accessories.
+    weights: SkinWeights,
+    refined_weights: OnceLock<Result<SkinWeights>>,
+}
+
+impl Character {
+    /// Puts the parts together.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when they do not fit: see each part.
+    pub fn new(
+        cage: Topology,
+        reduced: [ReducedMesh; 2],
+        accessories: Vec<Accessory>,
+        skeleton: Skeleton,
+        weights: SkinWeights,
+    ) -> Result<Self> {
+        let subdivision = Subdivision::new(&cage)?;
+        let mut points = cage.vertex_count;
+        for accessory in &accessories {
+            accessory.topology.validate()?;
+            if accessory.start != points {
+                return Err(Error::invalid("accessory", format!("{} does not follow", accessory.name)));
+            }
+            points += accessory.topology.vertex_count;
+        }
+        if weights.len() != points {
+            return Err(Error::invalid(
+                "skin weights",
+                format!("expected {points} vertices, got {}", weights.len()),
+            ));
+        }
+        for mesh in &reduced {
+            let fits = mesh.triangles.len() == mesh.triangle_uvs.len()
+                && mesh.vertices.iter().all(|v| (*v as usize) < cage.vertex_count)
+                && mesh.vertices.is_sorted()
+                && mesh.triangles.iter().flatten().all(|v| (*v as usize) < mesh.vertices.len())
+                && mesh.triangle_uvs.iter().flatten().all(|t| (*t as usize) < cage.uvs.len());
+            if !fits {
+                return Err(Error::invalid("level of detail", "indices out of range"));
+            }
+        }
+        let refined = subdivision.refined();
+        let faces_around = VertexFaces::new(refined.vertex_count, &refined.quads);
+        let refined_weights = OnceLock::new();
+        Ok(Self { cage, subdivision, faces_around, reduced, accessories, skeleton, weights, refined_weights })
+    }
+
+    /// The cage, which is also the topology of level 1.
+    pub fn cage(&self) -> &Topology {
+        &self.cage
+    }
+
+    /// The step from the cage to level 0.
+    pub fn subdivision(&self) -> &Subdivision {
+        &self.subdivision
+    }
+
+    /// Faces around the vertices of level 0.
+    pub fn faces_around(&self) -> &VertexFaces {
+        &self.faces_around
+    }
+
+    /// The index lists of levels 2 and 3; `None` for the others.
+    pub fn reduced(&self, lod: Lod) -> Option<&ReducedMesh> {
+        match lod {
+            Lod::Lod0 | Lod::Lod1 => None,
+            Lod::Lod2 => Some(&self.reduced[0]),
+            Lod::Lod3 => Some(&self.reduced[1]),
+        }
+    }
+
+    /// Number of the body's vertices at a level.
+    pub fn vertex_count(&self, lod: Lod) -> usize {
+        match self.reduced(lod) {
+            Some(mesh) => mesh.vertices.len(),
+            None if lod == Lod::Lod0 => self.subdivision.refined().vertex_count,
+            None => self.cage.vertex_count,
+        }
+    }
+
+    /// Eyes, teeth, tongue, lashes.
+    pub fn accessories(&self) -> &[Accessory] {
+        &self.accessories
+    }
+
+    /// Joints.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Number of points that the shape space must have.
+    pub fn point_count(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// Skin weights of an accessory.
+    pub fn accessory_weights(&self, accessory: &Accessory) -> SkinWeights {
+        self.weights.rows(accessory.start..accessory.start + accessory.topology.vertex_count)
+    }
+
+    /// Skin weights of the body at level 0; the first rows are those of level 1.
+    ///
+    /// # Errors
+    /// None for a character that [`Character::new`] accepted.
+    pub fn body_weights(&self) -> Result<&SkinWeights> {
+        let made = self
+            .refined_weights
+            .get_or_init(|| self.weights.rows(0..self.cage.vertex_count).refine(&self.subdivision));
+        made.as_ref().map_err(|e| Error::invalid("skin weights", e.to_string()))
+    }
+}
