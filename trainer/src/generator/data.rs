@@ -222,7 +222,7 @@ impl Frame {
         for (row, &at) in basis.chunks_exact_mut(k).zip(&order) {
             row[at] = 1.0;
         }
-        let mut values = vec![0.0; count];
+        let mut values = vec![0.0_f64; count];
         for _ in 0..200 {
             let mut next = vec![0.0; count * k];
             for (to, from) in next.chunks_exact_mut(k).zip(basis.chunks_exact(k)) {
@@ -232,7 +232,7 @@ impl Frame {
                     }
                 }
             }
-            for i in 0..count {
+            for (i, value) in values.iter_mut().enumerate() {
                 let (done, rest) = next.split_at_mut(i * k);
                 let row = &mut rest[..k];
                 for other in done.chunks_exact(k) {
@@ -240,7 +240,7 @@ impl Frame {
                     row.iter_mut().zip(other).for_each(|(a, b)| *a -= dot * b);
                 }
                 let norm = row.iter().map(|v| v * v).sum::<f64>().sqrt();
-                values[i] = norm;
+                *value = norm;
                 row.iter_mut().for_each(|v| *v /= norm.max(1e-300));
             }
             basis = next;

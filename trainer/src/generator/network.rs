@@ -52,7 +52,9 @@ fn variable(values: Vec<f32>, shape: &[usize]) -> Result<Var> {
 /// Uniform in ± 1/√inputs, the usual start of a linear layer.
 fn uniform(rng: &mut impl Rng, inputs: usize, count: usize) -> Vec<f32> {
     let bound = 1.0 / (inputs as f64).sqrt();
-    (0..count).map(|_| ((rng.next_u32() as f64 / f64::from(u32::MAX) * 2.0 - 1.0) * bound) as f32).collect()
+    (0..count)
+        .map(|_| ((f64::from(rng.next_u32()) / f64::from(u32::MAX) * 2.0 - 1.0) * bound) as f32)
+        .collect()
 }
 
 impl Block {

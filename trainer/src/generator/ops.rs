@@ -253,21 +253,17 @@ fn prelu_backward(
     dx: &mut [f32],
     [d_scale, d_shift, d_slope]: [&mut [f32]; 3],
 ) {
-    fn one(p: [f32; 3], x: f32, g: f32, sums: [&mut f32; 3]) -> f32 {
-        let u = x * p[0] + p[1];
-        let factor = if u > 0.0 { 1.0 } else { p[2] };
-        let du = g * factor;
-        *sums[0] += du * x;
-        *sums[1] += du;
-        *sums[2] += g * u.min(0.0);
-        du * p[0]
-    }
     let sums = d_scale.iter_mut().zip(d_shift).zip(d_slope);
     let parameters = scale.iter().zip(shift).zip(slope);
     for ((((dx, x), g), ((a, b), c)), ((p, q), r)) in
         dx.iter_mut().zip(x).zip(gradient).zip(sums).zip(parameters)
     {
-        *dx = one([*p, *q, *r], *x, *g, [a, b, c]);
+        let u = x * p + q;
+        let du = g * if u > 0.0 { 1.0 } else { *r };
+        *a += du * x;
+        *b += du;
+        *c += g * u.min(0.0);
+        *dx = du * p;
     }
 }
 
