@@ -37,13 +37,15 @@ pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, 
     let cache = PathBuf::from(CACHE);
     let (corpus, definitions, dataset) = data(&cache)?;
     let form = laplacian(&dataset.basis, &corpus);
+    let coordinates = 3.0 * crate::assets::CAGE_VERTICES as f64;
     let statistics = ShapeStatistics {
         vertex_count: crate::assets::CAGE_VERTICES,
         coefficient_std: dataset.basis.std.clone(),
+        // A mean over coordinates, as the reconstruction loss is.
         laplacian: Some(QuadraticForm {
-            vector: form.vector.iter().map(|v| 2.0 * v).collect(),
-            matrix: form.matrix,
-            constant: form.constant,
+            matrix: form.matrix.iter().map(|m| m / coordinates).collect(),
+            vector: form.vector.iter().map(|v| 2.0 * v / coordinates).collect(),
+            constant: form.constant / coordinates,
         }),
     };
     let config = if plain { GeneratorConfig::paper() } else { GeneratorConfig::default() };

@@ -30,7 +30,7 @@ pub struct FourierConfig {
 
 impl Default for FourierConfig {
     fn default() -> Self {
-        Self { components: 0, sigma: 0.03, seed: 1 }
+        Self { components: 8, sigma: 0.02, seed: 1 }
     }
 }
 

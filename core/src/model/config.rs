@@ -57,7 +57,7 @@ impl Default for GeneratorConfig {
             latent_skip: true,
             coefficients: 300,
             alpha: 1.0,
-            beta: 1e-4,
+            beta: 5e-4,
             gamma: 0.0,
             scale_power: 0.5,
         }
