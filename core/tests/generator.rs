@@ -1,0 +1,204 @@
+//! The trained model, from a request to a body: exactness, determinism, plausibility.
+
+use std::sync::OnceLock;
+
+use anthronet::condition::{Fill, MeasuredShape, Request};
+use anthronet::export::gltf::to_glb;
+use anthronet::export::{Scene, SceneOptions};
+use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
+use anthronet::mesh::Lod;
+use anthronet::model::Model;
+use anthronet::random::Random;
+use anthronet::{Body, Error};
+
+fn model() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| Model::embedded().unwrap())
+}
+
+fn somebody(sex: Sex, seed: u64) -> Request {
+    Request { sex: Some(sex), seed, fill: Fill::Sample, ..Request::default() }
+}
+
+/// The body's measures, read off its vertices of level 0 and not off its coefficients.
+fn measured(body: &Body) -> [f64; MEASURE_COUNT] {
+    model().definitions().read_all(|v| body.vertices()[v as usize].as_dvec3())
+}
+
+#[test]
+fn given_measures_are_met_on_the_vertices() {
+    for seed in 1..=6 {
+        let other = model().generate(&somebody(Sex::ALL[seed as usize % 2], seed)).unwrap();
+        let mut request = Request { sex: Some(other.sex()), seed: seed + 100, ..Request::default() };
+        let mut random = Random::new(seed, 9);
+        for (slot, value) in request.measures.iter_mut().zip(measured(&other)) {
+            // To the millimetre, as people type.
+            *slot = (random.uniform() < 0.7).then_some((1000.0 * value).round() / 1000.0);
+        }
+        let body = model().generate(&request).unwrap();
+        let obtained = measured(&body);
+        for (id, asked) in request.given() {
+            let error = (obtained[id.index()] - asked).abs();
+            // A micrometre: vertices are f32 near two metres.
+            assert!(error < 2e-6, "{id}: asked {asked}, obtained {}", obtained[id.index()]);
+            assert!((body.measurements()[id.index()] - obtained[id.index()]).abs() < 2e-6);
+        }
+    }
+}
+
+#[test]
+fn the_papers_six_vectors_are_met() {
+    let text = include_str!("../../tests/data/paper_vectors.json");
+    let vectors: serde_json::Value = serde_json::from_str(text).unwrap();
+    let entries: Vec<&serde_json::Value> = match &vectors {
+        serde_json::Value::Array(list) => list.iter().collect(),
+        serde_json::Value::Object(map) => map.values().filter(|v| v.is_object()).collect(),
+        other => panic!("unexpected {other}"),
+    };
+    assert_eq!(entries.len(), 6);
+    for entry in entries {
+        let mut fields = entry.as_object().unwrap().clone();
+        fields.retain(|key, _| ["sex", "measures", "seed", "fill"].contains(&key.as_str()));
+        let request = Request::from_json(&serde_json::Value::Object(fields).to_string()).unwrap();
+        assert_eq!(request.given().count(), MEASURE_COUNT);
+        let body = model().generate(&request).unwrap();
+        let obtained = measured(&body);
+        for (id, asked) in request.given() {
+            assert!((obtained[id.index()] - asked).abs() < 1e-4, "{id} {asked} {}", obtained[id.index()]);
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_measures_match_finite_differences() {
+    let space = model().measured_space();
+    let k = space.dim();
+    let mut random = Random::new(3, 1);
+    let c: Vec<f64> = model().shape_space().deviations().iter().map(|s| 0.7 * s * random.normal()).collect();
+    let mut jacobian = vec![0.0; MEASURE_COUNT * k];
+    space.measure(&c, Some(&mut jacobian));
+    let step = 1e-5;
+    for component in [0, 1, 2, 5, 17, 63, 150, 299] {
+        let shifted = |by: f64| {
+            let mut moved = c.clone();
+            moved[component] += by;
+            space.measure(&moved, None)
+        };
+        let (high, low) = (shifted(step), shifted(-step));
+        for id in MeasureId::all() {
+            let numeric = (high[id.index()] - low[id.index()]) / (2.0 * step);
+            let analytic = jacobian[id.index() * k + component];
+            // Tapes have kinks where the hull changes corners; the step is small beside a corner's range.
+            assert!((numeric - analytic).abs() < 2e-4, "{id} by {component}: {numeric} {analytic}");
+        }
+    }
+}
+
+#[test]
+fn the_bind_pose_is_an_exact_t_on_the_ground() {
+    let body = model().generate(&somebody(Sex::Male, 4)).unwrap();
+    let at = |name: &str| {
+        let j = body.skeleton().find(name).unwrap();
+        body.joints()[j].model_from_joint.translation
+    };
+    for side in ["l", "r"] {
+        let shoulder = at(&format!("upperarm_{side}"));
+        for name in ["lowerarm", "hand", "upperarm_twist_02", "lowerarm_twist_01"] {
+            let joint = at(&format!("{name}_{side}"));
+            assert_eq!((joint.y, joint.z), (shoulder.y, shoulder.z), "{name}_{side}");
+            assert!((joint.x - shoulder.x) * if side == "l" { 1.0 } else { -1.0 } > 0.0, "+X is the left");
+        }
+    }
+    assert_eq!(at("Root").to_array(), [0.0; 3]);
+    assert_eq!((at("pelvis").x, at("pelvis").z), (0.0, 0.0));
+    let lowest = body.vertices().iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
+    assert_eq!(lowest, 0.0);
+    // Faces +Z: the nose, foremost of the head, is before the back of the head.
+    assert!(at("eye_l").z > at("head").z && at("eye_l").x > at("eye_r").x);
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let bytes = || {
+        let body = model().generate(&somebody(Sex::Female, 12)).unwrap();
+        to_glb(&Scene::from_body(&body, &SceneOptions::default()).unwrap()).unwrap()
+    };
+    let alone = bytes();
+    for threads in [2, 8] {
+        let together: Vec<Vec<u8>> = std::thread::scope(|scope| {
+            let handles: Vec<_> = (0..threads).map(|_| scope.spawn(bytes)).collect();
+            handles.into_iter().map(|h| h.join().unwrap()).collect()
+        });
+        assert!(together.iter().all(|b| *b == alone), "{threads} threads");
+    }
+}
+
+#[test]
+fn levels_share_vertices_and_joints() {
+    let body = model().generate(&Request { sex: Some(Sex::Female), ..Request::default() }).unwrap();
+    let scene = |lod| {
+        Scene::from_body(&body, &SceneOptions { lod, influences: 8, ..SceneOptions::default() }).unwrap()
+    };
+    let finest = scene(Lod::Lod0);
+    finest.validate().unwrap();
+    let faces = |s: &Scene| 2 * s.meshes[0].quads.positions.len() + s.meshes[0].triangles.positions.len();
+    let mut shares = Vec::new();
+    for lod in Lod::ALL {
+        let coarse = scene(lod);
+        coarse.validate().unwrap();
+        assert_eq!(coarse.joints, finest.joints);
+        assert_eq!(coarse.meshes[0].positions.len(), body.character().vertex_count(lod));
+        shares.push(faces(&coarse) as f64 / faces(&finest) as f64);
+        if lod == Lod::Lod1 {
+            let n = coarse.meshes[0].positions.len();
+            assert_eq!(coarse.meshes[0].positions[..], finest.meshes[0].positions[..n]);
+        }
+    }
+    assert_eq!(shares[1], 0.25);
+    // "About 25 % and 6 %" of level 1.
+    assert!((0.05..0.08).contains(&shares[2]) && (0.012..0.022).contains(&shares[3]), "{shares:?}");
+}
+
+#[test]
+fn a_person_between_two_has_measures_between() {
+    let (a, b) = (somebody(Sex::Female, 1), somebody(Sex::Male, 2));
+    let (first, last) = (model().generate(&a).unwrap(), model().generate(&b).unwrap());
+    let middle = model().interpolate(&a, &b, 0.25).unwrap();
+    for id in MeasureId::all() {
+        let [x, y, z] = [&first, &last, &middle].map(|body| measured(body)[id.index()]);
+        assert!((z - (x + 0.25 * (y - x))).abs() < 1e-5, "{id}");
+    }
+    assert!(matches!(model().interpolate(&a, &b, 1.5), Err(Error::Request { .. })));
+    assert!(matches!(model().interpolate(&a, &b, f64::NAN), Err(Error::Request { .. })));
+}
+
+#[test]
+fn open_measures_lie_in_their_interval_and_seeds_make_others() {
+    let mut request = Request { sex: Some(Sex::Male), ..Request::default() };
+    request.set("height", 1.80).unwrap();
+    let likeliest = model().generate(&request).unwrap();
+    let outside = likeliest
+        .report()
+        .measures
+        .iter()
+        .filter(|m| !m.given && !(m.low90..=m.high90).contains(&m.obtained))
+        .count();
+    assert_eq!(outside, 0, "the likeliest person is inside every 90 % interval");
+    request.seed = 5;
+    let other = model().generate(&request).unwrap();
+    assert_ne!(other.coefficients(), likeliest.coefficients());
+    assert!((measured(&other)[3] - 1.80).abs() < 2e-6);
+}
+
+#[test]
+fn nobody_is_made_of_a_contradiction() {
+    let mut request = Request { sex: Some(Sex::Female), ..Request::default() };
+    request.set("height", 1.52).unwrap();
+    request.set("thigh_length", 0.68).unwrap();
+    request.set("calf_length", 0.30).unwrap();
+    let message = model().generate(&request).unwrap_err().to_string();
+    assert!(message.contains("thigh_length") && message.contains("nearest"), "{message}");
+    request.nearest = true;
+    let body = model().generate(&request).unwrap();
+    assert!(!body.report().conflicts.is_empty() && !body.report().warnings.is_empty());
+}
