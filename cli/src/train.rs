@@ -46,6 +46,8 @@ pub(crate) struct TrainArguments {
 #[derive(Subcommand)]
 pub(crate) enum Network {
     Generator(GeneratorArguments),
+    /// Lay the measures on the mean body anew: writes model/measures.json. The generator must be trained after it.
+    Measures,
 }
 
 /// The conditional autoencoder that makes bodies from measures.
@@ -82,8 +84,10 @@ pub(crate) fn evaluate(_: &EvaluateArguments) -> Result<()> {
 
 #[cfg(not(feature = "train"))]
 pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
-    let Network::Generator(_) = &arguments.network;
-    Err(no_networks("train generator"))
+    Err(no_networks(match &arguments.network {
+        Network::Generator(_) => "train generator",
+        Network::Measures => "train measures",
+    }))
 }
 
 #[cfg(feature = "train")]
@@ -102,7 +106,10 @@ pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
 #[cfg(feature = "train")]
 pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
     use crate::failure::Failure;
-    let Network::Generator(generator) = &arguments.network;
+    let Network::Generator(generator) = &arguments.network else {
+        return anthronet_trainer::commands::lay_measures(std::path::Path::new("model/measures.json"))
+            .map_err(|e| Failure::failed(e.to_string()));
+    };
     anthronet_trainer::commands::train_generator(
         generator.resume,
         generator.epochs.map(|n| n as usize),

@@ -12,7 +12,7 @@ use crate::model::{Character, Model, Solved};
 use crate::rig::{Joint, Skeleton};
 
 /// A person in the bind pose: T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Body {
     character: Arc<Character>,
     coefficients: Vec<f64>,
@@ -23,6 +23,12 @@ pub struct Body {
     report: Report,
     measurements: Measurements,
     mass: Mass,
+}
+
+impl std::fmt::Debug for Body {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Body").field("report", &self.report).finish_non_exhaustive()
+    }
 }
 
 impl Model {

@@ -54,6 +54,9 @@ const CROWN: usize = 881;
 const SOLES: [usize; 2] = [13_057, 6_461];
 /// Difference between left and right of a sided slider, standard deviation.
 const ASYMMETRY: f64 = 0.03;
+/// Our own slider, and how far its sides differ: nothing else lets the toes of two feet differ, so it has to.
+const TOE_LENGTH: &str = "toe-length";
+const TOE_ASYMMETRY: f64 = 0.12;
 
 impl Sampler {
     /// Prepares the sliders; adds our own toe length to the targets, which MakeHuman has no slider for.
@@ -62,7 +65,7 @@ impl Sampler {
     /// [`Error::Invalid`] when the biases name an unknown slider.
     pub fn new(assets: &mut Assets) -> Result<Self> {
         let toes = toe_length(assets)?;
-        assets.targets.add_procedural("toe-length", "feet", toes);
+        assets.targets.add_procedural(TOE_LENGTH, "feet", toes);
         let mut biases: BTreeMap<String, f64> =
             serde_json::from_str(BIASES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))?;
         let mut locals = Vec::new();
@@ -133,8 +136,9 @@ impl Sampler {
                     Spread::Uniform(half) => half * (2.0 * rng.uniform() - 1.0),
                     Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.0, 2.0),
                 };
+            let asymmetry = if modifier.name.starts_with(TOE_LENGTH) { TOE_ASYMMETRY } else { ASYMMETRY };
             for [negative, positive] in &modifier.pairs {
-                let sided = if modifier.pairs.len() > 1 { ASYMMETRY * rng.normal() } else { 0.0 };
+                let sided = if modifier.pairs.len() > 1 { asymmetry * rng.normal() } else { 0.0 };
                 let value = value + sided;
                 let target = if value < 0.0 { negative } else { positive };
                 if let Some(number) = target {
@@ -203,11 +207,12 @@ fn three(value: f64, names: [&'static str; 3]) -> [(&'static str, f64); 3] {
     }
 }
 
-/// Toes longer by a quarter at weight one: what lies before the ball of the foot is stretched forwards.
-fn toe_length(assets: &Assets) -> Result<Target> {
-    let mut target = Target::default();
+/// Toes of the left and the right foot longer by a quarter at weight one: what lies before the ball is stretched
+/// forwards.
+fn toe_length(assets: &Assets) -> Result<[Target; 2]> {
+    let mut feet = [Target::default(), Target::default()];
     let heads = assets.mesh.raw_of_surface.len();
-    for side in ["l", "r"] {
+    for (target, side) in feet.iter_mut().zip(["l", "r"]) {
         let ball = assets
             .rig
             .find(&format!("ball_{side}"))
@@ -226,7 +231,7 @@ fn toe_length(assets: &Assets) -> Result<Target> {
         target.points.push(toe_tip as u32);
         target.deltas.push(Vec3::Z * 0.25 * (assets.base[toe_tip].z - start.z).max(0.0));
     }
-    Ok(target)
+    Ok(feet)
 }
 
 /// Random numbers by the portable functions of `libm`, so that every host draws the same people.

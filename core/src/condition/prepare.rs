@@ -1,14 +1,17 @@
 //! A request made ready for the network: checked, its sex decided, its conflicts found, its open measures filled.
 
 use super::feasibility::{Conflict, Feasibility, Limits};
-use super::prior::{GivenMeasures, PROJECTION_ERROR, Prior};
+use super::prior::{Conditional, GivenMeasures, PROJECTION_ERROR, Prior, SexPrior};
 use super::request::{Fill, MeasureRange, Request};
-use crate::measure::{MEASURE_COUNT, Measurements, Sex};
+use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
 use crate::random::Random;
 use crate::{Error, Result};
 
 /// The stream of [`Random`] that open measures are drawn from.
 const FILL_STREAM: u64 = 2;
+
+/// Draws of the open measures before the mean is taken: what is given leaves no one plausible.
+const MOST_DRAWS: usize = 60;
 
 /// What the network and the solve need, and what the report says about how it came about. Metres.
 #[derive(Clone, Debug)]
@@ -66,7 +69,7 @@ impl Prepared {
         let conditional = prior.condition(&feasibility.nearest)?;
         let filled = match request.fill {
             Fill::Mean => *conditional.mean(),
-            Fill::Sample => conditional.sample(&mut Random::new(request.seed, FILL_STREAM)),
+            Fill::Sample => plausible_sample(prior, &conditional, request.seed),
         };
         let (low90, high90) = conditional.interval90();
         Ok(Self {
@@ -81,6 +84,27 @@ impl Prepared {
             conflicts: feasibility.conflicts,
         })
     }
+}
+
+/// Draws the open measures until each lies among those of people of this sex: the Gaussian's tails reach beyond
+/// anybody. Draws that keep failing are pulled towards the mean.
+fn plausible_sample(prior: &SexPrior, conditional: &Conditional, seed: u64) -> Measurements {
+    let mut random = Random::new(seed, FILL_STREAM);
+    let mean = conditional.mean();
+    let mut scale = 1.0;
+    for _ in 0..MOST_DRAWS {
+        let draw = conditional.sample(&mut random);
+        let pulled: Measurements = std::array::from_fn(|i| mean[i] + scale * (draw[i] - mean[i]));
+        let among_people = MeasureId::all().zip(conditional.given()).all(|(id, given)| {
+            let percentile = prior.percentile(id, pulled[id.index()]);
+            *given || (percentile > 0.0 && percentile < 100.0)
+        });
+        if among_people {
+            return pulled;
+        }
+        scale *= 0.9;
+    }
+    *mean
 }
 
 fn guess_sex(request: &Request, prior: &Prior, limits: &Limits, warnings: &mut Vec<String>) -> Result<Sex> {

@@ -73,12 +73,15 @@ impl Scene {
             };
             let mut mesh = quad_mesh(title, positions, normals, &accessory.topology);
             skin(&mut mesh, &character.accessory_weights(accessory).influences(options.influences)?);
-            mesh.material = materials.len() as u32;
-            let mut material = SceneMaterial::dielectric(title, color, roughness);
-            material.double_sided = accessory.name == "lashes";
-            material.alpha_mode = AlphaMode::Opaque;
-            materials.push(material);
-            meshes.push(mesh);
+            let parts = if accessory.name == "eyes" { split_eyes(&mesh) } else { vec![(mesh, color)] };
+            for (mut mesh, color) in parts {
+                mesh.material = materials.len() as u32;
+                let mut material = SceneMaterial::dielectric(mesh.name.clone(), color, roughness);
+                material.double_sided = accessory.name == "lashes";
+                material.alpha_mode = AlphaMode::Opaque;
+                materials.push(material);
+                meshes.push(mesh);
+            }
         }
         let report = body.report();
         let extras = json!({
@@ -132,6 +135,70 @@ fn body_mesh(body: &Body, options: &SceneOptions) -> Result<SceneMesh> {
     };
     skin(&mut mesh, &rows.influences(options.influences)?);
     Ok(mesh)
+}
+
+/// Where iris and pupil end, degrees off the eye's forward axis: halfway between the eyeballs' rings of faces.
+const EYE_PARTS: [(&str, f32, [f32; 4]); 3] = [
+    ("EyePupils", 11.5, [0.003, 0.003, 0.003, 1.0]),
+    ("EyeIrises", 24.0, [0.075, 0.036, 0.016, 1.0]),
+    ("Eyes", 180.0, [0.80, 0.78, 0.75, 1.0]),
+];
+
+/// Eyeballs as white, iris and pupil, so that they look somewhere in programs that have no texture for them.
+fn split_eyes(eyes: &SceneMesh) -> Vec<(SceneMesh, [f32; 4])> {
+    let at = |v: u32| eyes.positions.get(v as usize).map_or(Vec3::ZERO, |p| Vec3::from_array(*p));
+    let centre = |left: bool| {
+        let side: Vec<Vec3> =
+            eyes.positions.iter().map(|p| Vec3::from_array(*p)).filter(|p| (p.x > 0.0) == left).collect();
+        side.iter().sum::<Vec3>() / side.len().max(1) as f32
+    };
+    let centres = [centre(false), centre(true)];
+    let cosine = |quad: &[u32; 4]| {
+        let middle = quad.iter().map(|&v| at(v)).sum::<Vec3>() / 4.0;
+        (middle - centres[usize::from(middle.x > 0.0)]).normalize_or_zero().z
+    };
+    let mut parts: Vec<(SceneMesh, [f32; 4])> = Vec::new();
+    let mut from = 1.1;
+    for (name, degrees, color) in EYE_PARTS {
+        let to = libm::cosf(degrees.to_radians());
+        let faces: Vec<usize> = (0..eyes.quads.positions.len())
+            .filter(|&f| {
+                let c = cosine(&eyes.quads.positions[f]);
+                c < from && (c >= to || degrees >= 180.0)
+            })
+            .collect();
+        from = to;
+        if !faces.is_empty() {
+            parts.push((submesh(eyes, name, &faces), color));
+        }
+    }
+    // The white first: it is the largest.
+    parts.reverse();
+    parts
+}
+
+/// Some faces of a mesh with only the vertices that they use.
+fn submesh(mesh: &SceneMesh, name: &str, faces: &[usize]) -> SceneMesh {
+    let mut used: Vec<u32> = faces.iter().flat_map(|&f| mesh.quads.positions[f]).collect();
+    used.sort_unstable();
+    used.dedup();
+    let place = |v: u32| used.binary_search(&v).unwrap_or(0) as u32;
+    let n = mesh.influences_per_vertex;
+    let rows = |v: &u32| *v as usize * n..(*v as usize + 1) * n;
+    SceneMesh {
+        name: name.into(),
+        positions: used.iter().map(|&v| mesh.positions[v as usize]).collect(),
+        normals: used.iter().map(|&v| mesh.normals[v as usize]).collect(),
+        uvs: mesh.uvs.clone(),
+        quads: Corners {
+            positions: faces.iter().map(|&f| mesh.quads.positions[f].map(place)).collect(),
+            uvs: faces.iter().map(|&f| mesh.quads.uvs[f]).collect(),
+        },
+        influences_per_vertex: n,
+        joint_indices: used.iter().flat_map(|v| mesh.joint_indices[rows(v)].iter().copied()).collect(),
+        joint_weights: used.iter().flat_map(|v| mesh.joint_weights[rows(v)].iter().copied()).collect(),
+        ..SceneMesh::default()
+    }
 }
 
 fn quad_mesh(name: &str, positions: &[Vec3], normals: &[Vec3], topology: &Topology) -> SceneMesh {

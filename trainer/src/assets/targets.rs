@@ -110,17 +110,19 @@ impl TargetSet {
         self.targets.is_empty()
     }
 
-    /// Adds a target and a modifier of our own that moves by it in both directions.
-    pub fn add_procedural(&mut self, name: &str, group: &str, target: Target) {
-        let number = self.targets.len();
-        let negative =
-            Target { points: target.points.clone(), deltas: target.deltas.iter().map(|d| -*d).collect() };
-        self.targets.extend([target, negative]);
-        self.modifiers.push(Modifier {
-            name: format!("{name}|{group}"),
-            group: group.to_owned(),
-            pairs: vec![[Some(number + 1), Some(number)]],
-        });
+    /// Adds a sided modifier of our own, left first, that moves by the targets in both directions.
+    pub fn add_procedural(&mut self, name: &str, group: &str, sides: [Target; 2]) {
+        let pairs = sides
+            .into_iter()
+            .map(|target| {
+                let number = self.targets.len();
+                let deltas = target.deltas.iter().map(|d| -*d).collect();
+                let negative = Target { points: target.points.clone(), deltas };
+                self.targets.extend([target, negative]);
+                [Some(number + 1), Some(number)]
+            })
+            .collect();
+        self.modifiers.push(Modifier { name: format!("{name}|{group}"), group: group.to_owned(), pairs });
         self.modifiers.sort_by(|a, b| a.name.cmp(&b.name));
     }
 
