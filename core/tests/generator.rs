@@ -13,7 +13,7 @@ use anthronet::{Body, Error};
 
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
-    MODEL.get_or_init(|| Model::embedded().unwrap())
+    MODEL.get_or_init(|| Model::embedded().unwrap_or_else(|e| panic!("{e}")))
 }
 
 fn somebody(sex: Sex, seed: u64) -> Request {

@@ -7,6 +7,9 @@ use glam::{DVec2, DVec3};
 
 /// Perimeter of the convex hull by gift wrapping: slow, and not the library's way.
 fn hull_perimeter(points: &[DVec2]) -> f64 {
+    let mut points = points.to_vec();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
     let Some(start) = (0..points.len()).min_by(|&a, &b| points[a].x.total_cmp(&points[b].x)) else {
         return 0.0;
     };
@@ -33,7 +36,8 @@ fn cut(vertices: &[glam::Vec3], quads: &[[u32; 4]], centre: DVec3, normal: DVec3
     let mut out = Vec::new();
     for &[a, b, c, d] in quads {
         for [p, q] in [[a, b], [b, c], [c, d], [d, a], [a, c]] {
-            let (x, y) = (at(p), at(q));
+            // One order for both faces of an edge, so that both cut it at the very same place.
+            let (x, y) = (at(p.min(q)), at(p.max(q)));
             let (h, k) = ((x - centre).dot(normal), (y - centre).dot(normal));
             if (h < 0.0) != (k < 0.0) {
                 let place = x.lerp(y, h / (h - k));

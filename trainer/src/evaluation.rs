@@ -138,9 +138,9 @@ fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Resu
     let obtained = model.measures_of(&decoded);
 
     let mut request = Request { sex: Some(specimen.sex), ..Request::default() };
-    // Every second request gives only a part of the measures.
+    // About every second request gives only a part of the measures.
     let mut random = Random::new(number, 77);
-    let keep = if number % 2 == 0 { 1.0 } else { random.uniform() };
+    let keep = if random.uniform() < 0.5 { 1.0 } else { random.uniform() };
     for (slot, value) in request.measures.iter_mut().zip(measures) {
         *slot = (random.uniform() < keep).then_some(value);
     }

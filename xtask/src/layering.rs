@@ -17,9 +17,9 @@ const TABLE: &[(&str, &[&str])] = &[
     ("rig", &["mesh"]),
     ("condition", &["measure", "mesh"]),
     ("model", &["condition", "measure", "mesh", "rig"]),
-    ("import", &["measure", "mesh", "rig"]),
     ("body", &["model", "condition", "measure", "mesh", "rig"]),
     ("export", &["body", "model", "condition", "measure", "mesh", "rig"]),
+    ("import", &["export", "measure", "mesh", "rig"]),
 ];
 
 /// Rooms without a view of bodies, open to everybody.

@@ -71,7 +71,7 @@ impl Definition {
         }
         for point in &self.points {
             let sum: f64 = point.0.iter().map(|t| t.1).sum();
-            if !((sum - 1.0).abs() < 1e-6) {
+            if !sum.is_finite() || (sum - 1.0).abs() > 1e-6 {
                 return Err(format!("weights of a point sum to {sum}, not 1"));
             }
         }

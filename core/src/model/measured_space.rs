@@ -112,9 +112,7 @@ impl MeasuredSpace {
     fn places(&self, c: &[f64]) -> Vec<DVec3> {
         let mut at = vec![DVec3::ZERO; self.mean.len()];
         for &place in &self.eager {
-            for axis in 0..3 {
-                at[place as usize][axis] = self.coordinate(place, axis, c);
-            }
+            at[place as usize] = DVec3::from_array([0, 1, 2].map(|axis| self.coordinate(place, axis, c)));
         }
         for (definition, lazy) in self.definitions.iter().zip(&self.lazy) {
             let Some(Lazy { axis, places }) = lazy else { continue };

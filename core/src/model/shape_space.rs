@@ -38,8 +38,8 @@ impl ShapeSpace {
     ) -> Result<Self> {
         let n = mean.len();
         let fits = n > 0
-            && n % 3 == 0
-            && fine.len() % n == 0
+            && n.is_multiple_of(3)
+            && fine.len().is_multiple_of(n)
             && coarse.len() == n * scales.len()
             && fine.len() / n + scales.len() == std.len();
         if !fits {
@@ -168,10 +168,10 @@ mod tests {
         let c = [0.3, -0.2, 0.1, 0.5, -0.4];
         let body = space.body(&c);
         for p in [0, 1, 1_365, 1_366, 1_999] {
-            for axis in 0..3 {
+            for (axis, x) in body[p].to_array().into_iter().enumerate() {
                 let exact: f64 = 0.5 + (0..5).map(|k| c[k] * space.component(k, p)[axis]).sum::<f64>();
                 // Tolerance: five roundings of f32 near one.
-                assert!((f64::from(body[p][axis]) - exact).abs() < 5e-7);
+                assert!((f64::from(x) - exact).abs() < 5e-7);
             }
         }
         assert!(ShapeSpace::new(vec![0.0; 4], vec![], vec![], vec![], vec![]).is_err());

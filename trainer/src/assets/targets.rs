@@ -181,12 +181,11 @@ impl Reduction {
         for (p, &raw) in mesh.raw_of_surface.iter().enumerate() {
             points_of_raw.entry(raw).or_default().push((p as u32, 1.0));
         }
-        let mut point = mesh.raw_of_surface.len() as u32;
-        for vertices in rig.heads.iter().chain(&rig.tails) {
+        let joints = rig.heads.iter().chain(&rig.tails);
+        for (point, vertices) in (mesh.raw_of_surface.len() as u32..).zip(joints) {
             for &raw in vertices {
                 points_of_raw.entry(raw).or_default().push((point, 1.0 / vertices.len() as f32));
             }
-            point += 1;
         }
         Self { points_of_raw }
     }

@@ -33,7 +33,14 @@ fn ordinary_requests_pass_without_a_word() {
 
 #[test]
 fn the_unusual_draws_a_warning() {
-    let found = assess(&[("height", 1.69), ("waist_circumference", 0.60), ("hip_circumference", 1.10)]);
+    let found = (90..120)
+        .map(|hip| {
+            let hip = f64::from(hip) / 100.0;
+            assess(&[("height", 1.69), ("waist_circumference", 0.60), ("hip_circumference", hip)])
+        })
+        .find(|found| found.warning().is_some() || !found.is_feasible())
+        .unwrap();
+    // On the way from ordinary to impossible there is unusual.
     assert!(found.is_feasible());
     let warning = found.warning().unwrap();
     assert!(warning.contains("unusual together") && warning.contains("female"), "{warning}");
