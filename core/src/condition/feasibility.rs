@@ -41,7 +41,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { reading_error: 0.005, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.25 }
+        Self { reading_error: 0.005, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.6 }
     }
 }
 
