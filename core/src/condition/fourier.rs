@@ -30,7 +30,7 @@ pub struct FourierConfig {
 
 impl Default for FourierConfig {
     fn default() -> Self {
-        // None beside the linear skip: there it only slows training down (MODEL_CARD.md).
+        // None: a prototype saw no gain beside the linear skip (MODEL_CARD.md).
         Self { components: 0, sigma: 0.03, seed: 1 }
     }
 }
