@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::Result;
 use crate::condition::{Report, Request, SolveOutcome};
-use crate::measure::{Mass, MeasureId, Measurements, Sex, enclosed_volume};
+use crate::measure::{MEASURE_COUNT, Mass, MeasureId, Measurements, Sex, enclosed_volume};
 use crate::mesh::vertex_normals;
 use crate::model::{Character, Model, Solved};
 use crate::rig::{Joint, Skeleton};
@@ -59,7 +59,7 @@ impl Model {
             .zip(&b.outcome.coefficients)
             .map(|(x, y)| between(*x, *y))
             .collect();
-        let measures: [Option<f64>; 36] =
+        let measures: [Option<f64>; MEASURE_COUNT] =
             std::array::from_fn(|i| Some(between(a.outcome.obtained[i], b.outcome.obtained[i])));
         let outcome: SolveOutcome = self.solve_from(&start, &measures)?;
         let near = if t < 0.5 { &a } else { &b };

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::assets::CAGE_VERTICES;
 use crate::corpus::{Corpus, Split};
+use crate::generator::QuadraticForm;
 use crate::{Error, Result};
 
 /// Number of components. 300 leave 0.06 mm; measures need as many (100 cost 0.7 mm per measure).
@@ -128,20 +129,11 @@ pub fn flatten(points: &[Vec3]) -> Vec<f32> {
     points.iter().flat_map(|p| p.to_array()).collect()
 }
 
-/// A quadratic form of the coefficients: `cᵀ M c + 2 vᵀ c + k`.
-pub struct QuadraticForm {
-    /// Symmetric matrix, row-major.
-    pub matrix: Vec<f64>,
-    /// Linear part, halved.
-    pub vector: Vec<f64>,
-    /// Value at the mean body.
-    pub constant: f64,
-}
-
 /// The paper's Laplacian loss (equation "laplacian") of the decoded cage as a quadratic form of coefficients.
 ///
 /// The cotangent weights are those of the mean body, so the loss is exactly quadratic; each unordered pair of
-/// neighbours counts twice, as in the paper's sum over rings.
+/// neighbours counts twice, as in the paper's sum over rings. The sum is divided by the cage's 3V coordinates, a mean as
+/// the reconstruction loss is, m².
 pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
     let at = |v: u32| {
         let i = 3 * v as usize;
@@ -173,9 +165,10 @@ pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
     let matrix = differences.transpose() * &differences;
     let vector = differences.transpose() * &at_mean;
     let constant: f64 = (0..at_mean.nrows()).map(|i| at_mean[(i, 0)] * at_mean[(i, 0)]).sum();
+    let coordinates = 3.0 * CAGE_VERTICES as f64;
     QuadraticForm {
-        matrix: (0..k * k).map(|i| 2.0 * matrix[(i / k, i % k)]).collect(),
-        vector: (0..k).map(|i| 2.0 * vector[(i, 0)]).collect(),
-        constant: 2.0 * constant,
+        matrix: (0..k * k).map(|i| 2.0 * matrix[(i / k, i % k)] / coordinates).collect(),
+        vector: (0..k).map(|i| 4.0 * vector[(i, 0)] / coordinates).collect(),
+        constant: 2.0 * constant / coordinates,
     }
 }

@@ -14,7 +14,7 @@ use crate::basis::{COMPONENTS, laplacian};
 use crate::corpus::{CACHE, Corpus};
 use crate::dataset::{Bodies, Dataset};
 use crate::evaluation::{GeneratorScores, generator, statistics};
-use crate::generator::{QuadraticForm, ShapeStatistics, TrainingOptions, TrainingSet, train};
+use crate::generator::{ShapeStatistics, TrainingOptions, TrainingSet, train};
 use crate::pack::pack;
 use crate::{Error, Result};
 
@@ -36,17 +36,10 @@ const TRAINING_SEED: u64 = 1;
 pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, plain: bool) -> Result<()> {
     let cache = PathBuf::from(CACHE);
     let (corpus, definitions, dataset) = data(&cache)?;
-    let form = laplacian(&dataset.basis, &corpus);
-    let coordinates = 3.0 * crate::assets::CAGE_VERTICES as f64;
     let statistics = ShapeStatistics {
         vertex_count: crate::assets::CAGE_VERTICES,
         coefficient_std: dataset.basis.std.clone(),
-        // A mean over coordinates, as the reconstruction loss is.
-        laplacian: Some(QuadraticForm {
-            matrix: form.matrix.iter().map(|m| m / coordinates).collect(),
-            vector: form.vector.iter().map(|v| 2.0 * v / coordinates).collect(),
-            constant: form.constant / coordinates,
-        }),
+        laplacian: Some(laplacian(&dataset.basis, &corpus)),
     };
     let config = if plain { GeneratorConfig::paper() } else { GeneratorConfig::default() };
     let config = GeneratorConfig { coefficients: COMPONENTS, gamma: GAMMA, ..config };

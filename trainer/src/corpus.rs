@@ -1,6 +1,6 @@
 //! Bodies by number: draw, shape, T-pose, refine and measure, the same for the same number everywhere.
 
-use anthronet::measure::{Definitions, Kind, Measurements, Sex};
+use anthronet::measure::{Definitions, Measurements, Sex};
 use anthronet::mesh::{Subdivision, Topology};
 use glam::{DVec3, Vec3};
 
@@ -122,15 +122,6 @@ impl<'a> Gauge<'a> {
             .map(|s| s.iter().map(|&(i, w)| points[i as usize].as_dvec3() * f64::from(w)).sum())
             .collect();
         self.definitions.read_all(|v| refined[self.place[v as usize] as usize])
-    }
-
-    /// How many vertices each kind of measure needs: a measure of cost.
-    pub fn vertices(&self, kind: Kind) -> usize {
-        let mut all: Vec<u32> =
-            self.definitions.iter().filter(|d| d.1.kind == kind).flat_map(|d| d.1.vertices()).collect();
-        all.sort_unstable();
-        all.dedup();
-        all.len()
     }
 }
 

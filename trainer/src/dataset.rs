@@ -1,6 +1,6 @@
 //! The data set: a hundred thousand bodies in coefficients, with their measures and joints.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anthronet::measure::{Definitions, MEASURE_COUNT, Sex};
 use faer::Mat;
@@ -214,9 +214,4 @@ impl Bodies {
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
     }
-}
-
-/// Where the data set's cache lies by default.
-pub fn cache() -> PathBuf {
-    PathBuf::from(crate::corpus::CACHE)
 }
