@@ -3,11 +3,10 @@
 //! The components are found by randomised subspace iteration (Halko, Martinsson and Tropp 2011) on training
 //! bodies. Accessories and joints follow by least squares on the same coefficients.
 
+use anthronet::random::Random;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use glam::Vec3;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 use crate::assets::CAGE_VERTICES;
@@ -57,10 +56,10 @@ impl Basis {
 
         progress("principal components");
         let rank = COMPONENTS + OVERSAMPLING;
-        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut rng = Random::new(11, 0);
         let mut sample = Mat::from_fn(x.ncols(), rank, |_, _| {
             // Uniform noise spans as well as normal noise and needs no transcendental function.
-            (rng.next_u32() as f32 / u32::MAX as f32) - 0.5
+            rng.uniform() as f32 - 0.5
         });
         let mut range = (x * &sample).qr().compute_thin_Q();
         for _ in 0..POWER_ITERATIONS {

@@ -7,9 +7,8 @@
 use std::collections::BTreeMap;
 
 use anthronet::measure::Sex;
+use anthronet::random::Random;
 use glam::Vec3;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::assets::{Assets, Modifier, Target};
 use crate::{Error, Result};
@@ -85,16 +84,16 @@ impl Sampler {
 
     /// Draws the person with this number of this seed; the same pair gives the same person everywhere.
     pub fn draw(&self, assets: &Assets, seed: u64, number: u64) -> Person {
-        let mut rng = Draws(ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ number));
+        let mut rng = Random::new(seed, number);
         let sex = if rng.uniform() < 0.5 { Sex::Female } else { Sex::Male };
         let age = rng.uniform();
         let ages = [("young", 1.0 - age), ("old", age)];
-        let muscles = three(rng.beta(0.7), ["minmuscle", "averagemuscle", "maxmuscle"]);
-        let weights = three(rng.beta(0.65), ["minweight", "averageweight", "maxweight"]);
+        let muscles = three(beta(&mut rng, 0.7), ["minmuscle", "averagemuscle", "maxmuscle"]);
+        let weights = three(beta(&mut rng, 0.65), ["minweight", "averageweight", "maxweight"]);
         let proportion = rng.uniform() * 2.0 - 1.0;
         let cups = three(rng.uniform(), ["mincup", "averagecup", "maxcup"]);
         let firmnesses = three(rng.uniform(), ["minfirmness", "averagefirmness", "maxfirmness"]);
-        let races = rng.dirichlet(["african", "asian", "caucasian"]);
+        let races = dirichlet(&mut rng, ["african", "asian", "caucasian"]);
         let stature = STATURE[0] + (STATURE[1] - STATURE[0]) * rng.uniform();
 
         let mut person = Person { sex, shapes: Vec::new(), stature, shorter: Vec::new(), taller: Vec::new() };
@@ -234,34 +233,19 @@ fn toe_length(assets: &Assets) -> Result<[Target; 2]> {
     Ok(feet)
 }
 
-/// Random numbers by the portable functions of `libm`, so that every host draws the same people.
-struct Draws(ChaCha8Rng);
-
-impl Draws {
-    /// In `[0, 1)`.
-    fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let (u, v) = (1.0 - self.uniform(), self.uniform());
-        libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v)
-    }
-
-    /// Beta(a, a) for a < 1 (Jöhnk 1964).
-    fn beta(&mut self, a: f64) -> f64 {
-        loop {
-            let (x, y) = (libm::pow(self.uniform(), 1.0 / a), libm::pow(self.uniform(), 1.0 / a));
-            if x + y > 0.0 && x + y <= 1.0 {
-                return x / (x + y);
-            }
+/// Beta(a, a) for a < 1 (Jöhnk 1964).
+fn beta(random: &mut Random, a: f64) -> f64 {
+    loop {
+        let (x, y) = (libm::pow(random.uniform(), 1.0 / a), libm::pow(random.uniform(), 1.0 / a));
+        if x + y > 0.0 && x + y <= 1.0 {
+            return x / (x + y);
         }
     }
+}
 
-    /// Dirichlet(1): normalised exponentials.
-    fn dirichlet<const N: usize>(&mut self, names: [&'static str; N]) -> [(&'static str, f64); N] {
-        let draws = names.map(|n| (n, -libm::log(1.0 - self.uniform())));
-        let sum: f64 = draws.iter().map(|d| d.1).sum();
-        draws.map(|(n, d)| (n, d / sum))
-    }
+/// Dirichlet(1): normalised exponentials.
+fn dirichlet<const N: usize>(random: &mut Random, names: [&'static str; N]) -> [(&'static str, f64); N] {
+    let draws = names.map(|n| (n, -libm::log(random.uniform())));
+    let sum: f64 = draws.iter().map(|d| d.1).sum();
+    draws.map(|(n, d)| (n, d / sum))
 }

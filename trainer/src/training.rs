@@ -2,10 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use anthronet::condition::fourier::normal;
+use anthronet::random::Random;
 use candle_core::{CpuStorage, InplaceOp2, Layout, Tensor, Var, bail};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::{Error, Result};
 
@@ -144,34 +142,26 @@ impl OneCycle {
     }
 }
 
-/// The random numbers of one epoch, which follow from the seed and the epoch alone: a resumed run needs no
-/// saved generator.
-#[derive(Debug)]
-pub struct EpochRandom(ChaCha8Rng);
+/// The random numbers of one epoch, which follow from the seed and the epoch alone: a resumed run needs no saved
+/// generator. Stream 0 of a seed is left to the network's start.
+pub fn epoch_random(seed: u64, epoch: usize) -> Random {
+    Random::new(seed, epoch as u64 + 1)
+}
 
-impl EpochRandom {
-    /// The numbers of an epoch.
-    pub fn new(seed: u64, epoch: usize) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        rng.set_stream(epoch as u64 + 1);
-        Self(rng)
+/// 0..count in random order (Fisher–Yates).
+pub fn random_order(random: &mut Random, count: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    for i in (1..count).rev() {
+        // The bias of the high product is below 2⁻⁴⁰ for any data set that fits in memory.
+        let j = ((u128::from(random.bits()) * (i as u128 + 1)) >> 64) as usize;
+        order.swap(i, j);
     }
+    order
+}
 
-    /// 0..count in random order (Fisher–Yates).
-    pub fn order(&mut self, count: usize) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..count).collect();
-        for i in (1..count).rev() {
-            // The bias of the high product is below 2⁻⁴⁰ for any data set that fits in memory.
-            let j = ((u128::from(self.0.next_u64()) * (i as u128 + 1)) >> 64) as usize;
-            order.swap(i, j);
-        }
-        order
-    }
-
-    /// Draws from N(0, 1).
-    pub fn normals(&mut self, count: usize) -> Vec<f32> {
-        (0..count).map(|_| normal(&mut self.0) as f32).collect()
-    }
+/// Draws from N(0, 1), rounded to what the networks compute in.
+pub fn random_normals(random: &mut Random, count: usize) -> Vec<f32> {
+    (0..count).map(|_| random.normal() as f32).collect()
 }
 
 #[cfg(test)]
@@ -207,9 +197,9 @@ mod tests {
 
     #[test]
     fn order_is_a_permutation_of_the_seed() {
-        let order = EpochRandom::new(4, 2).order(1000);
-        assert_eq!(order, EpochRandom::new(4, 2).order(1000));
-        assert_ne!(order, EpochRandom::new(4, 3).order(1000));
+        let order = random_order(&mut epoch_random(4, 2), 1000);
+        assert_eq!(order, random_order(&mut epoch_random(4, 2), 1000));
+        assert_ne!(order, random_order(&mut epoch_random(4, 3), 1000));
         let mut sorted = order;
         sorted.sort_unstable();
         assert!(sorted.into_iter().eq(0..1000));

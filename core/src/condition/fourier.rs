@@ -7,14 +7,16 @@
 
 use std::f64::consts::TAU;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
+use crate::random::Random;
 use crate::{Error, Result};
 
 /// The most components per scalar that a configuration may ask for.
 pub const MAX_COMPONENTS: usize = 256;
+
+/// The stream of a seed that the frequencies are drawn from.
+const FREQUENCY_STREAM: u64 = 3;
 
 /// What defines an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,9 +80,8 @@ impl Fourier {
     /// [`Error::Invalid`] when the configuration is absurd.
     pub fn new(config: &FourierConfig, inputs: usize) -> Result<Self> {
         config.validate()?;
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
-        let angular =
-            (0..inputs * config.components).map(|_| TAU * config.sigma * normal(&mut rng)).collect();
+        let mut random = Random::new(config.seed, FREQUENCY_STREAM);
+        let angular = (0..inputs * config.components).map(|_| TAU * config.sigma * random.normal()).collect();
         Ok(Self { inputs, components: config.components, angular })
     }
 
@@ -120,15 +121,6 @@ impl Fourier {
             out.extend(row.iter().map(|w| w * libm::cos(w * y)));
         }
     }
-}
-
-/// One draw from N(0, 1) by Box–Muller, with the same bits on every machine.
-pub fn normal(rng: &mut impl Rng) -> f64 {
-    // Upper 53 bits; the first factor avoids zero, whose logarithm is infinite.
-    const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
-    let u = ((rng.next_u64() >> 11) + 1) as f64 * STEP;
-    let v = (rng.next_u64() >> 11) as f64 * STEP;
-    (-2.0 * libm::log(u)).sqrt() * libm::cos(TAU * v)
 }
 
 #[cfg(test)]

@@ -1,12 +1,10 @@
 //! Tests of [`super::network`] on small random networks.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-
 use super::config::GeneratorConfig;
 use super::network::{Decoder, Encoder, Shapes, Tensor, Tensors, decoder_shapes, encoder_shapes};
-use crate::condition::fourier::{FourierConfig, normal};
+use crate::condition::fourier::FourierConfig;
 use crate::measure::{MEASURE_COUNT, Sex};
+use crate::random::Random;
 
 fn tiny(skip: bool, components: usize) -> GeneratorConfig {
     GeneratorConfig {
@@ -19,17 +17,17 @@ fn tiny(skip: bool, components: usize) -> GeneratorConfig {
     }
 }
 
-fn random(shapes: &Shapes, rng: &mut ChaCha8Rng, out: &mut Tensors) {
+fn random(shapes: &Shapes, rng: &mut Random, out: &mut Tensors) {
     for (name, shape) in shapes {
         let scale = 1.0 / (shape[0] as f64).sqrt();
         let count = shape.iter().product();
-        let data = (0..count).map(|_| (normal(rng) * scale) as f32).collect();
+        let data = (0..count).map(|_| (rng.normal() * scale) as f32).collect();
         out.insert(name.clone(), Tensor { shape: shape.clone(), data });
     }
 }
 
 fn tensors(config: &GeneratorConfig) -> Tensors {
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let mut rng = Random::new(5, 0);
     let mut out = Tensors::new();
     random(&decoder_shapes(config), &mut rng, &mut out);
     random(&encoder_shapes(config), &mut rng, &mut out);

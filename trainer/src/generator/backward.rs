@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use crate::generator::data::Frame;
     use crate::generator::{QuadraticForm, synthetic_set};
-    use crate::training::EpochRandom;
+    use crate::training::{epoch_random, random_normals};
 
     #[test]
     fn agrees_with_candle() {
@@ -191,7 +191,7 @@ mod tests {
             let losses = Losses::new(&config, &frame.scale, 30, Some(&form)).unwrap();
             let batch = frame.prepare(&set, true).batch(&(0..90).collect::<Vec<_>>()).unwrap();
             let mut network = Network::new(&config, &frame, 3).unwrap();
-            let noise = EpochRandom::new(1, 1).normals(90 * config.latent);
+            let noise = random_normals(&mut epoch_random(1, 1), 90 * config.latent);
             let noise = Tensor::from_vec(noise, (90, config.latent), &Device::Cpu).unwrap();
             if norm == Norm::Running {
                 // Statistics that are not those of the start.

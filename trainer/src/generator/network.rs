@@ -6,15 +6,16 @@
 
 use std::sync::PoisonError;
 
-use anthronet::condition::fourier::normal;
 use anthronet::model::config::GeneratorConfig;
+use anthronet::random::Random;
 use candle_core::{Device, Result, Tensor, Var};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::backward::Trace;
 use super::data::Frame;
 use super::ops::{EPSILON, Normalise, ScaleShiftPrelu};
+
+/// The stream of a seed that the network starts from; the epochs take those after it.
+const START_STREAM: u64 = 0;
 
 /// How batch norm behaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,15 +51,13 @@ fn variable(values: Vec<f32>, shape: &[usize]) -> Result<Var> {
 }
 
 /// Uniform in ± 1/√inputs, the usual start of a linear layer.
-fn uniform(rng: &mut impl Rng, inputs: usize, count: usize) -> Vec<f32> {
+fn uniform(rng: &mut Random, inputs: usize, count: usize) -> Vec<f32> {
     let bound = 1.0 / (inputs as f64).sqrt();
-    (0..count)
-        .map(|_| ((f64::from(rng.next_u32()) / f64::from(u32::MAX) * 2.0 - 1.0) * bound) as f32)
-        .collect()
+    (0..count).map(|_| ((2.0 * rng.uniform() - 1.0) * bound) as f32).collect()
 }
 
 impl Block {
-    fn new(name: &str, inputs: usize, outputs: usize, rng: &mut impl Rng) -> Result<Self> {
+    fn new(name: &str, inputs: usize, outputs: usize, rng: &mut Random) -> Result<Self> {
         Ok(Self {
             name: name.into(),
             weight: variable(uniform(rng, inputs, inputs * outputs), &[inputs, outputs])?,
@@ -114,7 +113,7 @@ impl Block {
 }
 
 impl Dense {
-    fn new(name: &str, inputs: usize, outputs: usize, gain: f32, rng: &mut impl Rng) -> Result<Self> {
+    fn new(name: &str, inputs: usize, outputs: usize, gain: f32, rng: &mut Random) -> Result<Self> {
         let weight = uniform(rng, inputs, inputs * outputs).into_iter().map(|w| w * gain).collect();
         Ok(Self {
             name: name.into(),
@@ -154,7 +153,7 @@ pub(crate) struct Forward {
 impl Network {
     /// A network at the start of its training.
     pub(crate) fn new(config: &GeneratorConfig, frame: &Frame, seed: u64) -> Result<Self> {
-        let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+        let rng = &mut Random::new(seed, START_STREAM);
         let w = config.widths();
         let (k, latent) = (config.coefficients, config.latent);
         let [d0, d1, d2] = w.decoder;
@@ -276,7 +275,7 @@ impl Network {
 }
 
 /// The best linear z: principal components of the residual, scores at deviation 1.
-fn linear_paths(frame: &Frame, k: usize, latent: usize, rng: &mut impl Rng) -> Result<(Var, Var)> {
+fn linear_paths(frame: &Frame, k: usize, latent: usize, rng: &mut Random) -> Result<(Var, Var)> {
     let (mut to, mut from) = (vec![0.0; k * latent], vec![0.0; latent * k]);
     for l in 0..latent {
         let deviation = frame.component_std[l];
@@ -286,7 +285,7 @@ fn linear_paths(frame: &Frame, k: usize, latent: usize, rng: &mut impl Rng) -> R
                 to[i * latent + l] = (u * frame.scale[i] / deviation) as f32;
                 from[l * k + i] = (u * deviation / frame.scale[i]) as f32;
             } else {
-                to[i * latent + l] = (0.01 * normal(rng)) as f32;
+                to[i * latent + l] = (0.01 * rng.normal()) as f32;
             }
         }
     }

@@ -12,7 +12,7 @@ use super::{Metrics, ShapeStatistics, TrainedGenerator, TrainingOptions, Trainin
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::losses::{Losses, Parts};
 use crate::progress::Progress;
-use crate::training::{Adam, EpochRandom, OneCycle};
+use crate::training::{Adam, OneCycle, epoch_random, random_normals, random_order};
 use crate::{Error, Result};
 
 /// Weight of a batch in the running statistics of batch norm.
@@ -182,8 +182,8 @@ impl<'a> Run<'a> {
 
     /// One pass over the training set; the mean losses.
     fn run_epoch(&mut self) -> Result<[f64; 3]> {
-        let mut random = EpochRandom::new(self.options.seed, self.epoch);
-        let order = random.order(self.training.count);
+        let mut random = epoch_random(self.options.seed, self.epoch);
+        let order = random_order(&mut random, self.training.count);
         let frozen = self.epoch as f64 >= self.options.freeze_norm * self.options.epochs as f64;
         let norm = if frozen { Norm::Running } else { Norm::Batch(MOMENTUM) };
         let mut sums = [0.0; 3];
@@ -193,7 +193,7 @@ impl<'a> Run<'a> {
             if rows.len() < 2 {
                 continue;
             }
-            let noise = random.normals(rows.len() * self.config.latent);
+            let noise = random_normals(&mut random, rows.len() * self.config.latent);
             let parts = self.step(rows, noise, norm)?;
             for (s, l) in sums.iter_mut().zip([parts.reconstruction, parts.divergence, parts.laplacian]) {
                 *s += l;
@@ -221,7 +221,7 @@ impl<'a> Run<'a> {
     /// Measures the network on the validation set.
     fn validate(&mut self, training: [f64; 3]) -> Result<Metrics> {
         let (k, latent, count) = (self.config.coefficients, self.config.latent, self.validation.count);
-        let mut random = EpochRandom::new(self.options.seed, usize::MAX - 1);
+        let mut random = epoch_random(self.options.seed, usize::MAX - 1);
         let rows: Vec<usize> = (0..count).collect();
         let mut squares = [0.0; 3];
         let (mut largest, mut divergence_sum) = (0.0_f64, 0.0);
@@ -230,7 +230,8 @@ impl<'a> Run<'a> {
         for rows in rows.chunks(VALIDATION_BATCH) {
             let batch = self.validation.batch(rows)?;
             let shape = (rows.len(), latent);
-            let noise = Tensor::from_vec(random.normals(rows.len() * latent), shape, &Device::Cpu)?;
+            let noise =
+                Tensor::from_vec(random_normals(&mut random, rows.len() * latent), shape, &Device::Cpu)?;
             let features = self.network.features(&batch.conditions, Norm::Running)?;
             let (mean, log_variance) = self.network.encode(&batch.residuals, &features, Norm::Running)?;
             divergence_sum += self.losses.latent_gradient(&mean, &log_variance)?.0 * rows.len() as f64;

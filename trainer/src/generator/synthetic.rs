@@ -1,10 +1,8 @@
 //! Bodies that never lived: coefficients with a decaying spectrum, mixed linearly and quadratically from random
 //! traits, and measures that see some of them. For tests and for timing, without the real data.
 
-use anthronet::condition::fourier::normal;
 use anthronet::measure::MEASURE_COUNT;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use anthronet::random::Random;
 
 use super::TrainingSet;
 
@@ -13,19 +11,19 @@ const TRAITS: usize = 80;
 
 /// A set of `count` bodies with `k` coefficients. The laws of the bodies are the same for every seed.
 pub fn synthetic_set(count: usize, k: usize, seed: u64) -> TrainingSet {
-    let mut laws = ChaCha8Rng::seed_from_u64(99);
-    let mut draw = |n: usize, scale: f64| (0..n).map(|_| normal(&mut laws) * scale).collect::<Vec<f64>>();
+    let mut laws = Random::new(99, 0);
+    let mut draw = |n: usize, scale: f64| (0..n).map(|_| laws.normal() * scale).collect::<Vec<f64>>();
     let linear = draw(k * TRAITS, 1.0);
     let quadratic = draw(k * 40, 0.25);
     let pairs: Vec<(usize, usize)> = (0..40).map(|i| (i % 9, (i * 7 + 3) % TRAITS)).collect();
     let seen = draw(MEASURE_COUNT * 60, 1.0);
     let bent = draw(MEASURE_COUNT * 6, 0.15);
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut rng = Random::new(seed, 1);
     let mut set = TrainingSet { count, k, coefficients: Vec::new(), measures: Vec::new(), sex: Vec::new() };
     for _ in 0..count {
-        let sex = rng.next_u32() & 1;
+        let sex = u32::from(rng.uniform() < 0.5);
         // Few strong traits, many weak ones.
-        let mut traits: Vec<f64> = (0..TRAITS).map(|i| normal(&mut rng) / (1.0 + 0.25 * i as f64)).collect();
+        let mut traits: Vec<f64> = (0..TRAITS).map(|i| rng.normal() / (1.0 + 0.25 * i as f64)).collect();
         traits[0] += f64::from(sex) - 0.5;
         for c in 0..k {
             let scale = 8.0 / (1.0 + c as f64).powf(1.3);
