@@ -1,6 +1,7 @@
 //! Conditional human bodies from tape measures.
 
 mod body;
+pub mod clip;
 pub mod condition;
 mod error;
 pub mod export;
@@ -8,6 +9,7 @@ pub mod import;
 pub mod measure;
 pub mod mesh;
 pub mod model;
+pub mod pose;
 pub mod random;
 pub mod rig;
 

@@ -18,8 +18,12 @@ const TABLE: &[(&str, &[&str])] = &[
     ("condition", &["measure", "mesh"]),
     ("model", &["condition", "measure", "mesh", "rig"]),
     ("body", &["model", "condition", "measure", "mesh", "rig"]),
-    ("export", &["body", "model", "condition", "measure", "mesh", "rig"]),
-    ("import", &["export", "measure", "mesh", "rig"]),
+    ("space", &[]),
+    ("pose", &["rig"]),
+    ("clip", &["pose", "rig", "space"]),
+    ("skin", &["pose", "rig", "mesh"]),
+    ("export", &["body", "model", "condition", "measure", "mesh", "rig", "pose", "clip", "space"]),
+    ("import", &["export", "measure", "mesh", "rig", "pose", "clip", "space"]),
 ];
 
 /// Rooms without a view of bodies, open to everybody.

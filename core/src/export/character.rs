@@ -93,7 +93,7 @@ impl Scene {
                 "seed": report.seed,
             }
         });
-        Ok(Self { name: "Character".into(), joints, meshes, materials, extras })
+        Ok(Self { name: "Character".into(), joints, meshes, materials, clips: Vec::new(), extras })
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use glam::{Affine3A, Vec3};
 
+use crate::clip::Clip;
 use crate::{Error, Result, export::SkinTone};
 
 /// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
@@ -16,6 +17,8 @@ const WEIGHT_SUM_TOLERANCE: f32 = 1e-5;
 const NORMAL_LENGTH_TOLERANCE: f32 = 1e-3;
 /// How far a joint's rotation may be from orthonormal.
 const ROTATION_TOLERANCE: f32 = 1e-4;
+/// How far a number of a clip's rest pose may be from the bind pose: the rounding of a chain of joints.
+const REST_TOLERANCE: f32 = 1e-4;
 
 /// A character: a joint tree, skinned meshes, materials. The body is the first mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +31,9 @@ pub struct Scene {
     pub meshes: Vec<SceneMesh>,
     /// The materials that meshes refer to.
     pub materials: Vec<SceneMaterial>,
+    /// Motions of the joint tree: the joints of each clip are [`Scene::joints`] in their order, and rest in the bind
+    /// pose; what the clips call them does not matter. Names are unique.
+    pub clips: Vec<Clip>,
     /// Anything to be kept with the file, such as the report: an object, or `null` for nothing.
     pub extras: serde_json::Value,
 }
@@ -181,7 +187,8 @@ impl Scene {
         if self.meshes.is_empty() {
             return Err(Error::invalid("scene", "expected at least one mesh, got none"));
         }
-        unique("mesh", self.meshes.iter().map(|m| &m.name))?;
+        unique("mesh", self.meshes.iter().map(|m| m.name.as_str()))?;
+        self.validate_clips()?;
         self.meshes.iter().try_for_each(|mesh| {
             self.validate_mesh(mesh)
                 .map_err(|message| Error::invalid("mesh", format!("`{}`: {message}", mesh.name)))
@@ -219,7 +226,26 @@ impl Scene {
                 format!("expected at most 65535, got {}", self.joints.len()),
             ));
         }
-        unique("joint", self.joints.iter().map(|j| &j.name))
+        unique("joint", self.joints.iter().map(|j| j.name.as_str()))
+    }
+
+    fn validate_clips(&self) -> Result<()> {
+        for clip in &self.clips {
+            let fault =
+                |message: String| Err(Error::invalid("clip", format!("`{}`: {message}", clip.name())));
+            let rest = clip.rest();
+            if !rest.parents().iter().eq(self.joints.iter().map(|j| &j.parent)) {
+                let (got, expected) = (rest.len(), self.joints.len());
+                return fault(format!("its {got} joints are not the {expected} of the scene"));
+            }
+            for (at, joint) in rest.model_from_joints().iter().zip(&self.joints) {
+                if !at.to_affine().abs_diff_eq(joint.model_from_joint, REST_TOLERANCE) {
+                    return fault(format!("joint `{}` does not rest in the bind pose", joint.name));
+                }
+            }
+        }
+        // Names of clips are free text; the writers of formats with narrower names narrow them.
+        unique("clip", self.clips.iter().map(|c| c.name()))
     }
 
     fn validate_materials(&self) -> Result<()> {
@@ -236,7 +262,7 @@ impl Scene {
                 return fault(format!("expected a refractive index of at least 1, got {ior}"));
             }
         }
-        unique("material", self.materials.iter().map(|m| &m.name))
+        unique("material", self.materials.iter().map(|m| m.name.as_str()))
     }
 
     fn validate_mesh(&self, mesh: &SceneMesh) -> std::result::Result<(), String> {
@@ -344,7 +370,7 @@ fn validate_corners<const N: usize>(
     Ok(())
 }
 
-fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a String>) -> Result<()> {
+fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Result<()> {
     let mut seen = BTreeSet::new();
     for name in names {
         if name.is_empty() || name.chars().any(char::is_control) {
@@ -360,7 +386,7 @@ fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a String>) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::synthetic::arm;
+    use crate::export::synthetic::{arm, bent};
 
     #[test]
     fn the_synthetic_arm_is_valid() {
@@ -409,6 +435,16 @@ mod tests {
                 s.meshes[0].joint_indices[..2].fill(1);
                 s.meshes[0].joint_weights[..4].copy_from_slice(&[0.5, 0.5, 0., 0.]);
             }),
+            ("its 3 joints are not the 2", |s| {
+                s.clips.push(bent(s));
+                s.joints.pop();
+                s.meshes.pop();
+            }),
+            ("`lower` does not rest in the bind pose", |s| {
+                s.clips.push(bent(s));
+                s.joints[1].model_from_joint.translation.x += 0.01;
+            }),
+            ("two are called `bent`", |s| s.clips = vec![bent(s); 2]),
             ("4 influences per vertex in a scene of 0 joints", |s| s.joints.clear()),
         ];
         for (expected, spoil) in cases {

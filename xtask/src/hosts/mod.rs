@@ -3,71 +3,15 @@
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
 //! `skipped NAME: why`; all its other lines are for the reader.
 
+mod tally;
+
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
 use crate::tools::{self, Outcome};
 use crate::{bless, requests};
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-
-/// Cases so far.
-#[derive(Default)]
-struct Tally {
-    passed: u32,
-    failed: u32,
-    skipped: u32,
-}
-
-impl Tally {
-    /// Prints and counts one case.
-    fn case(&mut self, name: &str, result: Outcome) {
-        match result {
-            Ok(()) => self.line(&format!("ok {name}")),
-            Err(why) => self.line(&format!("FAILED {name}: {why}")),
-        }
-    }
-
-    fn skip(&mut self, name: &str, why: &str) {
-        self.line(&format!("skipped {name}: {why}"));
-    }
-
-    /// Prints a line and counts it if it is a case.
-    fn line(&mut self, line: &str) {
-        println!("{line}");
-        match line.split(' ').next() {
-            Some("ok") => self.passed += 1,
-            Some("FAILED") => self.failed += 1,
-            Some("skipped") => self.skipped += 1,
-            _ => {}
-        }
-    }
-
-    /// Runs a script and counts the cases that it prints; a script that breaks off is a failed case of its own.
-    fn script(&mut self, name: &str, command: &mut Command) {
-        println!("-- {name}");
-        let before = self.passed + self.failed + self.skipped;
-        let failed_before = self.failed;
-        let status = command.stdout(Stdio::piped()).spawn().and_then(|mut child| {
-            if let Some(output) = child.stdout.take() {
-                for line in BufReader::new(output).split(b'\n') {
-                    self.line(String::from_utf8_lossy(&line?).trim_end());
-                }
-            }
-            child.wait()
-        });
-        match status {
-            Err(e) => self.case(name, Err(format!("did not start: {e}"))),
-            Ok(status) if !status.success() && self.failed == failed_before => {
-                self.case(name, Err(format!("broke off: {status}")));
-            }
-            Ok(_) if self.passed + self.failed + self.skipped == before => {
-                self.case(name, Err("ran no case".to_owned()));
-            }
-            Ok(_) => {}
-        }
-    }
-}
+use std::process::Command;
+use tally::Tally;
 
 pub(crate) fn run() -> Outcome {
     let anthronet = tools::command_line()?;

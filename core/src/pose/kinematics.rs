@@ -1,0 +1,82 @@
+//! Local transforms of joints, and forward kinematics.
+
+use glam::{Affine3A, Quat, Vec3};
+
+/// A joint's transform to its parent: `parent_from_joint`, a rigid motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Local {
+    /// Unit quaternion.
+    pub rotation: Quat,
+    /// Metres, in the parent's space.
+    pub translation: Vec3,
+}
+
+impl Local {
+    /// No motion.
+    pub const IDENTITY: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
+
+    /// As a matrix.
+    pub fn to_affine(self) -> Affine3A {
+        Affine3A::from_rotation_translation(self.rotation, self.translation)
+    }
+
+    /// `self` after `inner`: `parent_from_joint · joint_from_inner`.
+    pub fn then(self, inner: Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            translation: self.translation + self.rotation * inner.translation,
+        }
+    }
+
+    /// The motion back: `joint_from_parent`.
+    pub fn inverse(self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self { rotation, translation: rotation * -self.translation }
+    }
+}
+
+/// One local transform per joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// `parent_from_joint`, in the order of the joints.
+    pub locals: Vec<Local>,
+}
+
+impl Pose {
+    /// Where the joints are: `model_from_joint` of each, by [`model_from_joints`].
+    pub fn model_from_joints(&self, parents: &[Option<u32>]) -> Vec<Local> {
+        let mut out = Vec::with_capacity(self.locals.len());
+        model_from_joints(parents, &self.locals, &mut out);
+        out
+    }
+}
+
+/// Forward kinematics: fills `out` with `model_from_joint` of each joint. Parents stand before their joints; a
+/// parent that does not is taken for none.
+pub fn model_from_joints(parents: &[Option<u32>], locals: &[Local], out: &mut Vec<Local>) {
+    out.clear();
+    for (parent, local) in parents.iter().zip(locals) {
+        let above = parent.and_then(|p| out.get(p as usize).copied());
+        out.push(above.map_or(*local, |above: Local| above.then(*local)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn an_elbow_bent_by_a_right_angle() {
+        let step = Local { rotation: Quat::IDENTITY, translation: Vec3::X };
+        let bent = Local { rotation: Quat::from_rotation_z(FRAC_PI_2), ..step };
+        let pose = Pose { locals: vec![step, bent, step] };
+        let joints = pose.model_from_joints(&[None, Some(0), Some(1)]);
+        assert!(joints[2].translation.distance(Vec3::new(2.0, 1.0, 0.0)) < 1e-6);
+        let matrix = step.to_affine() * bent.to_affine() * step.to_affine();
+        assert!((matrix.translation - joints[2].to_affine().translation).length() < 1e-6);
+        let back = joints[2].inverse().then(joints[2]);
+        assert!(back.translation.length() < 1e-6 && back.rotation.angle_between(Quat::IDENTITY) < 1e-3);
+    }
+}
