@@ -2,5 +2,11 @@
 
 #[allow(clippy::module_inception)]
 mod clip;
+mod joint_map;
+mod retarget;
 
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
+pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
+pub use retarget::{
+    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion, direction_error,
+};
