@@ -4,6 +4,8 @@
 mod clip;
 mod joint_map;
 mod retarget;
+#[cfg(test)]
+mod test_person;
 
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};

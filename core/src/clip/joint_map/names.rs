@@ -55,9 +55,9 @@ const WRITTEN: [Written; 12] = [
     Written {
         name: "cgspeed",
         sides: ["left", "right"],
-        central: "pelvis=hips spine_01=lowerback neck_01=neck head=head",
+        central: "pelvis=hips spine_01=lowerback spine_02=spine spine_03=spine1 neck_01=neck head=head",
         sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
-                lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1",
+                lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1 thumb_01=*thumb",
     },
     Written {
         name: "Biovision",
