@@ -15,6 +15,16 @@ mod sample;
 mod test_bodies;
 #[cfg(test)]
 mod test_clips;
+mod bvh;
+#[allow(clippy::module_inception)]
+mod clip;
+mod fbx;
+mod gltf;
+mod npz;
+mod proportions;
+mod raw;
+mod read;
+mod settle;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
 pub use builtin::{BUILTIN, builtin};
@@ -25,3 +35,4 @@ pub use retarget::{
 };
 pub use edit::{in_place, looped, resample};
 pub use sample::{Sampler, Wrap};
+pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
