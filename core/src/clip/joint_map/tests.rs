@@ -14,38 +14,110 @@ fn named(names: &[&str]) -> RestPose {
 fn every_vocabulary_is_known_by_its_names() {
     // Vocabulary; pelvis, thigh, calf, foot, ball, clavicle, upper arm, forearm, hand of the left; head.
     let cases: [(&str, &str, &str, &str); 19] = [
-        ("native", "pelvis thigh_* calf_* foot_* ball_* clavicle_* upperarm_* lowerarm_* hand_* head", "l", "r"),
-        ("native", "UE|pelvis UE|thigh_* UE|calf_* UE|foot_* UE|ball_* UE|clavicle_* UE|upperarm_* \
-                    UE|lowerarm_* UE|hand_* UE|head", "L", "R"),
-        ("Mixamo", "mixamorig:Hips mixamorig:*UpLeg mixamorig:*Leg mixamorig:*Foot mixamorig:*ToeBase \
+        (
+            "native",
+            "pelvis thigh_* calf_* foot_* ball_* clavicle_* upperarm_* lowerarm_* hand_* head",
+            "l",
+            "r",
+        ),
+        (
+            "native",
+            "UE|pelvis UE|thigh_* UE|calf_* UE|foot_* UE|ball_* UE|clavicle_* UE|upperarm_* \
+                    UE|lowerarm_* UE|hand_* UE|head",
+            "L",
+            "R",
+        ),
+        (
+            "Mixamo",
+            "mixamorig:Hips mixamorig:*UpLeg mixamorig:*Leg mixamorig:*Foot mixamorig:*ToeBase \
                     mixamorig:*Shoulder mixamorig:*Arm mixamorig:*ForeArm mixamorig:*Hand mixamorig:Head",
-         "Left", "Right"),
-        ("Mixamo", "Character1_Hips Character1_*UpLeg Character1_*Leg Character1_*Foot Character1_*ToeBase \
+            "Left",
+            "Right",
+        ),
+        (
+            "Mixamo",
+            "Character1_Hips Character1_*UpLeg Character1_*Leg Character1_*Foot Character1_*ToeBase \
                     Character1_*Shoulder Character1_*Arm Character1_*ForeArm Character1_*Hand Character1_Head",
-         "Left", "Right"),
-        ("Unity", "Hips *UpperLeg *LowerLeg *Foot *Toes *Shoulder *UpperArm *LowerArm *Hand Head", "Left", "Right"),
-        ("Unity", "hips *UpperLeg *LowerLeg *Foot *Toes *Shoulder *UpperArm *LowerArm *Hand head", "left", "right"),
-        ("Blender", "hips thigh.* shin.* foot.* toe.* shoulder.* upper_arm.* forearm.* hand.* head", "L", "R"),
-        ("Rigify", "DEF-spine DEF-thigh.* DEF-shin.* DEF-foot.* DEF-toe.* DEF-shoulder.* DEF-upper_arm.* \
-                    DEF-forearm.* DEF-hand.* DEF-spine.006", "L", "R"),
+            "Left",
+            "Right",
+        ),
+        (
+            "Unity",
+            "Hips *UpperLeg *LowerLeg *Foot *Toes *Shoulder *UpperArm *LowerArm *Hand Head",
+            "Left",
+            "Right",
+        ),
+        (
+            "Unity",
+            "hips *UpperLeg *LowerLeg *Foot *Toes *Shoulder *UpperArm *LowerArm *Hand head",
+            "left",
+            "right",
+        ),
+        (
+            "Blender",
+            "hips thigh.* shin.* foot.* toe.* shoulder.* upper_arm.* forearm.* hand.* head",
+            "L",
+            "R",
+        ),
+        (
+            "Rigify",
+            "DEF-spine DEF-thigh.* DEF-shin.* DEF-foot.* DEF-toe.* DEF-shoulder.* DEF-upper_arm.* \
+                    DEF-forearm.* DEF-hand.* DEF-spine.006",
+            "L",
+            "R",
+        ),
         ("CMU ASF", "root *femur *tibia *foot *toes *clavicle *humerus *radius *hand head", "l", "r"),
-        ("cgspeed", "Hips *UpLeg *Leg *Foot *ToeBase *Shoulder *Arm *ForeArm *FingerBase Head *HandIndex1 *Hand *Thumb",
-         "Left", "Right"),
-        ("MotionBuilder", "Hips *UpLeg *Leg *Foot *ToeBase *Shoulder *Arm *ForeArm *Hand Head *HandEnd",
-         "Left", "Right"),
+        (
+            "cgspeed",
+            "Hips *UpLeg *Leg *Foot *ToeBase *Shoulder *Arm *ForeArm *FingerBase Head *HandIndex1 *Hand *Thumb",
+            "Left",
+            "Right",
+        ),
+        (
+            "MotionBuilder",
+            "Hips *UpLeg *Leg *Foot *ToeBase *Shoulder *Arm *ForeArm *Hand Head *HandEnd",
+            "Left",
+            "Right",
+        ),
         ("Biovision", "Hips *Hip *Knee *Ankle *Toe *Collar *Shoulder *Elbow *Wrist Head", "Left", "Right"),
-        ("SMPL", "pelvis *_hip *_knee *_ankle *_foot *_collar *_shoulder *_elbow *_wrist head", "left", "right"),
-        ("SMPL in Maya", "m_avg_Pelvis m_avg_*_Hip m_avg_*_Knee m_avg_*_Ankle m_avg_*_Foot m_avg_*_Collar \
-                          m_avg_*_Shoulder m_avg_*_Elbow m_avg_*_Wrist m_avg_Head", "L", "R"),
+        (
+            "SMPL",
+            "pelvis *_hip *_knee *_ankle *_foot *_collar *_shoulder *_elbow *_wrist head",
+            "left",
+            "right",
+        ),
+        (
+            "SMPL in Maya",
+            "m_avg_Pelvis m_avg_*_Hip m_avg_*_Knee m_avg_*_Ankle m_avg_*_Foot m_avg_*_Collar \
+                          m_avg_*_Shoulder m_avg_*_Elbow m_avg_*_Wrist m_avg_Head",
+            "L",
+            "R",
+        ),
         ("Rokoko", "Hips *Thigh *Shin *Foot *Toe *Shoulder *Arm *ForeArm *Hand Head", "Left", "Right"),
-        ("Xsens", "Pelvis *UpperLeg *LowerLeg *Foot *Toe *Shoulder *UpperArm *ForeArm *Hand Head", "Left", "Right"),
-        ("3ds Max Biped", "Bip01_Pelvis Bip01_*_Thigh Bip01_*_Calf Bip01_*_Foot Bip01_*_Toe0 Bip01_*_Clavicle \
-                           Bip01_*_UpperArm Bip01_*_Forearm Bip01_*_Hand Bip01_Head", "L", "R"),
+        (
+            "Xsens",
+            "Pelvis *UpperLeg *LowerLeg *Foot *Toe *Shoulder *UpperArm *ForeArm *Hand Head",
+            "Left",
+            "Right",
+        ),
+        (
+            "3ds Max Biped",
+            "Bip01_Pelvis Bip01_*_Thigh Bip01_*_Calf Bip01_*_Foot Bip01_*_Toe0 Bip01_*_Clavicle \
+                           Bip01_*_UpperArm Bip01_*_Forearm Bip01_*_Hand Bip01_Head",
+            "L",
+            "R",
+        ),
         ("Daz", "hip *ThighBend *Shin *Foot *Toe *Collar *ShldrBend *ForearmBend *Hand head", "l", "r"),
-        ("VRoid", "J_Bip_C_Hips J_Bip_*_UpperLeg J_Bip_*_LowerLeg J_Bip_*_Foot J_Bip_*_ToeBase J_Bip_*_Shoulder \
-                   J_Bip_*_UpperArm J_Bip_*_LowerArm J_Bip_*_Hand J_Bip_C_Head", "L", "R"),
+        (
+            "VRoid",
+            "J_Bip_C_Hips J_Bip_*_UpperLeg J_Bip_*_LowerLeg J_Bip_*_Foot J_Bip_*_ToeBase J_Bip_*_Shoulder \
+                   J_Bip_*_UpperArm J_Bip_*_LowerArm J_Bip_*_Hand J_Bip_C_Head",
+            "L",
+            "R",
+        ),
     ];
-    let ours = ["pelvis", "thigh", "calf", "foot", "ball", "clavicle", "upperarm", "lowerarm", "hand", "head"];
+    let ours =
+        ["pelvis", "thigh", "calf", "foot", "ball", "clavicle", "upperarm", "lowerarm", "hand", "head"];
     for (vocabulary, template, left, right) in cases {
         let theirs: Vec<&str> = template.split_ascii_whitespace().collect();
         let mut names = Vec::new();
@@ -55,7 +127,8 @@ fn every_vocabulary_is_known_by_its_names() {
                 let name = name.replace('*', side);
                 if !names.contains(&name) {
                     let central = i == 0 || i == 9;
-                    let ours = ours.get(i).map(|o| if central { (*o).to_owned() } else { format!("{o}{ending}") });
+                    let ours =
+                        ours.get(i).map(|o| if central { (*o).to_owned() } else { format!("{o}{ending}") });
                     names.push(name);
                     expected.push(ours);
                 }
@@ -146,7 +219,8 @@ fn the_users_word_counts() {
     let rest = named(&names.split(' ').collect::<Vec<_>>());
     let none = JointMap::find(&rest, &BTreeMap::new()).unwrap_err().to_string();
     assert!(none.contains("found no pelvis, thigh_l, thigh_r, calf_l, calf_r among 6 joints"), "{none}");
-    let json = r#"{"hub": "pelvis", "legA": "thigh_l", "shinA": "calf_l", "legB": "thigh_r", "shinB": "calf_r"}"#;
+    let json =
+        r#"{"hub": "pelvis", "legA": "thigh_l", "shinA": "calf_l", "legB": "thigh_r", "shinB": "calf_r"}"#;
     let overrides = read_overrides(json, "map.json".as_ref()).unwrap();
     let map = JointMap::find(&rest, &overrides).unwrap();
     assert_eq!(map.source_of("calf_r"), Some(4));

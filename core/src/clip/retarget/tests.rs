@@ -115,7 +115,8 @@ fn the_same_motion_in_any_style_is_the_same() {
 fn a_giant_moves_as_far_as_its_legs_are_long() {
     let rest = person();
     let clip = motion(&rest, 12);
-    let style = Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: true, scale: 2.0 };
+    let style =
+        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: true, scale: 2.0 };
     let giant = restyled(&clip, &style);
     assert_same(&retarget(&clip, &rest, &exactly()), &retarget(&giant, &rest, &exactly()), CLOSE, false);
     let twice = retarget(&giant, &rest, &RetargetOptions { scale: Some(1.0), ..exactly() });
@@ -129,7 +130,8 @@ fn left_is_left() {
     let raised = posed(&rest, &[("upperarm_l", [0.0, 0.0, 80.0])]);
     let rotations: Vec<Quat> = raised.iter().map(|l| l.rotation).collect();
     let clip = Clip::new("wave".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
-    let style = Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: -1.6, frames: true, scale: 1.0 };
+    let style =
+        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: -1.6, frames: true, scale: 1.0 };
     let found = retarget(&restyled(&clip, &style), &rest, &RetargetOptions::default());
     let model = found.pose(0).model_from_joints(rest.parents());
     let hand = |side| model[rest.find(&format!("hand_{side}")).unwrap()].translation;
@@ -148,7 +150,7 @@ fn roll_is_spread_along_limbs() {
     let roll = |clip: &Clip, name: &str| {
         let joint = rest.find(name).unwrap();
         let q = rest.pose().locals[joint].rotation.conjugate() * clip.rotations(0)[joint];
-        twist::about_y(q).to_degrees()
+        crate::pose::SwingTwist::of(q).twist.to_degrees()
     };
     // A forearm that was rolled at the elbow rolls at the wrist.
     for turns in [[("hand_l", [0.0, -80.0, 0.0])], [("lowerarm_l", [0.0, -80.0, 0.0])]] {
@@ -172,7 +174,13 @@ fn spines_of_other_counts_bend_as_a_whole() {
     let clip = motion(&rest, 10);
     for drop in [&["spine_02"][..], &["spine_01", "spine_02"], &["spine_02", "neck_01"]] {
         let rename = |name: &str| mixamo(name);
-        let style = Style { rename: &rename, rest: rest.pose().locals.clone(), facing: 0.3, frames: true, scale: 1.0 };
+        let style = Style {
+            rename: &rename,
+            rest: rest.pose().locals.clone(),
+            facing: 0.3,
+            frames: true,
+            scale: 1.0,
+        };
         let source = restyled(&clip, &style);
         // A joint that shall drive nothing is left out of the chain.
         let overrides = drop.iter().map(|name| (mixamo(name).unwrap(), None)).collect();
@@ -235,7 +243,13 @@ fn hands_without_fingers_are_at_ease() {
     let clip = motion(&rest, 3);
     let fingerless = |name: &str| mixamo(name).filter(|n| !n.contains("Index") && !n.contains("Pinky"));
     let fingerless = |name: &str| fingerless(name).filter(|n| !n.contains("Middle") && !n.contains("Ring"));
-    let style = Style { rename: &fingerless, rest: rest.pose().locals.clone(), facing: 0.0, frames: false, scale: 1.0 };
+    let style = Style {
+        rename: &fingerless,
+        rest: rest.pose().locals.clone(),
+        facing: 0.0,
+        frames: false,
+        scale: 1.0,
+    };
     let source = restyled(&clip, &style);
     let curl = |fingers, name: &str| {
         let found = retarget(&source, &rest, &RetargetOptions { fingers, ..Default::default() });
@@ -247,7 +261,8 @@ fn hands_without_fingers_are_at_ease() {
         down(parent * rest.pose().locals[joint].rotation) - down(parent * found.rotations(0)[joint])
     };
     for side in ["l", "r"] {
-        let [index, pinky] = ["index_01", "pinky_01"].map(|f| curl(FingerMode::Source, &format!("{f}_{side}")));
+        let [index, pinky] =
+            ["index_01", "pinky_01"].map(|f| curl(FingerMode::Source, &format!("{f}_{side}")));
         assert!(index > 0.1 && pinky > index + 0.05, "{index} {pinky}");
         assert_eq!(curl(FingerMode::Rest, &format!("index_01_{side}")), 0.0);
     }
