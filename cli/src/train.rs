@@ -10,21 +10,35 @@ use crate::failure::Result;
 /// Which table to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Table {
-    /// Errors of the generator on held-out bodies.
+    /// Errors of the generator on bodies it was not fitted to.
     Generator,
     /// Mean, deviation, least and most of every measure over the sampled bodies.
     Statistics,
 }
 
-/// Score the model against held-out bodies, or print the statistics of the sampled ones.
+/// Bodies that no network was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Split {
+    /// The bodies that scores are told on.
+    HeldOut,
+    /// The bodies that settings are chosen on.
+    Validation,
+}
+
+/// Score the model against bodies it has not seen, or print the statistics of the sampled ones.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --table statistics --json"
+    after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --split validation --json\n  \
+                  cargo anthronet-train evaluate --table statistics"
 )]
 pub(crate) struct EvaluateArguments {
     /// Which table.
     #[arg(long, default_value = "generator")]
     pub(crate) table: Table,
+
+    /// Which bodies the generator is scored on.
+    #[arg(long, default_value = "held-out")]
+    pub(crate) split: Split,
 
     /// Print JSON; errors in millimetres.
     #[arg(long)]
@@ -93,12 +107,17 @@ pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
 #[cfg(feature = "train")]
 pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
     use crate::failure::Failure;
+    use anthronet_trainer::corpus;
     let table = match arguments.table {
         Table::Generator => "generator",
         Table::Statistics => "statistics",
     };
+    let split = match arguments.split {
+        Split::HeldOut => corpus::Split::HeldOut,
+        Split::Validation => corpus::Split::Validation,
+    };
     let bodies = arguments.bodies.map(|n| n as usize);
-    let text = anthronet_trainer::commands::evaluate(table, arguments.json, bodies)
+    let text = anthronet_trainer::commands::evaluate(table, split, arguments.json, bodies)
         .map_err(|e| Failure::failed(e.to_string()))?;
     crate::progress::print(&text)
 }
