@@ -5,11 +5,17 @@ mod bvh;
 mod clip;
 mod fbx;
 mod gltf;
+mod joint_map;
 mod npz;
 mod proportions;
 mod raw;
 mod read;
+mod retarget;
 mod settle;
 
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
+pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
+pub use retarget::{
+    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion, direction_error,
+};

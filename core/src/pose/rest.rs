@@ -128,6 +128,16 @@ impl RestPose {
         self.names.iter().position(|n| n == name)
     }
 
+    /// The joint with this name, which has to be there.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the joint that is missing.
+    pub fn require(&self, name: &str) -> Result<usize> {
+        self.find(name).ok_or_else(|| {
+            Error::invalid("skeleton", format!("expected a joint `{name}`, which is not there"))
+        })
+    }
+
     /// Where the joints rest: `model_from_joint`.
     pub fn model_from_joints(&self) -> Vec<Local> {
         self.pose.model_from_joints(&self.parents)
