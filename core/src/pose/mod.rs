@@ -7,5 +7,6 @@
 mod kinematics;
 mod rest;
 
+pub(crate) use kinematics::unit;
 pub use kinematics::{Local, Pose, model_from_joints};
 pub use rest::{MAX_JOINTS, RestPose};
