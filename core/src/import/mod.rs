@@ -5,6 +5,7 @@
 
 pub mod gltf;
 pub mod obj;
+pub mod scene;
 
 use std::{ffi::OsStr, fs, path::Path};
 
@@ -50,7 +51,7 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, or `.obj`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm` or `.obj`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -58,9 +59,9 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
     let path = path.as_ref();
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     match ending.as_deref() {
-        Some("glb" | "gltf") => gltf::from_bytes(&read(path)?, path),
+        Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .obj")),
+        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .obj")),
     }
 }
 
