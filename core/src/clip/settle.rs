@@ -138,3 +138,6 @@ fn convert(raw: &mut Raw, unit: Unit, up: Axis) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
