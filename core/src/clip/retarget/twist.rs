@@ -70,15 +70,9 @@ pub(super) fn about_y(q: Quat) -> f32 {
     wrapped(2.0 * libm::atan2f(q.y, q.w))
 }
 
-/// An angle in −π..=π.
+/// An angle in −π..=π; one that lies there stays as it is.
 pub(super) fn wrapped(angle: f32) -> f32 {
-    if angle > PI {
-        angle - TAU
-    } else if angle < -PI {
-        angle + TAU
-    } else {
-        angle
-    }
+    angle - TAU * libm::roundf(angle / TAU)
 }
 
 /// The same angle near that of the frame before, so that a part of it does not jump, but for rolls that no arm does.
