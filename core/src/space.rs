@@ -310,7 +310,10 @@ mod tests {
             assert_eq!(Unit::of_metres(unit.metres()), Some(unit));
         }
         for wrong in ["", "miles", "-1", "NaN", "0", "inf"] {
-            assert!(wrong.parse::<Unit>().unwrap_err().to_string().contains("expected one of m, dm"), "{wrong}");
+            assert!(
+                wrong.parse::<Unit>().unwrap_err().to_string().contains("expected one of m, dm"),
+                "{wrong}"
+            );
         }
         assert_eq!(["y", "Z"].map(|a| a.parse::<Axis>().unwrap()), [Axis::Y, Axis::Z]);
         assert!("x".parse::<Axis>().is_err());

@@ -40,8 +40,17 @@ fn every_clip_is_a_person_on_a_floor() {
             println!(
                 "{name} `{}`: {} frames at {:.3} ({:?}), {} joints, {} ({:?}), {} up ({:?}), stature {:.2}, rest {rest:.2}, \
                  root at {root:.2}, lowest joint {low:.3} {:?}",
-                clip.name(), clip.frame_count(), clip.frames_per_second(), report.rate_found, clip.rest().len(),
-                report.unit, report.unit_found, report.up, report.up_found, report.stature, report.warnings,
+                clip.name(),
+                clip.frame_count(),
+                clip.frames_per_second(),
+                report.rate_found,
+                clip.rest().len(),
+                report.unit,
+                report.unit_found,
+                report.up,
+                report.up_found,
+                report.stature,
+                report.warnings,
             );
             assert!((1.4..2.1).contains(&report.stature), "{name}: stature {}", report.stature);
             assert!((-0.1..0.2).contains(&low), "{name}: lowest joint at {low}");

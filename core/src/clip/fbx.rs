@@ -165,7 +165,11 @@ impl Nodes {
         for &node in &self.order {
             let local = &locals[node];
             let rotation = quat(local.rotation);
-            let own = DAffine3::from_scale_rotation_translation(vec3(local.scale), rotation, vec3(local.translation));
+            let own = DAffine3::from_scale_rotation_translation(
+                vec3(local.scale),
+                rotation,
+                vec3(local.translation),
+            );
             let Some(parent) = self.parents[node] else {
                 (world[node], turned[node]) = (own, rotation);
                 continue;
@@ -173,7 +177,8 @@ impl Nodes {
             world[node] = world[parent] * own;
             turned[node] = turned[parent] * rotation;
             if scene.nodes[node].inherit_mode != ufbx::InheritMode::Normal {
-                world[node].matrix3 = DMat3::from_quat(turned[node]) * DMat3::from_diagonal(vec3(local.scale));
+                world[node].matrix3 =
+                    DMat3::from_quat(turned[node]) * DMat3::from_diagonal(vec3(local.scale));
             }
         }
         world
@@ -200,7 +205,8 @@ impl Nodes {
         }
         let standing = world.clone();
         for &node in &self.order {
-            let bind = known.get(&node).filter(|m| is_joint.contains(&node) && m.matrix3.determinant() != 0.0);
+            let bind =
+                known.get(&node).filter(|m| is_joint.contains(&node) && m.matrix3.determinant() != 0.0);
             if let Some(bind) = bind {
                 world[node] = *bind;
             } else if let Some(parent) = self.parents[node]
@@ -246,9 +252,10 @@ fn axes(scene: &Scene, options: &ReadOptions) -> Outcome<(Option<Axis>, DAffine3
     let [Some(right), Some(up), Some(front)] = columns else { return Ok((said, DAffine3::IDENTITY)) };
     let ours = DMat3::from_cols(right, up, front).transpose();
     match (ours.determinant(), said) {
-        (determinant, _) if determinant < 0.5 => {
-            Err(format!("axes: expected right-handed ones, got {:?}, {:?}, {:?}", axes.right, axes.up, axes.front))
-        }
+        (determinant, _) if determinant < 0.5 => Err(format!(
+            "axes: expected right-handed ones, got {:?}, {:?}, {:?}",
+            axes.right, axes.up, axes.front
+        )),
         (_, Some(_)) => Ok((said, DAffine3::IDENTITY)),
         (_, None) => Ok((None, DAffine3::from_mat3(ours))),
     }

@@ -12,10 +12,12 @@ mod raw;
 mod read;
 mod retarget;
 mod settle;
+pub(crate) mod usd;
 
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
-    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion, direction_error,
+    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,
+    direction_error,
 };

@@ -25,11 +25,7 @@ impl Stance {
     /// The axis along which the body clearly stands.
     fn upright(self) -> Option<Axis> {
         let [_, y, z] = self.extents.to_array();
-        if y > CLEAR * z {
-            Some(Axis::Y)
-        } else {
-            (z > CLEAR * y).then_some(Axis::Z)
-        }
+        if y > CLEAR * z { Some(Axis::Y) } else { (z > CLEAR * y).then_some(Axis::Z) }
     }
 
     /// Whether the lowest joints are about at zero, as on a floor.

@@ -304,7 +304,9 @@ fn nearest_names(name: &str) -> Vec<&'static str> {
     // A name that holds every word of the wanted one (`waist`, `left_arm_length`) beats one that is merely similar.
     let words: Vec<_> = wanted.split('_').filter(|w| !w.is_empty()).collect();
     let lacks = |candidate: &str| !candidate_has_words(candidate, &words);
-    names.sort_by_cached_key(|candidate| (lacks(candidate), crate::error::edit_distance(&wanted, candidate), *candidate));
+    names.sort_by_cached_key(|candidate| {
+        (lacks(candidate), crate::error::edit_distance(&wanted, candidate), *candidate)
+    });
     names.truncate(3);
     if let Some(best) = names.first() {
         // Further guesses only where they are about as good as the first.

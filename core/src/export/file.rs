@@ -12,11 +12,11 @@ use std::{
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::{Scene, gltf, obj};
+use super::{Scene, gltf, obj, usd};
 use crate::{Error, Result};
 
 /// The endings that [`write_scene`] knows.
-pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
+pub const ENDINGS: [&str; 6] = [".glb", ".gltf", ".obj", ".usda", ".usdc", ".usdz"];
 
 /// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
 /// a second file, `.bin` for `.gltf`.
@@ -30,6 +30,9 @@ pub fn write_scene(scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
     match ending.as_deref() {
         Some("glb") => write_atomic(path, &gltf::to_glb(scene)?),
         Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
+        Some("usda") => write_atomic(path, &usd::to_usda(scene)?),
+        Some("usdc") => write_atomic(path, &usd::to_usdc(scene)?),
+        Some("usdz") => write_atomic(path, &usd::to_usdz(scene)?),
         Some("gltf") => {
             let bin_path = path.with_extension("bin");
             let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
@@ -170,9 +173,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .obj"),
-            ("a", "expected one of .glb .gltf .obj"),
-            ("glb", "expected one of .glb .gltf .obj"),
+            ("a.stl", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
+            ("a", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
+            ("glb", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");
@@ -186,7 +189,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = arm(4);
         scene.meshes[0].positions[0][0] = f32::NAN;
-        for name in ["a.glb", "a.gltf", "a.obj"] {
+        for name in ["a.glb", "a.gltf", "a.obj", "a.usda", "a.usdc", "a.usdz"] {
             write_scene(&scene, folder.path().join(name)).unwrap_err();
         }
         assert!(names(folder.path()).is_empty());

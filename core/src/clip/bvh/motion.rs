@@ -33,8 +33,9 @@ pub(super) fn read(lexer: &mut Lexer, skeleton: &Hierarchy, rest: &[Local], name
     // Each number takes a digit and a blank.
     if frames.saturating_mul(width) > lexer.remaining().div_ceil(2) {
         let bytes = lexer.remaining();
-        return lexer
-            .fail(format_args!("truncated: {frames} frames of {width} channels cannot stand in {bytes} bytes"));
+        return lexer.fail(format_args!(
+            "truncated: {frames} frames of {width} channels cannot stand in {bytes} bytes"
+        ));
     }
     let mut recorder = Recorder::new(rest.len());
     let (mut numbers, mut pose) = (vec![0.0; width], rest.to_vec());
@@ -47,7 +48,8 @@ pub(super) fn read(lexer: &mut Lexer, skeleton: &Hierarchy, rest: &[Local], name
         recorder.push(&pose);
     }
     if let Some(word) = lexer.next() {
-        return lexer.fail(format_args!("expected the end of the file after {frames} frames, got `{}`", shown(word)));
+        return lexer
+            .fail(format_args!("expected the end of the file after {frames} frames, got `{}`", shown(word)));
     }
     Ok(recorder.take(name.to_owned(), rate, rest))
 }

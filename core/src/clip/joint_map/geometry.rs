@@ -285,7 +285,9 @@ impl<'a> Tree<'a> {
             }
         }
         let reach = |chain: &Vec<usize>| chain.last().map_or(0.0, |&j| self.places[j].distance(wrist));
-        let Some(thumb) = (0..5).min_by(|&a, &b| reach(&chains[a]).total_cmp(&reach(&chains[b]))) else { return };
+        let Some(thumb) = (0..5).min_by(|&a, &b| reach(&chains[a]).total_cmp(&reach(&chains[b]))) else {
+            return;
+        };
         let thumb = chains.swap_remove(thumb);
         let mean = chains.iter().map(|c| self.places[c[0]]).sum::<Vec3>() / 4.0;
         let along = (mean - wrist).normalize_or_zero();
@@ -295,7 +297,9 @@ impl<'a> Tree<'a> {
         chains.sort_by(|a, b| {
             (self.places[b[0]] - mean).dot(across).total_cmp(&(self.places[a[0]] - mean).dot(across))
         });
-        for (finger, chain) in ["index", "middle", "ring", "pinky"].iter().zip(&chains).chain([(&"thumb", &thumb)]) {
+        for (finger, chain) in
+            ["index", "middle", "ring", "pinky"].iter().zip(&chains).chain([(&"thumb", &thumb)])
+        {
             for (i, &joint) in chain.iter().take(3).enumerate() {
                 found.insert(format!("{finger}_0{}_{side}", i + 1), joint);
             }

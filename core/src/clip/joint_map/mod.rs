@@ -224,11 +224,8 @@ impl Builder<'_> {
                 }
             }
         }
-        let matched_or_above: BTreeSet<usize> = self
-            .pairs
-            .values()
-            .flat_map(|(joint, _)| self.ancestors(*joint).chain([*joint]))
-            .collect();
+        let matched_or_above: BTreeSet<usize> =
+            self.pairs.values().flat_map(|(joint, _)| self.ancestors(*joint).chain([*joint])).collect();
         let names = self.source.names();
         let mut report = JointMapReport { vocabulary, ..Default::default() };
         for (joint, name) in names.iter().enumerate() {

@@ -26,7 +26,10 @@ pub(super) fn slots() -> impl Iterator<Item = &'static str> {
 }
 
 /// Checks both sides: our joint to source joint, and source joints that shall drive nothing.
-pub(super) fn check(source: &RestPose, overrides: &Overrides) -> Result<(BTreeMap<String, usize>, Vec<usize>)> {
+pub(super) fn check(
+    source: &RestPose,
+    overrides: &Overrides,
+) -> Result<(BTreeMap<String, usize>, Vec<usize>)> {
     let fail = |message| Err(Error::invalid("joint mapping", message));
     let mut mapped = BTreeMap::new();
     let mut nothing = Vec::new();

@@ -94,7 +94,9 @@ pub(super) fn decode(bytes: &[u8]) -> Outcome<Array> {
     let values = match descr.trim_matches('\'') {
         "<f8" | ">f8" => file().and_then(NpyFile::into_vec::<f64>),
         "<f4" | ">f4" => file().and_then(NpyFile::into_vec::<f32>).map(widened),
-        "<i8" | ">i8" => file().and_then(NpyFile::into_vec::<i64>).map(|v| v.into_iter().map(|x| x as f64).collect()),
+        "<i8" | ">i8" => {
+            file().and_then(NpyFile::into_vec::<i64>).map(|v| v.into_iter().map(|x| x as f64).collect())
+        }
         "<i4" | ">i4" => file().and_then(NpyFile::into_vec::<i32>).map(widened),
         other => return Err(format!("expected floating-point or whole numbers, got {other}")),
     };
@@ -126,7 +128,9 @@ fn check_header(bytes: &[u8]) -> Outcome<()> {
     let start = if bytes[6] == 1 { 10 } else { 12 };
     let header = bytes.get(start..).and_then(|rest| rest.get(..length)).filter(|_| length <= MAX_HEADER);
     let Some(header) = header else {
-        return Err(format!("header of {length} bytes, expected at most {MAX_HEADER} and no more than are there"));
+        return Err(format!(
+            "header of {length} bytes, expected at most {MAX_HEADER} and no more than are there"
+        ));
     };
     let brackets = header.iter().filter(|c| b"([{".contains(c)).count();
     // The product of numbers with so many digits together fits 64 bits.

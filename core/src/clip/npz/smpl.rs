@@ -46,10 +46,8 @@ const BODY: [Row; 22] = [
     ("right_wrist", "right_elbow", [0.70, 1.40, -0.01]),
 ];
 /// What SMPL has for hands.
-const PALMS: [Row; 2] = [
-    ("left_hand", "left_wrist", [0.78, 1.40, -0.01]),
-    ("right_hand", "right_wrist", [0.78, 1.40, -0.01]),
-];
+const PALMS: [Row; 2] =
+    [("left_hand", "left_wrist", [0.78, 1.40, -0.01]), ("right_hand", "right_wrist", [0.78, 1.40, -0.01])];
 /// What SMPL-X has between body and hands.
 const FACE: [Row; 3] = [
     ("jaw", "head", [0.0, 1.54, 0.03]),

@@ -46,7 +46,8 @@ impl Bone {
             "hand" => &["hand_tip", "middle_01", "index_01"][..],
             _ => &[tip.as_str()],
         };
-        let tips = candidates.iter().filter_map(|tip| Some(Tip::Joint(map.source_of(&format!("{tip}_{side}"))?)));
+        let tips =
+            candidates.iter().filter_map(|tip| Some(Tip::Joint(map.source_of(&format!("{tip}_{side}"))?)));
         // A knee is no end site: only hands, feet and the last bones of fingers may end in one.
         let may_end = !["upperarm", "lowerarm", "thigh", "calf"].contains(&stem);
         let end = source.ends().get(joint).copied().flatten().filter(|_| may_end).map(Tip::End);

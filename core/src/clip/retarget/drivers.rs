@@ -86,7 +86,13 @@ fn trunk(reference: &Reference, drivers: &mut [Driver]) {
     }
 }
 
-fn share(reference: &Reference, before: Option<usize>, source: &[usize], target: &[usize], drivers: &mut [Driver]) {
+fn share(
+    reference: &Reference,
+    before: Option<usize>,
+    source: &[usize],
+    target: &[usize],
+    drivers: &mut [Driver],
+) {
     let (Some(before), [first, ..]) = (before, source) else { return };
     let part = |from: usize, joint: usize| (from, reference.offset(from, joint, reference.trunk()));
     let rest = reference.joints;

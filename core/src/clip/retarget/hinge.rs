@@ -35,7 +35,13 @@ pub(super) struct Limb {
 
 impl Limb {
     /// The target's limb, where source and target have its bones.
-    pub(super) fn of(reference: &Reference, upper: &str, lower: &str, side: &str, flexion: f32) -> Option<Self> {
+    pub(super) fn of(
+        reference: &Reference,
+        upper: &str,
+        lower: &str,
+        side: &str,
+        flexion: f32,
+    ) -> Option<Self> {
         let joints: &Joints = reference.joints;
         let bone =
             |stem: &str| Bone::of(&format!("{stem}_{side}"), reference.map, joints.source, joints.target);
@@ -76,7 +82,6 @@ impl Limb {
         let upper = *upper;
         model[self.lower.target] = towards(upper * self.rest, self.lower_along, direction);
     }
-
 }
 
 /// The mean disagreement of a clip, from those of its frames.

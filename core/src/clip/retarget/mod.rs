@@ -6,13 +6,13 @@
 
 mod bones;
 mod direction;
+mod drivers;
 mod fingers;
 mod hinge;
 mod reference;
 mod root;
 #[cfg(test)]
 mod tests;
-mod drivers;
 mod twist;
 
 use std::sync::Arc;
@@ -150,7 +150,10 @@ impl Retargeter {
             return Err(Error::invalid("retargeting", format!("expected a positive scale, got {scale}")));
         }
         if map.joints().any(|joint| joint >= source.len()) {
-            return Err(Error::invalid("retargeting", "the joint map is of another skeleton than the source"));
+            return Err(Error::invalid(
+                "retargeting",
+                "the joint map is of another skeleton than the source",
+            ));
         }
         let joints = Joints {
             source,

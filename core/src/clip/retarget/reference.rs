@@ -56,7 +56,11 @@ impl<'a> Reference<'a> {
         let up = up(&joints.source_rest, &of_source).zip(up(&joints.target_rest, &of_target));
         let lean = up.map_or(Quat::IDENTITY, |(source, target)| {
             let target = facing * target;
-            if source.angle_between(target) > POSED { Quat::from_rotation_arc(target, source) } else { Quat::IDENTITY }
+            if source.angle_between(target) > POSED {
+                Quat::from_rotation_arc(target, source)
+            } else {
+                Quat::IDENTITY
+            }
         });
         Self { map, joints, facing, trunk: lean * facing }
     }
@@ -148,11 +152,7 @@ impl<'a> Reference<'a> {
         };
         let leg = at("thigh").zip(at("foot")).map_or(Vec3::Y, |(thigh, foot)| thigh - foot);
         let aside = leg.dot(self.facing * Vec3::X);
-        if libm::atan2f(aside.abs(), leg.y) > SPLAYED {
-            leg.normalize_or(Vec3::Y)
-        } else {
-            Vec3::Y
-        }
+        if libm::atan2f(aside.abs(), leg.y) > SPLAYED { leg.normalize_or(Vec3::Y) } else { Vec3::Y }
     }
 }
 

@@ -29,7 +29,8 @@ impl Root {
         let Joints { target, target_rest, .. } = reference.joints;
         let find = |name: &str| target.find(name);
         let pelvis = find("pelvis")?;
-        let middle = |model: &[Local], [l, r]: [usize; 2]| (model[l].translation + model[r].translation) / 2.0;
+        let middle =
+            |model: &[Local], [l, r]: [usize; 2]| (model[l].translation + model[r].translation) / 2.0;
         let of_target = [find("thigh_l")?, find("thigh_r")?];
         let thighs = [reference.map.source_of("thigh_l")?, reference.map.source_of("thigh_r")?];
         let hips = middle(target_rest, of_target);
@@ -73,7 +74,12 @@ impl Root {
     }
 
     /// Translations of Root and pelvis in their parents, from the pelvis' places in model space.
-    pub(super) fn split(&self, joints: &Joints, motion: RootMotion, places: Vec<Vec3>) -> Vec<(usize, Vec<Vec3>)> {
+    pub(super) fn split(
+        &self,
+        joints: &Joints,
+        motion: RootMotion,
+        places: Vec<Vec3>,
+    ) -> Vec<(usize, Vec<Vec3>)> {
         let rest = &joints.target_rest;
         let Some(root) = self.parent else { return vec![(self.pelvis, places)] };
         let from_root = rest[root].inverse();

@@ -33,15 +33,22 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
     let limbs = [("upperarm", "upperarm"), ("lowerarm", "hand"), ("thigh", "thigh"), ("calf", "foot")];
     let twist = |joint: usize| {
         let (stem, side) = names[joint].rsplit_once('_')?;
-        let (limb, of) = limbs.into_iter().find(|(limb, _)| {
-            stem.strip_prefix(limb).is_some_and(|ending| ending.starts_with("_twist_"))
-        })?;
+        let (limb, of) = limbs
+            .into_iter()
+            .find(|(limb, _)| stem.strip_prefix(limb).is_some_and(|ending| ending.starts_with("_twist_")))?;
         let of = joints.target.find(&format!("{of}_{side}"))?;
         let length = joints.target.find(&format!("{limb}_{side}")).and_then(|j| joints.target.ends()[j])?.y;
         let place = (rest.locals[joint].translation.y / length.max(1e-6)).clamp(0.0, 1.0);
         let own = joints.target.find(&format!("{limb}_{side}")) == Some(of);
         let part = if own { place - 1.0 } else { place };
-        Some(Twist { joint, of, part, own, rest: rest.locals[joint].rotation, rest_of: rest.locals[of].rotation })
+        Some(Twist {
+            joint,
+            of,
+            part,
+            own,
+            rest: rest.locals[joint].rotation,
+            rest_of: rest.locals[of].rotation,
+        })
     };
     (0..names.len()).filter_map(twist).collect()
 }
