@@ -153,7 +153,7 @@ impl Layer {
     /// What an attribute's values stand for: `vertex`, `faceVarying`, `constant`.
     pub(crate) fn interpolation(&self, prim: &Path, attribute: &str) -> Outcome<Option<String>> {
         let path = prim.append_property(attribute).map_err(|e| format!("{prim}.{attribute}: {e}"))?;
-        self.text(&path, FieldKey::Interpolation.as_str())
+        self.text(&path, "interpolation")
     }
 
     /// The first target of a relationship.

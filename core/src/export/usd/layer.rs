@@ -96,7 +96,7 @@ impl Layer {
     /// A relationship with one target.
     pub(super) fn relate(&mut self, prim: &str, name: &str, target: &str) -> Result<()> {
         let path = format!("{prim}.{name}");
-        RelationshipSpecMut::new(&mut self.0, path, Variability::Varying, false)
+        RelationshipSpecMut::new(&mut self.0, path, Variability::Uniform, false)
             .map_err(fault)?
             .set_target_paths([target])
             .map_err(fault)

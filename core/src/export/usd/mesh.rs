@@ -1,7 +1,7 @@
 //! One mesh: faces as they are, normals per vertex, texture coordinates per corner, skin and material.
 
 use openusd::gf::{Matrix4d, Vec2f, Vec3f};
-use openusd::sdf::{FieldKey, Value};
+use openusd::sdf::Value;
 
 use super::extent;
 use super::layer::Layer;
@@ -97,7 +97,7 @@ fn faces(mesh: &SceneMesh) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
 }
 
 fn interpolate(layer: &mut Layer, attribute: &str, interpolation: &str) -> Result<()> {
-    layer.set(attribute, FieldKey::Interpolation, Value::token(interpolation))
+    layer.set(attribute, "interpolation", Value::token(interpolation))
 }
 
 fn vectors(vectors: &[[f32; 3]]) -> Value {

@@ -38,9 +38,9 @@ use super::Scene;
 use crate::Result;
 
 /// Key of the root prim's `customData` under which the scene's extras are, as JSON.
-pub(crate) const EXTRAS: &str = "anthronet:extras";
+pub(crate) const EXTRAS: &str = "anthronetExtras";
 /// Key of a material's `customData` for the strength of its reflection, which UsdPreviewSurface does not know.
-pub(crate) const SPECULAR: &str = "anthronet:specular";
+pub(crate) const SPECULAR: &str = "anthronetSpecular";
 /// The layer's name inside a package.
 const PACKAGED_LAYER: &str = "character.usdc";
 

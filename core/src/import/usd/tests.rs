@@ -83,3 +83,25 @@ fn names_what_is_wrong() {
         assert!(error.starts_with("a.usda: ") && error.contains(expected), "{error}");
     }
 }
+
+/// Damaged files give errors or, where the damage is in a number, other numbers; and never a panic.
+#[test]
+fn damage_is_an_error() {
+    for (name, write) in WRITERS {
+        let whole = write(&moving(4)).unwrap();
+        let path = Path::new(name);
+        for end in (0..whole.len()).step_by(whole.len() / 60) {
+            let error = scene_from_bytes(&whole[..end], path);
+            assert!(error.is_err(), "{name} cut at {end}");
+        }
+        let mut seed = 7_u64;
+        for _ in 0..300 {
+            let mut bytes = whole.clone();
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let at = (seed >> 33) as usize % bytes.len();
+            bytes[at] ^= 1 << (seed >> 61);
+            let _ = scene_from_bytes(&bytes, path);
+            let _ = clips_from_bytes(&bytes, path, &ReadOptions::default());
+        }
+    }
+}
