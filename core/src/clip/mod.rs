@@ -36,13 +36,15 @@ mod proportions;
 mod raw;
 mod read;
 mod settle;
+pub(crate) mod usd;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
 pub use builtin::{BUILTIN, builtin};
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
 pub use retarget::{
-    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion, direction_error,
+    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,
+    direction_error,
 };
 pub use edit::{in_place, looped, resample};
 pub use sample::{Sampler, Wrap};

@@ -12,21 +12,11 @@ use std::{
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::gltf::{self, GltfOptions, VrmMeta};
-use super::{Scene, obj};
+use super::{Scene, gltf, obj, usd};
 use crate::{Error, Result};
 
 /// The endings that [`write_scene`] knows.
-pub const ENDINGS: [&str; 4] = [".glb", ".gltf", ".vrm", ".obj"];
-
-/// How the formats that leave a choice are written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct WriteOptions {
-    /// Of `.glb` and `.gltf`.
-    pub gltf: GltfOptions,
-    /// Of `.vrm`.
-    pub vrm: VrmMeta,
-}
+pub const ENDINGS: [&str; 6] = [".glb", ".gltf", ".obj", ".usda", ".usdc", ".usdz"];
 
 /// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
 /// a second file, `.bin` for `.gltf`.
@@ -49,6 +39,9 @@ pub fn write_scene_with(scene: &Scene, path: impl AsRef<Path>, options: &WriteOp
         Some("glb") => write_atomic(path, &gltf::to_glb_with(scene, &options.gltf)?),
         Some("vrm") => write_atomic(path, &gltf::to_vrm(scene, &options.vrm)?),
         Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
+        Some("usda") => write_atomic(path, &usd::to_usda(scene)?),
+        Some("usdc") => write_atomic(path, &usd::to_usdc(scene)?),
+        Some("usdz") => write_atomic(path, &usd::to_usdz(scene)?),
         Some("gltf") => {
             let bin_path = path.with_extension("bin");
             let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
@@ -189,9 +182,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .vrm .obj"),
-            ("a", "expected one of .glb .gltf .vrm .obj"),
-            ("glb", "expected one of .glb .gltf .vrm .obj"),
+            ("a.stl", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
+            ("a", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
+            ("glb", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");
@@ -205,7 +198,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = arm(4);
         scene.meshes[0].positions[0][0] = f32::NAN;
-        for name in ["a.glb", "a.gltf", "a.obj"] {
+        for name in ["a.glb", "a.gltf", "a.obj", "a.usda", "a.usdc", "a.usdz"] {
             write_scene(&scene, folder.path().join(name)).unwrap_err();
         }
         assert!(names(folder.path()).is_empty());

@@ -12,6 +12,7 @@ pub mod scene;
 pub mod skin_tone;
 #[cfg(test)]
 pub(crate) mod synthetic;
+pub mod usd;
 
 pub use character::SceneOptions;
 pub use file::{WriteOptions, write_atomic, write_scene, write_scene_with};

@@ -1,11 +1,12 @@
-//! Reading characters back: the positions to measure, and what a picture needs, from `.glb`, `.gltf` and `.obj`.
+//! Reading characters back: the positions to measure, and what a picture needs, from `.glb`, `.gltf`, `.obj` and
+//! USD.
 //!
 //! Nothing in a file is trusted: sizes are checked against the bytes that are there before anything is allocated, and
 //! whatever is wrong is an [`Error::File`] that says what and where.
 
 pub mod gltf;
 pub mod obj;
-pub mod scene;
+pub mod usd;
 
 use std::{ffi::OsStr, fs, path::Path};
 
@@ -51,7 +52,8 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm` or `.obj`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.obj`,
+/// `.usda`, `.usdc` or `.usdz`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -61,7 +63,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
     match ending.as_deref() {
         Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .obj")),
+        Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
+        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .obj .usda .usdc .usdz")),
     }
 }
 
