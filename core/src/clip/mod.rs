@@ -5,10 +5,6 @@ mod builtin;
 mod bvh;
 #[allow(clippy::module_inception)]
 mod clip;
-mod joint_map;
-mod retarget;
-#[cfg(test)]
-mod test_person;
 mod edit;
 mod fbx;
 pub mod feet;
@@ -26,26 +22,19 @@ mod settle;
 mod test_bodies;
 #[cfg(test)]
 mod test_clips;
-mod bvh;
-#[allow(clippy::module_inception)]
-mod clip;
-mod fbx;
-mod gltf;
-mod npz;
-mod proportions;
-mod raw;
-mod read;
-mod settle;
+#[cfg(test)]
+mod test_person;
 pub(crate) mod usd;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
 pub use builtin::{BUILTIN, builtin};
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
+pub use edit::{in_place, looped, resample};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
+pub use onto::{ClipQuality, OntoOptions, OntoReport, onto};
+pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
     BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,
     direction_error,
 };
-pub use edit::{in_place, looped, resample};
 pub use sample::{Sampler, Wrap};
-pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};

@@ -179,7 +179,8 @@ pub(super) fn restyled(clip: &Clip, style: &Style) -> Clip {
         (0..model.len()).map(local).collect()
     };
     let names = kept.iter().filter_map(|&j| (style.rename)(&ours.names()[j])).collect();
-    let ends = kept.iter().map(|&j| ours.ends()[j].map(|end| axes(j).conjugate() * end * style.scale)).collect();
+    let ends =
+        kept.iter().map(|&j| ours.ends()[j].map(|end| axes(j).conjugate() * end * style.scale)).collect();
     let facing = Quat::from_rotation_y(style.facing);
     let rest = RestPose::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();

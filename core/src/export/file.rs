@@ -12,11 +12,21 @@ use std::{
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::{Scene, gltf, obj, usd};
+use super::gltf::{self, GltfOptions, VrmMeta};
+use super::{Scene, obj, usd};
 use crate::{Error, Result};
 
 /// The endings that [`write_scene`] knows.
-pub const ENDINGS: [&str; 6] = [".glb", ".gltf", ".obj", ".usda", ".usdc", ".usdz"];
+pub const ENDINGS: [&str; 7] = [".glb", ".gltf", ".vrm", ".usda", ".usdc", ".usdz", ".obj"];
+
+/// How the formats that leave a choice are written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Of `.glb` and `.gltf`.
+    pub gltf: GltfOptions,
+    /// Of `.vrm`.
+    pub vrm: VrmMeta,
+}
 
 /// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
 /// a second file, `.bin` for `.gltf`.
@@ -182,9 +192,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
-            ("a", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
-            ("glb", "expected one of .glb .gltf .obj .usda .usdc .usdz"),
+            ("a.stl", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("a", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("glb", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");

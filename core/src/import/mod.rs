@@ -6,6 +6,7 @@
 
 pub mod gltf;
 pub mod obj;
+pub mod scene;
 pub mod usd;
 
 use std::{ffi::OsStr, fs, path::Path};
@@ -52,8 +53,8 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.obj`,
-/// `.usda`, `.usdc` or `.usdz`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm`,
+/// `.usda`, `.usdc`, `.usdz` or `.obj`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -64,7 +65,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
         Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
         Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .obj .usda .usdc .usdz")),
+        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj")),
     }
 }
 

@@ -9,12 +9,12 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use super::{gltf, read};
+use super::{gltf, read, usd};
 use crate::export::Scene;
 use crate::{Error, Result};
 
 /// The endings that [`open_scene`] knows.
-pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".vrm"];
+pub const ENDINGS: [&str; 6] = [".glb", ".gltf", ".vrm", ".usda", ".usdc", ".usdz"];
 
 /// Reads a file in the format of its ending: one of [`ENDINGS`], in any case. The buffers of a `.gltf` are looked for beside it.
 ///
@@ -32,8 +32,10 @@ pub fn open_scene(path: impl AsRef<Path>) -> Result<Scene> {
 /// # Errors
 /// As [`open_scene`].
 pub fn scene_from_bytes(bytes: &[u8], path: &Path) -> Result<Scene> {
-    known(path)?;
-    gltf::scene_from_bytes(bytes, path)
+    match known(path)? {
+        ".usda" | ".usdc" | ".usdz" => usd::scene_from_bytes(bytes, path),
+        _ => gltf::scene_from_bytes(bytes, path),
+    }
 }
 
 /// The path's ending, if it is one of [`ENDINGS`].
