@@ -11,6 +11,7 @@ pub mod feet;
 mod gltf;
 mod joint_map;
 mod npz;
+mod onto;
 mod proportions;
 mod raw;
 mod read;
@@ -23,12 +24,14 @@ mod test_bodies;
 mod test_clips;
 #[cfg(test)]
 mod test_person;
+pub(crate) mod usd;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
 pub use builtin::{BUILTIN, builtin};
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
 pub use edit::{in_place, looped, resample};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
+pub use onto::{ClipQuality, OntoOptions, OntoReport, onto};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
     BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,
