@@ -123,7 +123,7 @@ fn motion(document: &Document, options: &ReadOptions) -> Outcome<Raw> {
         for frame in 0..frames {
             let time = (start + frame as f64 / rate).min(end);
             for track in tracks {
-                track.sample(time, &mut transforms[track.node]);
+                track.sample(time, track::ON_FRAME / rate, &mut transforms[track.node]);
             }
             recorder.push(&pose(&transforms));
         }

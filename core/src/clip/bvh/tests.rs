@@ -104,7 +104,7 @@ fn says_what_is_wrong_and_in_which_line() {
         ("`end site` has no OFFSET", SMALL.replace("OFFSET 0 -0.9 0", "")),
         ("expected 1 to 1048576 frames, got 0", SMALL.replace("Frames: 2", "Frames: 0")),
         (
-            "line 17: truncated: 900000 frames",
+            "line 18: truncated: 900000 frames",
             SMALL.replace("Frames: 2", "Frames: 900000").replace("Frame Time", "Frame\tTime"),
         ),
         ("truncated: expected 3 frames, got 2", SMALL.replace("Frames: 2", "Frames: 3")),
