@@ -39,7 +39,7 @@ fn every_clip_is_a_person_on_a_floor() {
             let low = lows[lows.len() / 20];
             println!(
                 "{name} `{}`: {} frames at {:.3} ({:?}), {} joints, {} ({:?}), {} up ({:?}), stature {:.2}, rest {rest:.2}, \
-                 root at {root:.2}, lowest joint {low:.3} {:?}",
+                 root at {root:.2}, lowest joints {low:.3}; {:?}",
                 clip.name(),
                 clip.frame_count(),
                 clip.frames_per_second(),

@@ -15,7 +15,7 @@ pub(super) const FALLBACK_RATE: f64 = 30.0;
 /// Rates to look for, the lowest first.
 const USUAL_RATES: [f64; 9] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0];
 /// How far from a frame a key may be to count as on it, in frames: what rounding of times leaves.
-const ON_FRAME: f64 = 5e-3;
+pub(super) const ON_FRAME: f64 = 5e-3;
 /// Most numbers of all keys of an animation.
 const MAX_NUMBERS: usize = 1 << 26;
 
@@ -86,9 +86,10 @@ fn read_channel(document: &Document, animation: &Animation, i: usize, property: 
 }
 
 impl Track {
-    /// Sets the node's property to what it is at a time; before the first key and after the last it is held.
-    pub(super) fn sample(&self, time: f64, transform: &mut Transform) {
-        let value = self.value(time);
+    /// Sets the node's property to what it is at a time; before the first key and after the last it is held. A key
+    /// that is up to `early` seconds later counts as reached.
+    pub(super) fn sample(&self, time: f64, early: f64, transform: &mut Transform) {
+        let value = self.value(time, early);
         match self.property {
             Property::Translation => transform.translation = vector(value),
             Property::Scale => transform.scale = vector(value),
@@ -97,16 +98,16 @@ impl Track {
         }
     }
 
-    fn value(&self, time: f64) -> [f64; 4] {
+    fn value(&self, time: f64, early: f64) -> [f64; 4] {
         let cubic = self.interpolation == Interpolation::CubicSpline;
         let key = |i: usize| self.values[if cubic { 3 * i + 1 } else { i }].map(f64::from);
-        let next = self.times.partition_point(|t| *t <= time);
+        let next = self.times.partition_point(|t| *t <= time + early);
         if next == 0 || next == self.times.len() {
             return key(next.saturating_sub(1));
         }
         let (from, to) = (key(next - 1), key(next));
         let span = self.times[next] - self.times[next - 1];
-        let t = (time - self.times[next - 1]) / span;
+        let t = ((time - self.times[next - 1]) / span).max(0.0);
         match self.interpolation {
             Interpolation::Step => from,
             Interpolation::Linear if self.property == Property::Rotation => {
