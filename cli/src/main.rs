@@ -1,6 +1,6 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
-//! One file per command. `backend` (with `surface`) is the only one that calls the library, `train` the only one that calls the
+//! One file per command. `backend` is the only one that calls the library, `train` the only one that calls the
 //! trainer; `render` makes pictures; `units` reads lengths. Exit codes: 0 done, 1 failed, 2 bad usage. Files appear
 //! whole or not at all.
 
@@ -17,7 +17,6 @@ mod preview;
 mod progress;
 mod render;
 mod request;
-mod surface;
 mod train;
 mod units;
 

@@ -180,6 +180,42 @@ fn a_place_that_cannot_be_written_is_named_and_left_alone() {
     assert_eq!(fs::read(&file).unwrap(), b"a file, not a folder");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_read_only_folder_is_named_and_left_alone() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    use std::os::unix::process::CommandExt;
+    use std::path::Path;
+    use std::process::Command;
+    /// The user that owns nothing.
+    const NOBODY: u32 = 65_534;
+    if !model_is_built_in() {
+        return;
+    }
+    let folder = folder();
+    let read_only = folder.path().join("read-only");
+    fs::create_dir(&read_only).unwrap();
+    let mode = |path: &Path, mode| fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();
+    mode(&read_only, 0o555);
+    let mut command = if fs::metadata(&read_only).unwrap().uid() == 0 {
+        // Root may write anywhere, so somebody else tries, who may be unable to reach the command in its own place.
+        let copy = folder.path().join("anthronet");
+        // By a process of its own: a file that this one has open for writing cannot be run while other tests fork.
+        let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_anthronet")).arg(&copy).status().unwrap();
+        assert!(copied.success());
+        mode(folder.path(), 0o755);
+        let mut command = Command::new(copy);
+        command.uid(NOBODY).gid(NOBODY).current_dir(folder.path());
+        command
+    } else {
+        Command::new(env!("CARGO_BIN_EXE_anthronet"))
+    };
+    let out = read_only.join("out.glb");
+    command.env_remove("ANTHRONET_MODEL").args(["generate", "-o"]).arg(&out);
+    common::run(&mut command).fails(1, &["out.glb: cannot create", "denied"]);
+    assert!(files_in(&read_only).is_empty());
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_device_that_is_full_is_named_and_stays_a_device() {
