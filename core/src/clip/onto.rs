@@ -82,7 +82,11 @@ pub struct OntoReport {
 ///
 /// # Errors
 /// As [`JointMap::find`], [`Retargeter::new`] and [`plant`].
-pub fn onto(motion: &Motion, target: &Arc<RestPose>, options: &OntoOptions) -> Result<(Vec<Clip>, OntoReport)> {
+pub fn onto(
+    motion: &Motion,
+    target: &Arc<RestPose>,
+    options: &OntoOptions,
+) -> Result<(Vec<Clip>, OntoReport)> {
     let Some(first) = motion.clips.first() else {
         return Err(crate::Error::invalid("motion", "expected at least one clip, got none"));
     };

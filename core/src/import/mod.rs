@@ -6,6 +6,7 @@
 
 pub mod gltf;
 pub mod obj;
+pub mod scene;
 pub mod usd;
 
 use std::{ffi::OsStr, fs, path::Path};
@@ -18,6 +19,8 @@ use crate::{Error, Result};
 const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Most vertices, and most triangles, of all meshes of one file together.
 const MAX_ELEMENTS: usize = 4 << 20;
+/// The endings that [`open`] knows.
+const ENDINGS: &str = ".glb .gltf .vrm .usda .usdc .usdz .obj";
 /// Most meshes of one file.
 const MAX_MESHES: usize = 1 << 16;
 
@@ -52,8 +55,8 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.obj`,
-/// `.usda`, `.usdc` or `.usdz`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usda`, `.usdc`,
+/// `.usdz` or `.obj`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -61,10 +64,10 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
     let path = path.as_ref();
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     match ending.as_deref() {
-        Some("glb" | "gltf") => gltf::from_bytes(&read(path)?, path),
+        Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
         Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .obj .usda .usdc .usdz")),
+        _ => Err(Error::file(path, format!("unknown ending, expected one of {ENDINGS}"))),
     }
 }
 

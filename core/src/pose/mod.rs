@@ -10,6 +10,7 @@ pub mod limits;
 mod rest;
 mod swing_twist;
 
+pub(crate) use kinematics::unit;
 pub use kinematics::{Local, Pose, model_from_joints};
 pub use rest::{MAX_JOINTS, RestPose};
 pub use swing_twist::SwingTwist;

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{Local, Pose};
+use super::{Local, Pose, unit};
 use crate::rig::Joint;
 use crate::{Error, Result};
 
@@ -55,7 +55,7 @@ impl RestPose {
             if local.rotation.length_squared() < 1e-12 {
                 return fail(format!("joint `{name}`: rest rotation is zero"));
             }
-            local.rotation = local.rotation.normalize();
+            local.rotation = unit(local.rotation);
         }
         Ok(Self { names, parents, pose: Pose { locals }, ends })
     }
