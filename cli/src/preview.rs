@@ -49,7 +49,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let request = backend::request(&request)?;
             Model::open()?.generate(&request, false)?.figure(0, None)?
         }
-        "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => backend::figure_from_file(&arguments.input)?,
+        "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => {
+            backend::figure_from_file(&arguments.input)?
+        }
         _ => {
             let input = arguments.input.display();
             let known = ".glb .gltf .vrm .usda .usdc .usdz .obj .json";
