@@ -31,7 +31,7 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
 
     let soles = leg::tracks(clip, &legs, found.floor);
     let feet: [Vec<Correction>; 2] =
-        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole_length, blend));
+        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole, blend));
     let mut planter = Planter { legs, rest, limits: JointLimits::of_rig(rest), floor: found.floor, options };
     let drops = planter.pelvis_drops(clip, &feet, blend);
 
@@ -67,12 +67,12 @@ impl Planter<'_> {
     /// Where a foot goes, `model_from_foot`, before the pelvis is lowered: corrected, and lifted out of the floor.
     fn goal(&self, leg: &Leg, model: &[Local], correction: &Correction) -> Local {
         let (foot, ball) = (self.over_floor(model[leg.limb.end]), self.over_floor(model[leg.ball]));
-        let sole = leg.sole(foot, ball);
-        let lowest = correction.apply(sole.heel, sole.ball).y.min(sole.ball.y + correction.shift.y);
+        let sole = leg.points(foot, ball);
+        let lowest = correction.apply(sole.heel, sole.joint).y.min(sole.ball.y + correction.shift.y);
         let lift = (-self.options.depth - lowest).max(0.0);
         Local {
             rotation: (correction.rotation() * foot.rotation).normalize(),
-            translation: correction.apply(foot.translation, sole.ball) + Vec3::Y * lift,
+            translation: correction.apply(foot.translation, sole.joint) + Vec3::Y * lift,
         }
     }
 
