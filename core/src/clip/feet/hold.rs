@@ -10,6 +10,8 @@ use super::leg::Sole;
 pub(super) struct Correction {
     pub(super) turn: Vec3,
     pub(super) shift: Vec3,
+    /// Whether the heel alone is held.
+    pub(super) on_heel: bool,
 }
 
 impl Correction {
@@ -57,7 +59,9 @@ pub(super) fn corrections(
         }
     });
     let shifts = bridged(&shifts.collect::<Vec<_>>(), blend);
-    turns.into_iter().zip(shifts).map(|(turn, shift)| Correction { turn, shift }).collect()
+    let on_heel = heel.iter().zip(&ball).map(|(heel, ball)| heel.is_some() && ball.is_none());
+    let moves = turns.into_iter().zip(shifts).zip(on_heel);
+    moves.map(|((turn, shift), on_heel)| Correction { turn, shift, on_heel }).collect()
 }
 
 /// Where on the floor each contact is held: the longest where the point is on average; one that overlaps a held one of
