@@ -5,7 +5,7 @@ use std::path::Path;
 use super::tally::Tally;
 use super::{node_script, python_script};
 use crate::environment::Environment;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{Outcome, cargo};
 
 pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let folder = folder.join("skin");
