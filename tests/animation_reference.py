@@ -2,9 +2,9 @@
 
     python animation_reference.py FILE.glb
 
-Checks the tracks and writes what viewers have to agree with: FILE.animated.json, a list of clips with the frames that were
-taken and their times, and FILE.animated.f64, the positions of all skinned vertices, clip after clip, frame after frame, node after node,
-little endian.
+Checks the tracks and writes what viewers have to agree with: FILE.animated.json, a list of clips with the frames that
+were taken and their times; FILE.animated.f64, the positions of all skinned vertices, clip after clip, frame after frame,
+node after node, little endian; FILE.expected.json, numbers of joints, meshes and tracks.
 """
 
 import json
@@ -67,6 +67,12 @@ def main(path):
         cases.case(f"{animation['name']}: the body moves ({max(moved, far):.3f} m)", max(moved, far) > 1e-3, "stands still")
     with open(f"{path}.animated.json", "w", encoding="utf-8") as file:
         json.dump(clips, file)
+    joints, _ = glb.skin(nodes[0])
+    expected = [{"name": a["name"], "length": (c["frames"] - 1) / c["rate"],
+                 "tracks": len({channel["target"]["node"] for channel in a["channels"]})}
+                for a, c in zip(animations, clips)]
+    with open(f"{path}.expected.json", "w", encoding="utf-8") as file:
+        json.dump({"joints": len(joints), "meshes": len(nodes), "clips": expected}, file)
     np.vstack(positions).astype("<f8").tofile(f"{path}.animated.f64")
     cases.exit()
 

@@ -3,6 +3,7 @@
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
 //! `skipped NAME: why`; all its other lines are for the reader.
 
+mod animation;
 mod tally;
 
 use crate::environment::{self, Environment};
@@ -27,6 +28,7 @@ pub(crate) fn run() -> Outcome {
     same_bytes(&anthronet, &folder, &mut tally)?;
     let files = files(&anthronet, &folder, &mut tally);
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
+    animation::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
@@ -113,37 +115,18 @@ fn in_other_programs(
     files: &[PathBuf],
     tally: &mut Tally,
 ) -> Outcome {
-    let tests = tools::root().join("tests");
-    let python = |program: &Path, script: &str| {
-        let mut command = Command::new(program);
-        command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tests.join(script));
-        command
-    };
-    let node = |script: &str| -> Outcome<Result<Command, String>> {
-        let (home, program) = match &environment.node {
-            Ok(found) => found,
-            Err(reason) => return Ok(Err(reason.clone())),
-        };
-        // Node looks for packages from the script's own folder upwards.
-        let copy = home.join(script);
-        tools::write(&copy, &tools::read(&tests.join(script))?)?;
-        let mut command = Command::new(program);
-        command.arg(copy);
-        Ok(Ok(command))
-    };
-
-    match node("validate.mjs")? {
+    match environment.node_script("validate.mjs")? {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),
     }
-    let Ok(program) = &environment.python else {
-        let reason = environment.python.as_ref().err().map_or("", String::as_str);
+    if let Err(reason) = &environment.python {
         for name in ["measures by numpy and scipy", "three.js", "Blender"] {
             tally.skip(name, reason);
         }
         return Ok(());
-    };
-    tally.script("measures by numpy and scipy", python(program, "measure_glb.py").arg(anthronet).arg(folder));
+    }
+    let python = |script| environment.python_script(script);
+    tally.script("measures by numpy and scipy", python("measure_glb.py")?.arg(anthronet).arg(folder));
 
     // What the two programs below have to agree with, once per file.
     for (stem, arguments) in [
@@ -155,13 +138,10 @@ fn in_other_programs(
             tally.case(&format!("generate {stem}.glb"), Err(why));
             continue;
         }
-        tally.script(
-            &format!("reference skinning of {stem}.glb"),
-            python(program, "pose_reference.py").arg(&file),
-        );
+        tally.script(&format!("reference skinning of {stem}.glb"), python("pose_reference.py")?.arg(&file));
         // three.js reads no more than four influences.
         if stem == "posed_4" {
-            match node("threejs.mjs")? {
+            match environment.node_script("threejs.mjs")? {
                 Ok(mut command) => tally.script("three.js", command.arg(&file)),
                 Err(reason) => tally.skip("three.js", &reason),
             }
@@ -170,7 +150,7 @@ fn in_other_programs(
         match &environment.blender {
             Ok(()) => {
                 let picture = (stem == "posed_4").then(|| folder.join("blender.png"));
-                tally.script(&name, python(program, "blender_import.py").arg(&file).args(picture));
+                tally.script(&name, python("blender_import.py")?.arg(&file).args(picture));
             }
             Err(reason) => tally.skip(&name, reason),
         }
