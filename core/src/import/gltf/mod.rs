@@ -1,7 +1,8 @@
 //! glTF 2.0, binary or JSON: triangles with `f32` positions, as every exporter writes them by default.
 //!
-//! EXT_meshopt_compression is undone; quantised and sparse geometry is refused by name. The JSON is read into `gltf-json`'s types; the data
-//! behind them is fetched here, with every offset checked, and not by a general loader, which trusts the document.
+//! EXT_meshopt_compression is undone; quantised and sparse geometry is refused by name. The JSON is read into
+//! `gltf-json`'s types; the data behind them is fetched here, with every offset checked, and not by a general loader,
+//! which trusts the document.
 
 mod animation;
 mod character;
