@@ -64,11 +64,12 @@ fn the_output_is_required_and_its_ending_known() {
     for name in ["a.stl", "a", "a.glb.txt", "glb"] {
         let path = folder.path().join(name);
         let path = path.to_string_lossy();
-        anthronet(&["generate", "-o", &path], &[]).fails(2, &[name, ".glb .gltf .obj"]);
+        anthronet(&["generate", "-o", &path], &[])
+            .fails(2, &[name, ".glb .gltf .vrm .usda .usdc .usdz .obj"]);
         anthronet(&["contact-sheet", "-o", &path], &[]).fails(2, &[name, ".png"]);
     }
     assert!(files_in(folder.path()).is_empty());
-    anthronet(&["measure", "a.fbx"], &[]).fails(2, &["a.fbx", ".glb .gltf .obj"]);
+    anthronet(&["measure", "a.fbx"], &[]).fails(2, &["a.fbx", ".glb .gltf .vrm .usda .usdc .usdz .obj"]);
     anthronet(&["preview", "a.fbx", "-o", "a.png"], &[]).fails(2, &["a.fbx", ".json"]);
     anthronet(&["preview", "a.glb", "-o", "a.png", "--size", "0x4"], &[]).fails(2, &["--size", "0x4"]);
     anthronet(&["preview", "a.glb", "-o", "a.png", "--views", "below"], &[]).fails(2, &["--views", "front"]);

@@ -12,11 +12,21 @@ use std::{
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::{Scene, gltf, obj};
+use super::gltf::{self, GltfOptions, VrmMeta};
+use super::{Scene, obj, usd};
 use crate::{Error, Result};
 
 /// The endings that [`write_scene`] knows.
-pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
+pub const ENDINGS: [&str; 7] = [".glb", ".gltf", ".vrm", ".usda", ".usdc", ".usdz", ".obj"];
+
+/// How the formats that leave a choice are written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Of `.glb` and `.gltf`.
+    pub gltf: GltfOptions,
+    /// Of `.vrm`.
+    pub vrm: VrmMeta,
+}
 
 /// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
 /// a second file, `.bin` for `.gltf`.
@@ -25,17 +35,29 @@ pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
 /// [`Error::File`] for another ending, [`Error::Invalid`] for a scene that does not validate, [`Error::Io`] when the
 /// system refuses; the target is then as it was.
 pub fn write_scene(scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
+    write_scene_with(scene, path, &WriteOptions::default())
+}
+
+/// [`write_scene`] with a choice of how.
+///
+/// # Errors
+/// As [`write_scene`].
+pub fn write_scene_with(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions) -> Result<()> {
     let path = path.as_ref();
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     match ending.as_deref() {
-        Some("glb") => write_atomic(path, &gltf::to_glb(scene)?),
+        Some("glb") => write_atomic(path, &gltf::to_glb_with(scene, &options.gltf)?),
+        Some("vrm") => write_atomic(path, &gltf::to_vrm(scene, &options.vrm)?),
         Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
+        Some("usda") => write_atomic(path, &usd::to_usda(scene)?),
+        Some("usdc") => write_atomic(path, &usd::to_usdc(scene)?),
+        Some("usdz") => write_atomic(path, &usd::to_usdz(scene)?),
         Some("gltf") => {
             let bin_path = path.with_extension("bin");
             let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
                 return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
             };
-            let files = gltf::to_gltf(scene, bin_name)?;
+            let files = gltf::to_gltf_with(scene, bin_name, &options.gltf)?;
             // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
             let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
             let json = Pending::new(path, |file| file.write_all(&files.json))?;
@@ -170,9 +192,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .obj"),
-            ("a", "expected one of .glb .gltf .obj"),
-            ("glb", "expected one of .glb .gltf .obj"),
+            ("a.stl", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("a", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("glb", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");
@@ -186,7 +208,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = arm(4);
         scene.meshes[0].positions[0][0] = f32::NAN;
-        for name in ["a.glb", "a.gltf", "a.obj"] {
+        for name in ["a.glb", "a.gltf", "a.obj", "a.usda", "a.usdc", "a.usdz"] {
             write_scene(&scene, folder.path().join(name)).unwrap_err();
         }
         assert!(names(folder.path()).is_empty());

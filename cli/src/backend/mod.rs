@@ -1,12 +1,16 @@
 //! The only file that calls the library: from the command line's words to its types and back.
 
+pub(crate) mod motion;
+pub(crate) mod motion_table;
+
 use std::path::Path;
 
 use anthronet::Error;
 use anthronet::condition::{Fill, Request};
-use anthronet::export::{Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone};
+use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
+use anthronet::pose::RestPose;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
 use serde_json::json;
@@ -108,18 +112,19 @@ impl Person {
         self.0.report().to_json()
     }
 
-    /// Writes the file; its ending chooses the format.
-    pub(crate) fn write(&self, path: &Path, choice: &FileChoice<'_>) -> Result<()> {
-        Ok(anthronet::export::write_scene(&self.scene(choice)?, path)?)
-    }
-
     /// The person as the renderer takes it.
     pub(crate) fn figure(&self, lod: u8, skin_tone: Option<&str>) -> Result<Figure> {
         let joint_names = JointNamesChoice::Native;
         figure_from_scene(&self.scene(&FileChoice { lod, influences: 4, joint_names, skin_tone })?)
     }
 
-    fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
+    /// The joints at rest.
+    pub(crate) fn rest_pose(&self) -> Result<RestPose> {
+        Ok(RestPose::of_joints(self.0.joints())?)
+    }
+
+    /// The person as files take it.
+    pub(crate) fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
         let options = SceneOptions {
             lod: Lod::try_from(choice.lod)?,
             influences: choice.influences,
@@ -181,6 +186,22 @@ pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
         .collect();
     Figure::new(parts, Vec3::new(r, g, b))
         .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))
+}
+
+/// Writes the scene; the path's ending chooses the format.
+pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<()> {
+    let ending = crate::request::ending(path);
+    if compress && !matches!(ending.as_str(), "glb" | "gltf") {
+        return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
+    }
+    let options =
+        WriteOptions { gltf: GltfOptions { compress, ..GltfOptions::default() }, ..Default::default() };
+    Ok(anthronet::export::write_scene_with(scene, path, &options)?)
+}
+
+/// Writes text to a file, or with `-` to standard output.
+pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<()> {
+    if path == Path::new("-") { crate::progress::print(text) } else { write(path, text.as_bytes()) }
 }
 
 /// Writes a file whole or not at all.

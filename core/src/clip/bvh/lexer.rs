@@ -1,0 +1,124 @@
+//! Lines and words of a BVH file, with the line they stand in.
+
+use super::Outcome;
+
+/// Goes through the words of a text.
+pub(super) struct Lexer<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl<'a> Lexer<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { rest: text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text), line: 1 }
+    }
+
+    /// An error at the present line.
+    pub(super) fn fail<T>(&self, message: impl std::fmt::Display) -> Outcome<T> {
+        Err(format!("line {}: {message}", self.line))
+    }
+
+    /// The bytes that are left.
+    pub(super) fn remaining(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// The next word, in this line or a later one; `None` at the end.
+    pub(super) fn next(&mut self) -> Option<&'a [u8]> {
+        while let Some((&first, rest)) = self.rest.split_first() {
+            if !first.is_ascii_whitespace() {
+                break;
+            }
+            self.line += usize::from(first == b'\n');
+            self.rest = rest;
+        }
+        self.word()
+    }
+
+    /// The next word of this line; `None` at its end.
+    pub(super) fn next_in_line(&mut self) -> Option<&'a [u8]> {
+        let blanks = self.rest.iter().take_while(|&&c| c != b'\n' && c.is_ascii_whitespace()).count();
+        self.rest = &self.rest[blanks..];
+        self.word()
+    }
+
+    fn word(&mut self) -> Option<&'a [u8]> {
+        let length = self.rest.iter().take_while(|c| !c.is_ascii_whitespace()).count();
+        let (word, rest) = self.rest.split_at(length);
+        self.rest = rest;
+        (!word.is_empty()).then_some(word)
+    }
+
+    /// Takes a word that has to come, in any case of letters.
+    pub(super) fn expect(&mut self, expected: &str) -> Outcome<()> {
+        match self.next() {
+            Some(word) if word.eq_ignore_ascii_case(expected.as_bytes()) => Ok(()),
+            Some(word) => self.fail(format_args!("expected {expected}, got `{}`", shown(word))),
+            None => self.fail(format_args!("truncated: expected {expected}, got the end of the file")),
+        }
+    }
+
+    /// A finite number of this line.
+    pub(super) fn number(&mut self, what: &str) -> Outcome<f64> {
+        let Some(word) = self.next_in_line() else {
+            return self.fail(format_args!("expected {what}, got the end of the line"));
+        };
+        self.parse(word, what)
+    }
+
+    /// A word as a finite number.
+    pub(super) fn parse(&self, word: &[u8], what: &str) -> Outcome<f64> {
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
+        match number {
+            Some(number) if number.is_finite() && number.abs() < 1e30 => Ok(number),
+            Some(_) => self.fail(format_args!("expected {what}, got `{}`, which is not finite", shown(word))),
+            None => self.fail(format_args!("expected {what}, got `{}`", shown(word))),
+        }
+    }
+
+    /// A whole number of this line.
+    pub(super) fn count(&mut self, what: &str) -> Outcome<usize> {
+        let word = self.next_in_line().unwrap_or_default();
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        number.map_or_else(|| self.fail(format_args!("expected {what}, got `{}`", shown(word))), Ok)
+    }
+
+    /// Makes sure that nothing else stands in this line.
+    pub(super) fn end_of_line(&mut self, after: &str) -> Outcome<()> {
+        match self.next_in_line() {
+            None => Ok(()),
+            Some(word) => {
+                self.fail(format_args!("expected the end of the line after {after}, got `{}`", shown(word)))
+            }
+        }
+    }
+
+    /// The words of this line up to its end, or up to an opening brace, which is not taken, joined by single blanks.
+    pub(super) fn name(&mut self) -> Outcome<String> {
+        let mut name = String::new();
+        loop {
+            let before = self.rest;
+            match self.next_in_line() {
+                Some(b"{") => self.rest = before,
+                Some(word) => {
+                    let Ok(word) = std::str::from_utf8(word) else {
+                        return self.fail(format_args!("name `{}` is not UTF-8", shown(word)));
+                    };
+                    if !name.is_empty() {
+                        name.push(' ');
+                    }
+                    name.push_str(word);
+                    continue;
+                }
+                None => {}
+            }
+            return if name.is_empty() { self.fail("expected a joint's name") } else { Ok(name) };
+        }
+    }
+}
+
+/// The start of a word, fit for a message.
+pub(super) fn shown(word: &[u8]) -> String {
+    let start = word[..word.len().min(40)].escape_ascii();
+    format!("{start}{}", if word.len() > 40 { "…" } else { "" })
+}
