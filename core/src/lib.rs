@@ -13,6 +13,7 @@ pub mod model;
 pub mod pose;
 pub mod random;
 pub mod rig;
+pub mod skin;
 pub mod space;
 
 pub use body::Body;

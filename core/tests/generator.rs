@@ -1,5 +1,6 @@
 //! The trained model, from a request to a body: exactness, determinism, plausibility.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use anthronet::condition::{Fill, MeasuredShape, Request};
@@ -9,6 +10,7 @@ use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::random::Random;
+use anthronet::rig::humanoid;
 use anthronet::{Body, Error};
 
 fn model() -> &'static Model {
@@ -115,6 +117,14 @@ fn the_bind_pose_is_an_exact_t_on_the_ground() {
     assert_eq!(lowest, 0.0);
     // Faces +Z: the nose, foremost of the head, is before the back of the head.
     assert!(at("eye_l").z > at("head").z && at("eye_l").x > at("eye_r").x);
+}
+
+#[test]
+fn the_vocabularies_name_the_joints_of_the_rig_and_no_others() {
+    let skeleton = model().character().skeleton();
+    let joints: BTreeSet<&str> = skeleton.names().iter().map(String::as_str).collect();
+    assert_eq!(joints.len(), skeleton.len(), "names are unique");
+    assert_eq!(joints, humanoid::native_names().collect());
 }
 
 #[test]

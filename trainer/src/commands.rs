@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
 use crate::basis::{COMPONENTS, laplacian};
-use crate::corpus::{CACHE, Corpus};
+use crate::corpus::{CACHE, Corpus, Split};
 use crate::dataset::{Bodies, Dataset};
 use crate::evaluation::{GeneratorScores, generator, statistics};
 use crate::generator::{ShapeStatistics, TrainingOptions, TrainingSet, train};
@@ -20,7 +20,7 @@ use crate::{Error, Result};
 
 /// Where the model is kept in the source tree.
 const MODEL: &str = "model/anthronet.safetensors";
-/// Held-out bodies that scores are told on unless said otherwise.
+/// Bodies that scores are told on unless said otherwise.
 const BODIES: usize = 1_000;
 /// Weight γ of the Laplacian loss: enough to act, too little to shrink anybody.
 const GAMMA: f64 = 1e-4;
@@ -62,7 +62,7 @@ pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, 
     )?;
 
     let mut parts = pack(&corpus, &definitions, &dataset, &trained, TRAINING_SEED)?;
-    let scores = score(&Model::from_parts(&parts, "(trained)")?, &corpus, &dataset.held_out, BODIES)?;
+    let scores = score(&Model::from_parts(&parts, "(trained)")?, &corpus, &dataset, Split::HeldOut, BODIES)?;
     eprintln!("{scores}");
     let told = [
         ("bodies", scores.bodies as f64),
@@ -81,9 +81,12 @@ pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, 
 
 /// The table `generator` or `statistics`, as text or JSON.
 ///
+/// The generator is scored on the first `bodies` of `split`; settings are chosen on the validation split, so that the
+/// held-out one stays unseen. The statistics are those of all splits.
+///
 /// # Errors
 /// For an unknown table, or when the source of bodies or the model cannot be had.
-pub fn evaluate(table: &str, as_json: bool, bodies: Option<usize>) -> Result<String> {
+pub fn evaluate(table: &str, split: Split, as_json: bool, bodies: Option<usize>) -> Result<String> {
     let (corpus, _, dataset) = data(Path::new(CACHE))?;
     let to_json = |value: serde_json::Value| {
         serde_json::to_string_pretty(&value).map_err(|e| Error::Invalid(e.to_string()))
@@ -91,7 +94,7 @@ pub fn evaluate(table: &str, as_json: bool, bodies: Option<usize>) -> Result<Str
     match table {
         "generator" => {
             let model = Model::from_environment()?;
-            let scores = score(&model, &corpus, &dataset.held_out, bodies.unwrap_or(BODIES))?;
+            let scores = score(&model, &corpus, &dataset, split, bodies.unwrap_or(BODIES))?;
             if as_json { to_json(json!(scores)) } else { Ok(scores.to_string()) }
         }
         "statistics" => {
@@ -148,9 +151,16 @@ fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {
     Ok((corpus, definitions, dataset))
 }
 
-fn score(model: &Model, corpus: &Corpus, held_out: &Bodies, count: usize) -> Result<GeneratorScores> {
-    let bar = bar(count.min(held_out.len()) as u64, "held-out bodies");
-    let scores = generator(model, corpus, held_out, count, &|| bar.inc(1));
+fn score(
+    model: &Model,
+    corpus: &Corpus,
+    dataset: &Dataset,
+    split: Split,
+    count: usize,
+) -> Result<GeneratorScores> {
+    let count = count.min(dataset.split(split).len());
+    let bar = bar(count as u64, "scored bodies");
+    let scores = generator(model, corpus, dataset, split, count, &|| bar.inc(1));
     bar.finish_and_clear();
     scores
 }

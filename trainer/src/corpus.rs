@@ -55,6 +55,15 @@ impl Split {
             _ => Self::Train,
         }
     }
+
+    /// Its name in scores and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Validation => "validation",
+            Self::HeldOut => "held-out",
+        }
+    }
 }
 
 impl Corpus {

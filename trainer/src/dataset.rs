@@ -67,6 +67,15 @@ impl Dataset {
         Ok(dataset)
     }
 
+    /// Bodies of a split.
+    pub fn split(&self, split: Split) -> &Bodies {
+        match split {
+            Split::Train => &self.train,
+            Split::Validation => &self.validation,
+            Split::HeldOut => &self.held_out,
+        }
+    }
+
     fn count(&self) -> usize {
         [&self.train, &self.validation, &self.held_out].iter().map(|b| b.numbers.len()).sum()
     }

@@ -1,4 +1,4 @@
-//! Scores on held-out bodies, and the statistics of the sampled ones beside the paper's.
+//! Scores on bodies of a split, and the statistics of the sampled ones beside the paper's.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,14 +12,16 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::corpus::{Corpus, Gauge, cage_of};
-use crate::dataset::Bodies;
+use crate::corpus::{Corpus, Gauge, Split, cage_of};
+use crate::dataset::{Bodies, Dataset};
 use crate::{Error, Result};
 
 /// Scores of the generator, millimetres unless said.
 #[derive(Clone, Debug, Serialize)]
 pub struct GeneratorScores {
-    /// Held-out bodies.
+    /// Where the bodies come from: `held-out` unless settings are being chosen.
+    pub split: &'static str,
+    /// Bodies scored.
     pub bodies: usize,
     /// Mean vertex distance on level 0, z = encoder mean.
     pub p2p_mm: f64,
@@ -66,23 +68,25 @@ const PARTIAL: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Scores a model on held-out bodies.
+/// Scores a model on the first `count` bodies of a split.
 ///
 /// # Errors
 /// When a body cannot be generated for another reason than being refused.
 pub fn generator(
     model: &Model,
     corpus: &Corpus,
-    held_out: &Bodies,
+    dataset: &Dataset,
+    split: Split,
     count: usize,
     progress: &(dyn Fn() + Sync),
 ) -> Result<GeneratorScores> {
     let gauge = Gauge::new(model.definitions(), &corpus.subdivision);
-    let count = count.min(held_out.len());
+    let bodies = dataset.split(split);
+    let count = count.min(bodies.len());
     let of_bodies = (0..count)
         .into_par_iter()
         .map(|i| {
-            let result = score(model, corpus, &gauge, held_out.numbers[i]);
+            let result = score(model, corpus, &gauge, bodies.numbers[i]);
             progress();
             result
         })
@@ -101,6 +105,7 @@ pub fn generator(
     let met = solved.len().max(1) as f64;
     let fill = |k: usize, what: &dyn Fn(&(f64, f64)) -> f64| mean(&|b| what(&b.fill[k]));
     Ok(GeneratorScores {
+        split: split.name(),
         bodies: count,
         p2p_mm: mean(&|b| b.p2p),
         p2p_z0_mm: mean(&|b| b.p2p_z0),
@@ -200,7 +205,7 @@ fn mean_distance(a: &[Vec3], b: &[Vec3]) -> f64 {
 
 impl std::fmt::Display for GeneratorScores {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        writeln!(f, "generator on {} held-out bodies (the paper's number in brackets)", self.bodies)?;
+        writeln!(f, "generator on {} {} bodies (the paper's number in brackets)", self.bodies, self.split)?;
         writeln!(f, "  mean vertex distance, z = encoder mean   {:8.3} mm  (3.83)", self.p2p_mm)?;
         writeln!(f, "  mean vertex distance, z = 0              {:8.3} mm", self.p2p_z0_mm)?;
         writeln!(f, "  mean vertex distance of the shape space  {:8.3} mm", self.p2p_shape_space_mm)?;

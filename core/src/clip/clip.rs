@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use crate::pose::{Local, Pose, RestPose};
+use crate::pose::{Local, Pose, RestPose, unit};
 use crate::{Error, Result};
 
 /// The most frames that a clip may have.
@@ -65,7 +65,7 @@ impl Clip {
                 let (frame, joint) = (i / joints, &rest.names()[i % joints]);
                 return fail(format!("frame {frame}, joint `{joint}`: rotation {rotation} is none"));
             }
-            let rotation = rotation.normalize();
+            let rotation = unit(rotation);
             let before = if i < joints { Quat::IDENTITY } else { rotations[i - joints] };
             rotations[i] = if rotation.dot(before) < 0.0 { -rotation } else { rotation };
         }

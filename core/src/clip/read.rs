@@ -5,7 +5,7 @@ use std::{ffi::OsStr, path::Path};
 use serde::Serialize;
 
 use super::raw::{Outcome, Raw};
-use super::{Clip, bvh, fbx, gltf, npz, settle};
+use super::{Clip, bvh, fbx, gltf, npz, settle, usd};
 use crate::space::{Axis, Unit};
 use crate::{Error, Result, input};
 
@@ -99,8 +99,7 @@ pub fn from_bytes(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Mo
         Ending::Fbx => starts(bytes, &[b"Kaydara FBX Binary", b";"], "an FBX file")
             .and_then(|()| fbx::read(bytes, &stem(path), options)),
         Ending::Gltf => return settled(gltf::read(bytes, path, options)?, options).map_err(fault),
-        // One line to add: `Ending::Usd => return super::usd::read(bytes, path, options),`.
-        Ending::Usd => Err("USD is not read yet".to_owned()),
+        Ending::Usd => usd::read(bytes, &stem(path), options),
     };
     raw.and_then(|raw| settled(raw, options)).map_err(fault)
 }

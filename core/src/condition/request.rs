@@ -304,34 +304,20 @@ fn nearest_names(name: &str) -> Vec<&'static str> {
     // A name that holds every word of the wanted one (`waist`, `left_arm_length`) beats one that is merely similar.
     let words: Vec<_> = wanted.split('_').filter(|w| !w.is_empty()).collect();
     let lacks = |candidate: &str| !candidate_has_words(candidate, &words);
-    names.sort_by_cached_key(|candidate| (lacks(candidate), edit_distance(&wanted, candidate), *candidate));
+    names.sort_by_cached_key(|candidate| {
+        (lacks(candidate), crate::error::edit_distance(&wanted, candidate), *candidate)
+    });
     names.truncate(3);
     if let Some(best) = names.first() {
         // Further guesses only where they are about as good as the first.
-        let (first_lacks, closest) = (lacks(best), edit_distance(&wanted, best));
-        names.retain(|n| lacks(n) == first_lacks && edit_distance(&wanted, n) <= closest + 2);
+        let (first_lacks, closest) = (lacks(best), crate::error::edit_distance(&wanted, best));
+        names.retain(|n| lacks(n) == first_lacks && crate::error::edit_distance(&wanted, n) <= closest + 2);
     }
     names
 }
 
 fn candidate_has_words(candidate: &str, words: &[&str]) -> bool {
     !words.is_empty() && words.iter().all(|word| candidate.split('_').any(|part| part == *word))
-}
-
-/// Levenshtein distance in characters. Only the first 64 are looked at: a name is never longer.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().take(64).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().take(64).enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 fn check_value(name: &str, value: f64, range: MeasureRange) -> Result<()> {

@@ -12,11 +12,21 @@ use std::{
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::{Scene, gltf, obj};
+use super::gltf::{self, GltfOptions, VrmMeta};
+use super::{Scene, obj, usd};
 use crate::{Error, Result};
 
 /// The endings that [`write_scene`] knows.
-pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
+pub const ENDINGS: [&str; 7] = [".glb", ".gltf", ".vrm", ".usda", ".usdc", ".usdz", ".obj"];
+
+/// How the formats that leave a choice are written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Of `.glb` and `.gltf`.
+    pub gltf: GltfOptions,
+    /// Of `.vrm`.
+    pub vrm: VrmMeta,
+}
 
 /// Writes the scene in the format of the path's ending, in any case: one of [`ENDINGS`]. A `.gltf` gets its buffer as
 /// a second file, `.bin` for `.gltf`.
@@ -25,17 +35,29 @@ pub const ENDINGS: [&str; 3] = [".glb", ".gltf", ".obj"];
 /// [`Error::File`] for another ending, [`Error::Invalid`] for a scene that does not validate, [`Error::Io`] when the
 /// system refuses; the target is then as it was.
 pub fn write_scene(scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
+    write_scene_with(scene, path, &WriteOptions::default())
+}
+
+/// [`write_scene`] with a choice of how.
+///
+/// # Errors
+/// As [`write_scene`].
+pub fn write_scene_with(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions) -> Result<()> {
     let path = path.as_ref();
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     match ending.as_deref() {
-        Some("glb") => write_atomic(path, &gltf::to_glb(scene)?),
+        Some("glb") => write_atomic(path, &gltf::to_glb_with(scene, &options.gltf)?),
+        Some("vrm") => write_atomic(path, &gltf::to_vrm(scene, &options.vrm)?),
         Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
+        Some("usda") => write_atomic(path, &usd::to_usda(scene)?),
+        Some("usdc") => write_atomic(path, &usd::to_usdc(scene)?),
+        Some("usdz") => write_atomic(path, &usd::to_usdz(scene)?),
         Some("gltf") => {
             let bin_path = path.with_extension("bin");
             let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
                 return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
             };
-            let files = gltf::to_gltf(scene, bin_name)?;
+            let files = gltf::to_gltf_with(scene, bin_name, &options.gltf)?;
             // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
             let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
             let json = Pending::new(path, |file| file.write_all(&files.json))?;
@@ -170,9 +192,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .obj"),
-            ("a", "expected one of .glb .gltf .obj"),
-            ("glb", "expected one of .glb .gltf .obj"),
+            ("a.stl", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("a", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("glb", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");
@@ -186,7 +208,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = arm(4);
         scene.meshes[0].positions[0][0] = f32::NAN;
-        for name in ["a.glb", "a.gltf", "a.obj"] {
+        for name in ["a.glb", "a.gltf", "a.obj", "a.usda", "a.usdc", "a.usdz"] {
             write_scene(&scene, folder.path().join(name)).unwrap_err();
         }
         assert!(names(folder.path()).is_empty());
@@ -233,19 +255,29 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_read_only_folder_is_named() {
-        use std::os::unix::fs::PermissionsExt;
+    fn a_folder_that_takes_no_files_is_named() {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt};
         let folder = tempfile::tempdir().unwrap();
-        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
-        let path = folder.path().join("a.glb");
-        let result = write_atomic(&path, b"bytes");
-        let left = names(folder.path());
-        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o755)).unwrap();
-        // Root may write anywhere.
-        if let Err(error) = result {
-            let message = error.to_string();
-            assert!(message.contains("a.glb: cannot create"), "{message}");
-            assert!(left.is_empty());
+        fs::write(folder.path().join("file"), b"a file, not a folder").unwrap();
+        let read_only = folder.path().join("read-only");
+        fs::create_dir(&read_only).unwrap();
+        fs::set_permissions(&read_only, PermissionsExt::from_mode(0o555)).unwrap();
+
+        let mut refused = vec![folder.path().join("file"), folder.path().join("missing")];
+        if cfg!(target_os = "linux") {
+            // A file system that takes no files, whoever asks.
+            refused.push("/proc".into());
         }
+        // Root may write in any other folder; the command's tests drop root's rights for this one.
+        if fs::metadata(&read_only).unwrap().uid() != 0 {
+            refused.push(read_only.clone());
+        }
+        for place in refused {
+            let path = place.join("a.glb");
+            let message = write_atomic(&path, b"bytes").unwrap_err().to_string();
+            assert!(message.starts_with(&format!("{}: cannot create", path.display())), "{message}");
+        }
+        assert_eq!(names(folder.path()), ["file", "read-only"]);
+        assert!(names(&read_only).is_empty());
     }
 }

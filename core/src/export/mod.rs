@@ -12,8 +12,10 @@ pub mod scene;
 pub mod skin_tone;
 #[cfg(test)]
 pub(crate) mod synthetic;
+pub mod usd;
 
 pub use character::SceneOptions;
-pub use file::{write_atomic, write_scene};
+pub use file::{WriteOptions, write_atomic, write_scene, write_scene_with};
+pub use gltf::{GltfOptions, VrmMeta, vrm};
 pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh};
 pub use skin_tone::SkinTone;

@@ -1,10 +1,13 @@
-//! Reading characters back: the positions to measure, and what a picture needs, from `.glb`, `.gltf` and `.obj`.
+//! Reading characters back: the positions to measure, and what a picture needs, from `.glb`, `.gltf`, `.obj` and
+//! USD.
 //!
 //! Nothing in a file is trusted: sizes are checked against the bytes that are there before anything is allocated, and
 //! whatever is wrong is an [`Error::File`] that says what and where.
 
 pub mod gltf;
 pub mod obj;
+pub mod scene;
+pub mod usd;
 
 use std::{ffi::OsStr, fs, path::Path};
 
@@ -50,7 +53,8 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, or `.obj`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm`,
+/// `.usda`, `.usdc`, `.usdz` or `.obj`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -58,9 +62,10 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
     let path = path.as_ref();
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     match ending.as_deref() {
-        Some("glb" | "gltf") => gltf::from_bytes(&read(path)?, path),
+        Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .obj")),
+        Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
+        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj")),
     }
 }
 

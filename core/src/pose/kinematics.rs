@@ -35,6 +35,15 @@ impl Local {
     }
 }
 
+/// How far a squared length may be from 1 for a quaternion to be of unit length: the rounding of normalising one.
+const UNIT_TOLERANCE: f32 = 1e-6;
+
+/// The quaternion at unit length. One that is of unit length already stays as it is to the last bit, so that what is
+/// written to a file and read again does not change.
+pub(crate) fn unit(rotation: Quat) -> Quat {
+    if (rotation.length_squared() - 1.0).abs() <= UNIT_TOLERANCE { rotation } else { rotation.normalize() }
+}
+
 /// One local transform per joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{Local, Pose};
+use super::{Local, Pose, unit};
 use crate::rig::Joint;
 use crate::{Error, Result};
 
@@ -55,7 +55,7 @@ impl RestPose {
             if local.rotation.length_squared() < 1e-12 {
                 return fail(format!("joint `{name}`: rest rotation is zero"));
             }
-            local.rotation = local.rotation.normalize();
+            local.rotation = unit(local.rotation);
         }
         Ok(Self { names, parents, pose: Pose { locals }, ends })
     }
@@ -126,6 +126,16 @@ impl RestPose {
     /// The joint with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|n| n == name)
+    }
+
+    /// The joint with this name, which has to be there.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the joint that is missing.
+    pub fn require(&self, name: &str) -> Result<usize> {
+        self.find(name).ok_or_else(|| {
+            Error::invalid("skeleton", format!("expected a joint `{name}`, which is not there"))
+        })
     }
 
     /// Where the joints rest: `model_from_joint`.

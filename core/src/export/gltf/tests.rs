@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 
 use super::*;
+use crate::export::SceneJoint;
 use crate::export::synthetic::{arm, sleeve};
 
 struct Parsed {

@@ -1,8 +1,10 @@
 use std::{path::Path, sync::LazyLock};
 
+use glam::Vec3;
 use proptest::prelude::*;
 use serde_json::json;
 
+use super::uri::base64_decoded;
 use super::*;
 use crate::export::{
     gltf::{to_glb, to_gltf},
@@ -21,7 +23,7 @@ fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     changed_of(&GLB, change)
 }
 
-fn changed_of(original: &[u8], change: impl FnOnce(&mut Value)) -> Vec<u8> {
+pub(super) fn changed_of(original: &[u8], change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let json_end = 20 + u32::from_le_bytes(original[12..16].try_into().unwrap()) as usize;
     let mut json: Value = serde_json::from_slice(&original[20..json_end]).unwrap();
     change(&mut json);
@@ -119,8 +121,8 @@ fn says_what_is_wrong_and_where() {
     type Case = (&'static str, fn(&mut Value));
     let cases: &[Case] = &[
         ("asset.version: expected 2.x, got `1.0`", |j| j["asset"]["version"] = json!("1.0")),
-        ("EXT_meshopt_compression is not supported", |j| {
-            j["extensionsRequired"] = json!(["KHR_materials_unlit", "EXT_meshopt_compression"]);
+        ("KHR_draco_mesh_compression is not supported", |j| {
+            j["extensionsRequired"] = json!(["EXT_meshopt_compression", "KHR_draco_mesh_compression"]);
         }),
         ("buffers[0]: expected 99999999 bytes", |j| j["buffers"][0]["byteLength"] = json!(99_999_999)),
         ("expected a file beside or below", |j| j["buffers"][0]["uri"] = json!("../../etc/passwd")),
@@ -241,7 +243,7 @@ proptest! {
     }
 }
 
-fn pointers(value: &Value, at: String, numbers: &mut Vec<String>) {
+pub(super) fn pointers(value: &Value, at: String, numbers: &mut Vec<String>) {
     match value {
         Value::Number(_) => numbers.push(at),
         Value::Array(items) => {

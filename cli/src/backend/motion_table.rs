@@ -1,0 +1,236 @@
+//! The table of motion: every clip of a folder on bodies from small to tall, and the built-in clips.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anthronet::clip::{self, BUILTIN, Motion, OntoOptions, ReadOptions, feet};
+use anthronet::condition::Request;
+use anthronet::model::Model;
+use anthronet::pose::RestPose;
+use anthronet::pose::limits::JointLimits;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::failure::{Failure, Result};
+use crate::progress::bar;
+
+/// Statures of the bodies, metres: from the first to the last in even steps.
+const STATURES: [f64; 2] = [1.49, 1.99];
+
+/// One clip, the worst over the bodies unless said; degrees and millimetres.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    clip: String,
+    frames: usize,
+    /// Joints of the motion that drive nothing.
+    unmatched: usize,
+    /// Mean over frames, limb bones and bodies.
+    direction_mean_deg: f64,
+    beyond_limits_deg: f64,
+    beyond_limits_joint: Option<String>,
+    /// Contacts of both feet, mean over the bodies.
+    contacts: f64,
+    /// The longest path of a touching point within one contact, before and after feet were held.
+    slide_before_mm: f64,
+    slide_mm: f64,
+    /// The deepest point of a foot under the floor.
+    under_floor_before_mm: f64,
+    under_floor_mm: f64,
+}
+
+/// The table, and the worst of all clips.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct MotionTable {
+    bodies: usize,
+    clips: usize,
+    direction_mean_deg: f64,
+    direction_worst_clip_mean_deg: f64,
+    beyond_limits_deg: f64,
+    slide_mm: f64,
+    under_floor_mm: f64,
+    rows: Vec<Row>,
+}
+
+/// Every motion file of the folder on this many bodies.
+pub(crate) fn motion_table(folder: &Path, bodies: usize) -> Result<MotionTable> {
+    let files = files(folder)?;
+    let rests = bodies_of(bodies)?;
+    let bar = bar(files.len() + BUILTIN.len(), "clips");
+    let mut rows = files
+        .par_iter()
+        .map(|path| {
+            let motion = clip::read(path, &ReadOptions::default())?;
+            let row = row(path, &motion, &rests)?;
+            bar.inc(1);
+            Ok(row)
+        })
+        .collect::<Result<Vec<Row>>>()?;
+    for name in BUILTIN {
+        rows.push(builtin_row(name, &rests)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let worst = |of: fn(&Row) -> f64| rows.iter().map(of).fold(0.0, f64::max);
+    let of_files = &rows[..files.len()];
+    Ok(MotionTable {
+        bodies,
+        clips: rows.len(),
+        direction_mean_deg: of_files.iter().map(|r| r.direction_mean_deg).sum::<f64>() / files.len() as f64,
+        direction_worst_clip_mean_deg: worst(|r| r.direction_mean_deg),
+        beyond_limits_deg: worst(|r| r.beyond_limits_deg),
+        slide_mm: worst(|r| r.slide_mm),
+        under_floor_mm: worst(|r| r.under_floor_mm),
+        rows,
+    })
+}
+
+/// The motion files of a folder, in the order of their names.
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Failure::io("read", folder, &e))?;
+    let known = ["bvh", "fbx", "npz", "glb", "gltf", "usda", "usdc", "usdz"];
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|e| e.path()))
+        .filter(|path| known.contains(&crate::request::ending(path).as_str()))
+        .collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(Failure::failed(format!("{}: expected motion files, found none", folder.display())));
+    }
+    Ok(files)
+}
+
+/// Rest poses of bodies of evenly spaced statures; the sex is the likelier one.
+fn bodies_of(count: usize) -> Result<Vec<Arc<RestPose>>> {
+    let model = Model::from_environment()?;
+    (0..count)
+        .map(|i| {
+            let t = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.5 };
+            let mut request = Request::default();
+            request.set("height", STATURES[0] + (STATURES[1] - STATURES[0]) * t)?;
+            Ok(Arc::new(RestPose::of_joints(model.generate(&request)?.joints())?))
+        })
+        .collect()
+}
+
+fn row(path: &Path, motion: &Motion, rests: &[Arc<RestPose>]) -> Result<Row> {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut row = Row::new(name);
+    for rest in rests {
+        let (_, report) = clip::onto(motion, rest, &OntoOptions::default())
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        row.unmatched = report.joints.unmatched.len();
+        for quality in &report.clips {
+            let share = 1.0 / (rests.len() * report.clips.len()) as f64;
+            row.frames = row.frames.max(quality.frames);
+            row.direction_mean_deg += share * quality.direction.mean();
+            row.beyond(quality.beyond_limits, quality.beyond_limits_joint.as_deref());
+            if let Some(feet) = &quality.feet {
+                row.feet(&feet.before, &feet.after, share);
+            }
+        }
+    }
+    Ok(row)
+}
+
+fn builtin_row(name: &str, rests: &[Arc<RestPose>]) -> Result<Row> {
+    let mut row = Row::new(name.to_owned());
+    for rest in rests {
+        let clip = clip::builtin(name, rest)?;
+        row.frames = clip.frame_count();
+        let options = feet::FeetOptions { find_floor: false, ..feet::FeetOptions::default() };
+        let measured = feet::measure(&clip, &feet::contacts(&clip, &options)?)?;
+        row.feet(&measured, &measured, 1.0 / rests.len() as f64);
+        let limits = JointLimits::of_rig(rest);
+        for frame in 0..clip.frame_count() {
+            for (joint, excess) in limits.excess(rest, &clip.pose(frame)).into_iter().enumerate() {
+                let name = rest.names().get(joint).map(String::as_str);
+                row.beyond(f64::from(excess).to_degrees(), name);
+            }
+        }
+    }
+    Ok(row)
+}
+
+impl Row {
+    fn new(clip: String) -> Self {
+        Self {
+            clip,
+            frames: 0,
+            unmatched: 0,
+            direction_mean_deg: 0.0,
+            beyond_limits_deg: 0.0,
+            beyond_limits_joint: None,
+            contacts: 0.0,
+            slide_before_mm: 0.0,
+            slide_mm: 0.0,
+            under_floor_before_mm: 0.0,
+            under_floor_mm: 0.0,
+        }
+    }
+
+    fn beyond(&mut self, degrees: f64, joint: Option<&str>) {
+        if degrees > self.beyond_limits_deg {
+            self.beyond_limits_deg = degrees;
+            self.beyond_limits_joint = joint.map(str::to_owned);
+        }
+    }
+
+    fn feet(&mut self, before: &feet::FeetMeasure, after: &feet::FeetMeasure, share: f64) {
+        let worst = |pair: [f32; 2]| 1000.0 * f64::from(pair[0].max(pair[1]));
+        self.contacts += share * after.contacts.iter().sum::<usize>() as f64;
+        self.slide_before_mm = self.slide_before_mm.max(worst(before.worst_slide));
+        self.slide_mm = self.slide_mm.max(worst(after.worst_slide));
+        self.under_floor_before_mm = self.under_floor_before_mm.max(worst(before.deepest));
+        self.under_floor_mm = self.under_floor_mm.max(worst(after.deepest));
+    }
+}
+
+impl MotionTable {
+    /// As text, the worst over the bodies.
+    pub(crate) fn to_text(&self) -> String {
+        let mut out = format!(
+            "{} clips on {} bodies; the worst over the bodies, in brackets before feet were held\n",
+            self.clips, self.bodies
+        );
+        let _ = writeln!(
+            out,
+            "  {:24} {:>6} {:>9} {:>14} {:>8} {:>16} {:>16}",
+            "clip", "frames", "direction", "beyond limits", "contacts", "slide a stride", "under the floor"
+        );
+        for r in &self.rows {
+            let joint = r.beyond_limits_joint.as_deref().unwrap_or("");
+            let _ = writeln!(
+                out,
+                "  {:24} {:6} {:7.2} ° {:6.2} ° {:>12} {:5.0} {:6.1} mm ({:.0}) {:6.1} mm ({:.0})",
+                r.clip,
+                r.frames,
+                r.direction_mean_deg,
+                r.beyond_limits_deg,
+                joint,
+                r.contacts,
+                r.slide_mm,
+                r.slide_before_mm,
+                r.under_floor_mm,
+                r.under_floor_before_mm
+            );
+        }
+        let _ = writeln!(
+            out,
+            "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; slide a stride {:.1} mm; \
+             under the floor {:.1} mm",
+            self.direction_mean_deg,
+            self.direction_worst_clip_mean_deg,
+            self.beyond_limits_deg,
+            self.slide_mm,
+            self.under_floor_mm
+        );
+        out
+    }
+
+    /// As JSON.
+    pub(crate) fn to_json(&self) -> Result<String> {
+        let text = serde_json::to_string_pretty(self);
+        Ok(text.map_err(|e| Failure::failed(format!("the table: {e}")))? + "\n")
+    }
+}

@@ -1,0 +1,97 @@
+//! Options that say how a character moves, shared by the commands that write motion.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+/// Length of one unit of a motion file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UnitChoice {
+    /// Metres.
+    M,
+    /// Centimetres.
+    Cm,
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    In,
+}
+
+/// The axis that points up in a motion file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UpChoice {
+    Y,
+    Z,
+}
+
+/// Where the fingers' pose comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FingersChoice {
+    /// From the motion where it moves fingers, else relaxed.
+    Source,
+    /// Hanging, slightly curled.
+    Relaxed,
+    /// Straight, as in the bind pose.
+    Rest,
+}
+
+/// Options of motion.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Motion")]
+pub(crate) struct MotionArguments {
+    /// A motion: a file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or one of the built-in idle, walk, wave, squat,
+    /// range_of_motion. May be repeated; glTF and USD keep several.
+    #[arg(long = "clip", value_name = "FILE|NAME")]
+    pub(crate) clips: Vec<String>,
+
+    /// Length of one unit of the motion file; left out, the file says or the size of its skeleton.
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) clip_unit: Option<UnitChoice>,
+
+    /// The axis that points up in the motion file; left out, the file says or the skeleton.
+    #[arg(long, value_name = "AXIS")]
+    pub(crate) clip_up: Option<UpChoice>,
+
+    /// Frames per second of the motion file, instead of what it says.
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    pub(crate) clip_fps: Option<f64>,
+
+    /// A JSON object {"joint of the motion": "joint of ours" or null} that goes before what is found by itself.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mapping: Option<PathBuf>,
+
+    /// Frames per second of the written motion; left out, those of the motion file.
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    pub(crate) fps: Option<f64>,
+
+    /// Where the fingers' pose comes from [default: source].
+    #[arg(long)]
+    pub(crate) fingers: Option<FingersChoice>,
+
+    /// Stay in place: no motion over the ground.
+    #[arg(long)]
+    pub(crate) in_place: bool,
+
+    /// Make the end meet the beginning.
+    #[arg(long = "loop")]
+    pub(crate) looped: bool,
+
+    /// Leave feet where the motion puts them: they may slide and sink.
+    #[arg(long)]
+    pub(crate) no_feet: bool,
+
+    /// Let joints turn further than people's do.
+    #[arg(long)]
+    pub(crate) no_limits: bool,
+
+    /// Write how the motion was read and brought onto the body as JSON, to a file or with `-` to standard output.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) motion_report: Option<PathBuf>,
+}
+
+fn parse_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if (1.0..=240.0).contains(&rate) => Ok(rate),
+        _ => Err(format!("expected 1 to 240 frames a second, got `{text}`")),
+    }
+}

@@ -1,0 +1,152 @@
+//! Writes skinned surfaces for programs that are not ours to agree with.
+//!
+//!     skin_dump FOLDER [--time]
+//!
+//! FOLDER gets `skin.json` (counts, joint names, parents) and, per surface and pose, arrays of little-endian numbers;
+//! `tests/skin_reference.py` reads them. With `--time`, every line on standard input is answered with the nanoseconds
+//! that one linear skinning of level 0 and one copy of as many bytes took, on one thread; `tests/skin_speed.py` asks.
+
+use std::io::{BufRead, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use anthronet::condition::Request;
+use anthronet::export::{Scene, SceneOptions};
+use anthronet::measure::Sex;
+use anthronet::model::Model;
+use anthronet::pose::{Local, Pose, RestPose};
+use anthronet::random::Random;
+use anthronet::rig::Influences;
+use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
+use glam::{Quat, Vec3};
+
+type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+const POSES: u64 = 3;
+const METHODS: [(&str, SkinMethod); 3] = [
+    ("linear", SkinMethod::Linear),
+    ("dual_quaternion", SkinMethod::DualQuaternion),
+    ("joint_translation", SkinMethod::JointTranslation),
+];
+
+fn main() -> Outcome {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (folder, time) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [folder] => (Path::new(folder), false),
+        [folder, "--time"] => (Path::new(folder), true),
+        _ => return Err("usage: skin_dump FOLDER [--time]".into()),
+    };
+    std::fs::create_dir_all(folder)?;
+    let body = Model::embedded()?.generate(&Request { sex: Some(Sex::Female), ..Request::default() })?;
+    let rest = RestPose::of_joints(body.joints())?;
+    let bind = rest.model_from_joints();
+    let poses: Vec<Vec<Local>> =
+        (0..POSES).map(|seed| random_pose(&rest, seed).model_from_joints(rest.parents())).collect();
+    write_locals(&folder.join("bind"), &bind)?;
+    for (p, pose) in poses.iter().enumerate() {
+        write_locals(&folder.join(format!("pose{p}")), pose)?;
+    }
+
+    for per_vertex in [4, 8] {
+        let scene =
+            Scene::from_body(&body, &SceneOptions { influences: per_vertex, ..SceneOptions::default() })?;
+        let mesh = scene.meshes.first().ok_or("the scene has no body")?;
+        let vectors = |from: &[[f32; 3]]| from.iter().map(|v| Vec3::from_array(*v)).collect::<Vec<_>>();
+        let influences = Influences {
+            per_vertex,
+            joints: mesh.joint_indices.clone(),
+            weights: mesh.joint_weights.clone(),
+        };
+        let skinner = Skinner::new(&vectors(&mesh.positions), &vectors(&mesh.normals), &influences, &bind)?;
+        write(&folder.join("positions.f32"), mesh.positions.as_flattened(), |x| x.to_le_bytes())?;
+        write(&folder.join("normals.f32"), mesh.normals.as_flattened(), |x| x.to_le_bytes())?;
+        write(&folder.join(format!("joints{per_vertex}.u16")), &influences.joints, |x| x.to_le_bytes())?;
+        write(&folder.join(format!("weights{per_vertex}.f32")), &influences.weights, |x| x.to_le_bytes())?;
+        let mut out = (mesh.positions.clone(), mesh.normals.clone());
+        for (p, pose) in poses.iter().enumerate() {
+            for (name, method) in METHODS {
+                skinner.skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1))?;
+                let stem = format!("{name}_{per_vertex}_pose{p}");
+                for (what, array) in [("positions", &out.0), ("normals", &out.1)] {
+                    let file = folder.join(format!("{stem}_{what}.f32"));
+                    write(&file, array.as_flattened(), |x| x.to_le_bytes())?;
+                }
+            }
+        }
+        if per_vertex == 4 && time {
+            answer_times(&skinner, &influences, &poses[0])?;
+        }
+    }
+    let description = serde_json::json!({
+        "poses": POSES,
+        "methods": METHODS.map(|m| m.0),
+        "names": rest.names(),
+        "parents": rest.parents(),
+    });
+    std::fs::write(folder.join("skin.json"), description.to_string())?;
+    Ok(())
+}
+
+/// Every joint turned about a random axis, by a normal angle of half a radian.
+fn random_pose(rest: &RestPose, seed: u64) -> Pose {
+    let mut random = Random::new(seed, 0);
+    let mut pose = rest.pose().clone();
+    for local in &mut pose.locals {
+        let axis = Vec3::from_array(std::array::from_fn(|_| random.normal() as f32)).normalize_or(Vec3::X);
+        local.rotation =
+            (local.rotation * Quat::from_axis_angle(axis, 0.5 * random.normal() as f32)).normalize();
+    }
+    pose
+}
+
+/// Quaternions x, y, z, w and translations, seven numbers a joint.
+fn write_locals(stem: &Path, locals: &[Local]) -> Outcome {
+    let numbers: Vec<f32> = locals
+        .iter()
+        .flat_map(|l| [&l.rotation.to_array()[..], &l.translation.to_array()].concat())
+        .collect();
+    write(&stem.with_extension("f32"), &numbers, |x| x.to_le_bytes())
+}
+
+fn write<T: Copy, const N: usize>(file: &Path, numbers: &[T], bytes: impl Fn(T) -> [u8; N]) -> Outcome {
+    Ok(std::fs::write(file, numbers.iter().flat_map(|x| bytes(*x)).collect::<Vec<_>>())?)
+}
+
+/// Answers each line with the times, in nanoseconds, of one linear skinning and of one copy that moves as many bytes.
+///
+/// The copies go through memory that no cache holds, each time the next part of it, as a crowd's skinning would.
+fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[Local]) -> Outcome {
+    let count = skinner.vertex_count();
+    let (mut positions, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+    let part = bytes_moved(influences) / 2;
+    let from = vec![1_u8; 64 * part];
+    let mut to = from.clone();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut out = std::io::stdout();
+    for (turn, line) in std::io::stdin().lock().lines().enumerate() {
+        line?;
+        let skinned = pool.install(|| {
+            let start = Instant::now();
+            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(&mut positions, &mut normals))?;
+            anthronet::Result::Ok(start.elapsed())
+        })?;
+        std::hint::black_box((&positions, &normals));
+        let range = (turn % 64) * part..(turn % 64 + 1) * part;
+        let start = Instant::now();
+        to[range.clone()].copy_from_slice(std::hint::black_box(&from[range]));
+        let copied = start.elapsed();
+        std::hint::black_box(&to);
+        writeln!(out, "{} {}", skinned.as_nanos(), copied.as_nanos())?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// What a skinning of positions and normals reads and writes: both twice, and joints and weights, of which four
+/// vertices side by side have as many as the busiest of them.
+fn bytes_moved(influences: &Influences) -> usize {
+    let vertices = influences.weights.chunks(influences.per_vertex);
+    let used: Vec<usize> = vertices.map(|w| w.iter().filter(|w| **w > 0.0).count()).collect();
+    let slots: usize = used.chunks(4).map(|four| 4 * four.iter().max().unwrap_or(&0)).sum();
+    used.len() * 4 * size_of::<[f32; 3]>() + slots * (size_of::<f32>() + size_of::<u16>())
+}

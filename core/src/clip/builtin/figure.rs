@@ -1,0 +1,282 @@
+//! A body of our rig that takes stances in the words of a body: arms hang, feet roll, a back bends.
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec2, Vec3};
+
+use crate::clip::feet::Leg;
+use crate::pose::ik::Reach;
+use crate::pose::{Local, Pose, RestPose, model_from_joints};
+use crate::{Error, Result};
+
+/// What of a leg may be used, so that a knee never locks.
+const STRETCH: f32 = 0.992;
+
+/// An arm, angles in degrees. All zero is the T-pose.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Arm {
+    /// Down from level: 90 hangs.
+    pub(super) lowered: f32,
+    /// Then forward about the axis through both shoulders.
+    pub(super) forward: f32,
+    /// Before both, about the bone: outward lifts a bent forearm.
+    pub(super) outward: f32,
+    /// Elbow flexion.
+    pub(super) elbow: f32,
+    /// Wrist: to the thumb's side, and towards the palm.
+    pub(super) wrist: Vec2,
+    /// How much fingers are curled beyond rest.
+    pub(super) curl: f32,
+    /// Collar bone, upwards.
+    pub(super) shrug: f32,
+}
+
+impl Arm {
+    /// Hangs at the side, elbow slightly bent, fingers relaxed.
+    pub(super) const HANGING: Self = Self {
+        lowered: 79.0,
+        forward: 3.0,
+        outward: 0.0,
+        elbow: 16.0,
+        wrist: Vec2::new(0.0, 4.0),
+        curl: 14.0,
+        shrug: -3.0,
+    };
+}
+
+/// A foot: where its sole is moved from rest, and how it rolls.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Foot {
+    /// Metres from the place at rest.
+    pub(super) shift: Vec3,
+    /// Degrees: above 0 the heel is raised over the ball, the toes stay flat; below, the toes over the heel.
+    pub(super) roll: f32,
+    /// Degrees that the toes point outwards more than at rest.
+    pub(super) toe_out: f32,
+}
+
+/// A whole body, angles in degrees; arms and feet left and right.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stance {
+    /// Root translation, metres.
+    pub(super) root: Vec3,
+    /// Pelvis from rest, metres.
+    pub(super) pelvis: Vec3,
+    /// How far thighs are turned so that knees point outwards.
+    pub(super) knees_out: f32,
+    /// Pelvis about X (forward), Y (to the left), Z (to the right) in model space.
+    pub(super) pelvis_turn: Vec3,
+    /// The same for the spine, shared by its joints.
+    pub(super) spine: Vec3,
+    /// The same for neck and head.
+    pub(super) head: Vec3,
+    pub(super) arms: [Arm; 2],
+    pub(super) feet: [Foot; 2],
+}
+
+struct ArmJoints {
+    clavicle: usize,
+    upper: usize,
+    lower: usize,
+    hand: usize,
+    /// Shares of the upper arm's twist that helper joints give back: full at the shoulder, half on the way.
+    helpers: Vec<(usize, f32)>,
+    fingers: Vec<usize>,
+}
+
+/// A skeleton at rest with its joints found and its proportions.
+pub(super) struct Figure {
+    pub(super) rest: Arc<RestPose>,
+    model: Vec<Local>,
+    root: usize,
+    pelvis: usize,
+    spine: [usize; 3],
+    neck: [usize; 2],
+    arms: [ArmJoints; 2],
+    legs: [Leg; 2],
+    /// Length of a leg from hip to ankle, metres.
+    pub(super) leg_length: f32,
+    /// Lengths of thigh and shin.
+    pub(super) leg_bones: [f32; 2],
+}
+
+/// +1 on the left, −1 on the right: what mirrors turns about Y and Z.
+const SIDES: [(&str, f32); 2] = [("l", 1.0), ("r", -1.0)];
+
+impl Figure {
+    pub(super) fn new(rest: &Arc<RestPose>) -> Result<Self> {
+        let joint = |name: &str| rest.require(name);
+        let arm = |side: &str| -> Result<ArmJoints> {
+            let of = |part: &str| joint(&format!("{part}_{side}"));
+            let ends = |parts: &[&str]| {
+                let found = parts.iter().filter_map(|part| rest.find(&format!("{part}_{side}")));
+                found.collect::<Vec<_>>()
+            };
+            let helpers = [("upperarm_twist_01", -1.0), ("upperarm_twist_02", -0.5)];
+            Ok(ArmJoints {
+                clavicle: of("clavicle")?,
+                upper: of("upperarm")?,
+                lower: of("lowerarm")?,
+                hand: of("hand")?,
+                helpers: helpers
+                    .iter()
+                    .filter_map(|(part, share)| Some((rest.find(&format!("{part}_{side}"))?, *share)))
+                    .collect(),
+                fingers: ends(&[
+                    "index_01",
+                    "index_02",
+                    "index_03",
+                    "middle_01",
+                    "middle_02",
+                    "middle_03",
+                    "ring_01",
+                    "ring_02",
+                    "ring_03",
+                    "pinky_01",
+                    "pinky_02",
+                    "pinky_03",
+                ]),
+            })
+        };
+        let legs = Leg::both(rest)?;
+        let lengths = legs.map(|leg| leg.limb.length(rest.pose()));
+        if lengths.iter().any(|l| *l < 1e-3) {
+            return Err(Error::invalid(
+                "skeleton",
+                format!("expected legs with a length, got {lengths:?} m"),
+            ));
+        }
+        let bone = |joint: usize| rest.pose().locals[joint].translation.length();
+        Ok(Self {
+            rest: rest.clone(),
+            model: rest.model_from_joints(),
+            root: joint("Root")?,
+            pelvis: joint("pelvis")?,
+            spine: [joint("spine_01")?, joint("spine_02")?, joint("spine_03")?],
+            neck: [joint("neck_01")?, joint("head")?],
+            arms: [arm("l")?, arm("r")?],
+            leg_length: lengths[0].min(lengths[1]),
+            leg_bones: [bone(legs[0].limb.lower), bone(legs[0].limb.end)],
+            legs,
+        })
+    }
+
+    /// Where a foot is moved to stand at `share` of the way from under the hip (0) to its place at rest (1), toes level.
+    pub(super) fn standing(&self, share: f32) -> [Foot; 2] {
+        self.legs.map(|leg| {
+            let [hip, ankle] = [leg.limb.upper, leg.limb.end].map(|j| self.model[j].translation.x);
+            Foot { shift: Vec3::X * ((hip - ankle) * (1.0 - share)), roll: 0.0, toe_out: 0.0 }
+        })
+    }
+
+    /// How much the pelvis would have to come down for legs to reach their feet with a slightly bent knee, metres;
+    /// below 0 when there is room.
+    pub(super) fn too_high(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
+        let mut pose = self.rest.pose().clone();
+        self.set_trunk(stance, &mut pose);
+        let mut model = Vec::new();
+        model_from_joints(self.rest.parents(), &pose.locals, &mut model);
+        feet.map(|f| {
+            let leg = &self.legs[f];
+            let ankle = self.foot_goal(f, &stance.feet[f]).translation;
+            let hip = model[leg.limb.upper].translation - stance.root;
+            let reach = leg.limb.length(&pose) * STRETCH;
+            let level = (ankle - hip).with_y(0.0).length();
+            hip.y - ankle.y - libm::sqrtf((reach * reach - level * level).max(0.0))
+        })
+        .fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The stance with the pelvis just low enough for both legs.
+    pub(super) fn settled(&self, mut stance: Stance) -> Stance {
+        stance.pelvis.y -= self.too_high(&stance, 0..2).max(0.0);
+        stance
+    }
+
+    /// The pose of a stance.
+    pub(super) fn pose(&self, stance: &Stance) -> Pose {
+        let mut pose = self.rest.pose().clone();
+        self.set_trunk(stance, &mut pose);
+        for (f, (_, side)) in SIDES.iter().enumerate() {
+            self.set_arm(&self.arms[f], &stance.arms[f], *side, &mut pose);
+        }
+        let mut model = Vec::new();
+        model_from_joints(self.rest.parents(), &pose.locals, &mut model);
+        for (f, leg) in self.legs.iter().enumerate() {
+            let mut target = self.foot_goal(f, &stance.feet[f]);
+            target.translation += stance.root;
+            // Bent on its own hinge, so that it is the knee that says where the knee goes.
+            let outwards = -SIDES[f].1 * stance.knees_out.to_radians();
+            pose.locals[leg.limb.upper].rotation *= Quat::from_rotation_y(outwards);
+            pose.locals[leg.limb.lower].rotation *= Quat::from_rotation_x(-0.5);
+            leg.limb.reach(&mut pose, leg.above(&model), &Reach { target, softness: 0.0 });
+            let toes = Quat::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
+            pose.locals[leg.ball].rotation *= toes;
+        }
+        pose
+    }
+
+    fn set_trunk(&self, stance: &Stance, pose: &mut Pose) {
+        pose.locals[self.root].translation += stance.root;
+        let local = &mut pose.locals[self.pelvis];
+        let above =
+            self.rest.parents()[self.pelvis].map_or(Quat::IDENTITY, |p| self.model[p as usize].rotation);
+        let to_parent = above.conjugate();
+        local.translation += to_parent * stance.pelvis;
+        local.rotation = to_parent * euler(stance.pelvis_turn) * above * local.rotation;
+        for (joints, turn) in [(&self.spine[..], stance.spine), (&self.neck[..], stance.head)] {
+            let share = euler(turn / joints.len() as f32);
+            for joint in joints {
+                pose.locals[*joint].rotation *= share;
+            }
+        }
+    }
+
+    fn set_arm(&self, joints: &ArmJoints, arm: &Arm, side: f32, pose: &mut Pose) {
+        let x = |degrees: f32| Quat::from_rotation_x(degrees.to_radians());
+        let y = |degrees: f32| Quat::from_rotation_y(side * degrees.to_radians());
+        let z = |degrees: f32| Quat::from_rotation_z(side * degrees.to_radians());
+        let mut turn = |joint: usize, by: Quat| pose.locals[joint].rotation *= by;
+        turn(joints.clavicle, z(arm.shrug));
+        turn(joints.upper, y(-arm.forward) * z(-arm.lowered - arm.shrug) * y(-arm.outward));
+        turn(joints.lower, x(arm.elbow));
+        turn(joints.hand, x(arm.wrist.x) * z(-arm.wrist.y));
+        for (joint, share) in &joints.helpers {
+            turn(*joint, y(-arm.outward * share));
+        }
+        for joint in &joints.fingers {
+            turn(*joint, z(-arm.curl));
+        }
+    }
+
+    /// `model_from_foot`, without the root's way.
+    fn foot_goal(&self, f: usize, foot: &Foot) -> Local {
+        let leg = &self.legs[f];
+        let (ankle, ball) = (self.model[leg.limb.end], self.model[leg.ball]);
+        let heel = ankle.translation + ankle.rotation * leg.heel;
+        let pivot = if foot.roll > 0.0 { ball.translation } else { heel };
+        let toe_out = Quat::from_rotation_y(SIDES[f].1 * foot.toe_out.to_radians());
+        let turn = toe_out * Quat::from_rotation_x(foot.roll.to_radians());
+        // Turned about the middle of the foot, rolled about its pivot.
+        let middle = (0.5 * (heel + ball.translation)).with_y(0.0);
+        let rolled = pivot + Quat::from_rotation_x(foot.roll.to_radians()) * (ankle.translation - pivot);
+        Local {
+            rotation: turn * ankle.rotation,
+            translation: middle + toe_out * (rolled - middle) + foot.shift,
+        }
+    }
+
+    /// Turns joints of the pose about their own axes, degrees as for the left; right joints are mirrored.
+    pub(super) fn turn(&self, pose: &mut Pose, name: &str, x: f32, y: f32, z: f32) {
+        let side = if name.ends_with("_r") { -1.0 } else { 1.0 };
+        if let Some(joint) = self.rest.find(name) {
+            pose.locals[joint].rotation *= euler(Vec3::new(x, side * y, side * z));
+        }
+    }
+}
+
+/// About Y, then about the new X, then about the new Z; degrees.
+fn euler(degrees: Vec3) -> Quat {
+    let [x, y, z] = degrees.to_array().map(f32::to_radians);
+    Quat::from_euler(glam::EulerRot::YXZ, y, x, z)
+}

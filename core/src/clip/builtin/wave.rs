@@ -1,0 +1,48 @@
+//! Waving with the right hand while standing.
+
+use std::f32::consts::TAU;
+
+use glam::Vec2;
+
+use super::figure::{Arm, Figure};
+use super::{RATE, idle, keyed};
+use crate::pose::Pose;
+
+const SECONDS: f32 = 4.0;
+/// When the arm is up, and when it comes down.
+const UP: f32 = 0.9;
+const DOWN: f32 = 3.0;
+/// Swings of the hand a second.
+const SWINGS: f32 = 1.9;
+
+pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
+    let frames = (SECONDS * RATE as f32) as usize;
+    (0..=frames)
+        .map(|f| {
+            let at = f as f32 / RATE as f32;
+            // A quarter of a cycle of idling and back: a shift of weight to the left, away from the arm.
+            let shifted = 0.5 - 0.5 * libm::cosf(TAU * at / SECONDS);
+            let mut stance = idle::stance(figure, 0.25 * shifted);
+            let raised = keyed(&[(0.0, 0.0), (UP, 1.0), (DOWN, 1.0), (SECONDS, 0.0)], at);
+            // The elbow folds a little before the arm is up.
+            let folded = keyed(&[(0.0, 0.0), (0.8 * UP, 1.0), (DOWN, 1.0), (0.95 * SECONDS, 0.0)], at);
+            let swinging =
+                keyed(&[(0.0, 0.0), (UP, 0.0), (UP + 0.3, 1.0), (DOWN - 0.3, 1.0), (DOWN, 0.0)], at);
+            let swing = swinging * libm::sinf(TAU * SWINGS * (at - UP));
+            let home = stance.arms[1];
+            let mix = |from: f32, to: f32, share: f32| from + (to - from) * share;
+            stance.arms[1] = Arm {
+                lowered: mix(home.lowered, 22.0, raised),
+                forward: mix(home.forward, 12.0, raised),
+                outward: mix(0.0, 82.0, raised),
+                elbow: mix(home.elbow, 105.0, folded) + 16.0 * swing,
+                wrist: home.wrist.lerp(Vec2::new(0.0, 0.0), raised) + Vec2::X * (10.0 * swing),
+                curl: mix(home.curl, -8.0, raised),
+                shrug: mix(home.shrug, 6.0, raised),
+            };
+            stance.head.z -= 3.0 * raised;
+            stance.spine.z -= 1.5 * raised;
+            figure.pose(&figure.settled(stance))
+        })
+        .collect()
+}

@@ -1,0 +1,110 @@
+//! A leg of our rig and the points on its sole.
+
+use glam::Vec3;
+
+use super::for_each_pose;
+use crate::Result;
+use crate::clip::Clip;
+use crate::pose::ik::{Bend, Limb};
+use crate::pose::{Local, Pose, RestPose, model_from_joints};
+
+/// How far the heel reaches behind the ankle, in distances from the ankle to the ball: bodies of the model have a
+/// quarter to a third.
+const HEEL: f32 = 0.28;
+
+/// The joints of a leg, and where its sole is. Bodies rest with their feet on the floor, so the sole is what lies at
+/// y = 0 there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leg {
+    /// Hip, knee, ankle.
+    pub(crate) limb: Limb,
+    /// The joint that the thigh hangs on.
+    pub(crate) parent: Option<usize>,
+    /// The joint of the toes.
+    pub(crate) ball: usize,
+    /// Heel in the foot's space.
+    pub(crate) heel: Vec3,
+    /// Tip of the toes in the ball joint's space.
+    pub(crate) tip: Vec3,
+    /// Heights of ball joint and tip over the sole at rest. The sole is round there, so they keep them as they roll.
+    pub(crate) clearance: [f32; 2],
+    /// From heel to ball along the floor at rest.
+    pub(crate) sole_length: f32,
+}
+
+/// The sole's points in model space, metres over the floor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sole {
+    pub(crate) heel: Vec3,
+    pub(crate) ball: Vec3,
+    pub(crate) tip: Vec3,
+}
+
+impl Sole {
+    /// Height of the lowest point.
+    pub(crate) fn lowest(&self) -> f32 {
+        self.heel.y.min(self.ball.y).min(self.tip.y)
+    }
+}
+
+impl Leg {
+    /// Left and right.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) naming a joint that is missing.
+    pub(crate) fn both(rest: &RestPose) -> Result<[Self; 2]> {
+        Ok([Self::named(rest, "l")?, Self::named(rest, "r")?])
+    }
+
+    fn named(rest: &RestPose, side: &str) -> Result<Self> {
+        let names = ["thigh", "calf", "foot"].map(|n| format!("{n}_{side}"));
+        let limb = Limb::named(rest, [&names[0], &names[1], &names[2]], Bend::Forwards)?;
+        let ball = rest.require(&format!("ball_{side}"))?;
+        let model = rest.model_from_joints();
+        let (ankle, joint) = (model[limb.end], model[ball]);
+        let forward = (joint.translation - ankle.translation).with_y(0.0);
+        let heel = (ankle.translation - forward * HEEL).with_y(0.0);
+        // A ball joint without a known end has toes half as long as its foot.
+        let tip = rest.ends()[ball].unwrap_or_else(|| joint.rotation.conjugate() * (forward * 0.5));
+        Ok(Self {
+            limb,
+            parent: rest.parents()[limb.upper].map(|p| p as usize),
+            ball,
+            heel: ankle.rotation.conjugate() * (heel - ankle.translation),
+            tip,
+            clearance: [joint.translation.y, (joint.translation + joint.rotation * tip).y],
+            sole_length: forward.length() * (1.0 + HEEL),
+        })
+    }
+
+    /// The points of the sole from `model_from_joint` of foot and ball.
+    pub(crate) fn sole(&self, foot: Local, ball: Local) -> Sole {
+        Sole {
+            heel: foot.translation + foot.rotation * self.heel,
+            ball: ball.translation - Vec3::Y * self.clearance[0],
+            tip: ball.translation + ball.rotation * self.tip - Vec3::Y * self.clearance[1],
+        }
+    }
+
+    /// `model_from_parent` of the hip.
+    pub(crate) fn above(&self, model: &[Local]) -> Local {
+        self.parent.map_or(Local::IDENTITY, |p| model[p])
+    }
+}
+
+/// The soles of a clip, left and right, frame by frame, over a floor.
+pub(crate) fn tracks(clip: &Clip, legs: &[Leg; 2], floor: f32) -> [Vec<Sole>; 2] {
+    let mut tracks = [Vec::with_capacity(clip.frame_count()), Vec::with_capacity(clip.frame_count())];
+    let mut model = Vec::new();
+    for_each_pose(clip, |_, pose: &Pose| {
+        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+        for (leg, track) in legs.iter().zip(&mut tracks) {
+            let mut sole = leg.sole(model[leg.limb.end], model[leg.ball]);
+            for point in [&mut sole.heel, &mut sole.ball, &mut sole.tip] {
+                point.y -= floor;
+            }
+            track.push(sole);
+        }
+    });
+    tracks
+}

@@ -1,0 +1,162 @@
+//! Holding feet on the floor.
+
+use glam::{Quat, Vec3};
+
+use super::contacts::{Contacts, contacts};
+use super::hold::{Correction, corrections};
+use super::leg::{self, Leg};
+use super::{FeetOptions, FeetReport, for_each_pose, measure};
+use crate::Result;
+use crate::clip::{Clip, TranslationTrack};
+use crate::pose::ik::Reach;
+use crate::pose::limits::JointLimits;
+use crate::pose::{Local, Pose, RestPose, model_from_joints};
+
+/// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
+const SOFTNESS: f32 = 0.004;
+
+/// Holds the feet of a clip of our rig: points in contact stay where they are, nothing sinks deeper than
+/// `options.depth`, toes bend instead of going through the floor. A foot keeps the rotation it has, but for the turn
+/// that lays its sole on the floor while heel and ball touch, and as far as the ankle's limits allow.
+///
+/// # Errors
+/// [`Error`](crate::Error) naming a joint of the legs or the pelvis that is missing, or an option out of range.
+pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
+    let found = contacts(clip, options)?;
+    let before = measure(clip, &found)?;
+    let rest = clip.rest();
+    let legs = Leg::both(rest)?;
+    let pelvis = rest.require("pelvis")?;
+    let blend = libm::roundf(options.blend * clip.frames_per_second() as f32) as usize;
+
+    let soles = leg::tracks(clip, &legs, found.floor);
+    let feet: [Vec<Correction>; 2] =
+        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole_length, blend));
+    let mut planter = Planter { legs, rest, limits: JointLimits::of_rig(rest), floor: found.floor, options };
+    let drops = planter.pelvis_drops(clip, &feet, blend);
+
+    let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
+    let mut places = Vec::with_capacity(clip.frame_count());
+    let mut pose = Pose::default();
+    let mut model = Vec::new();
+    for frame in 0..clip.frame_count() {
+        clip.pose_into(frame, &mut pose);
+        planter.frame(&mut pose, &mut model, pelvis, [feet[0][frame], feet[1][frame]], drops[frame]);
+        rotations.extend(pose.locals.iter().map(|l| l.rotation));
+        places.push(pose.locals[pelvis].translation);
+    }
+    let mut tracks = clip.translations().to_vec();
+    tracks.retain(|track| track.joint as usize != pelvis);
+    tracks.push(TranslationTrack { joint: pelvis as u32, values: places });
+    let name = clip.name().to_owned();
+    let planted = Clip::new(name, rest.clone(), clip.frames_per_second(), rotations, tracks)?;
+    let after = measure(&planted, &Contacts { floor: 0.0, ..found.clone() })?;
+    let pelvis_drop = drops.iter().copied().fold(0.0, f32::max);
+    Ok((planted, FeetReport { floor: found.floor, before, after, pelvis_drop }))
+}
+
+struct Planter<'a> {
+    legs: [Leg; 2],
+    rest: &'a RestPose,
+    limits: JointLimits,
+    floor: f32,
+    options: &'a FeetOptions,
+}
+
+impl Planter<'_> {
+    /// Where a foot goes, `model_from_foot`, before the pelvis is lowered: corrected, and lifted out of the floor.
+    fn goal(&self, leg: &Leg, model: &[Local], correction: &Correction) -> Local {
+        let (foot, ball) = (self.over_floor(model[leg.limb.end]), self.over_floor(model[leg.ball]));
+        let sole = leg.sole(foot, ball);
+        let lowest = correction.apply(sole.heel, sole.ball).y.min(sole.ball.y + correction.shift.y);
+        let lift = (-self.options.depth - lowest).max(0.0);
+        Local {
+            rotation: (correction.rotation() * foot.rotation).normalize(),
+            translation: correction.apply(foot.translation, sole.ball) + Vec3::Y * lift,
+        }
+    }
+
+    fn over_floor(&self, local: Local) -> Local {
+        Local { translation: local.translation - Vec3::Y * self.floor, ..local }
+    }
+
+    /// How far the pelvis sinks in each frame so that both legs reach, smooth in time.
+    fn pelvis_drops(&self, clip: &Clip, feet: &[Vec<Correction>; 2], blend: usize) -> Vec<f32> {
+        let mut needed = vec![0.0_f32; clip.frame_count()];
+        let mut model = Vec::new();
+        for_each_pose(clip, |frame, pose| {
+            model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+            for (leg, corrections) in self.legs.iter().zip(feet) {
+                let goal = self.goal(leg, &model, &corrections[frame]).translation;
+                let hip = self.over_floor(model[leg.limb.upper]).translation;
+                let reach = leg.limb.length(pose) * (1.0 - SOFTNESS);
+                let level = (goal - hip).with_y(0.0).length();
+                let down = libm::sqrtf((reach * reach - level * level).max(0.0));
+                needed[frame] = needed[frame].max(hip.y - goal.y - down);
+            }
+            needed[frame] = needed[frame].min(self.options.pelvis_drop);
+        });
+        // The most over a window, then its mean: never less than what is needed.
+        let radius = blend / 2;
+        let window = |frame: usize| frame.saturating_sub(radius)..(frame + radius + 1).min(needed.len());
+        let most: Vec<f32> =
+            (0..needed.len()).map(|f| needed[window(f)].iter().copied().fold(0.0, f32::max)).collect();
+        (0..most.len()).map(|f| most[window(f)].iter().sum::<f32>() / window(f).len() as f32).collect()
+    }
+
+    fn frame(
+        &mut self,
+        pose: &mut Pose,
+        model: &mut Vec<Local>,
+        pelvis: usize,
+        corrections: [Correction; 2],
+        drop: f32,
+    ) {
+        let parents = self.rest.parents();
+        model_from_joints(parents, &pose.locals, model);
+        let goals: [Local; 2] = std::array::from_fn(|f| self.goal(&self.legs[f], model, &corrections[f]));
+        let above = parents[pelvis].map_or(Quat::IDENTITY, |p| model[p as usize].rotation);
+        pose.locals[pelvis].translation -= above.conjugate() * (Vec3::Y * (drop + self.floor));
+        model_from_joints(parents, &pose.locals, model);
+        for (leg, goal) in self.legs.iter().zip(goals) {
+            self.reach(leg, pose, leg.above(model), goal);
+            self.bend_toes(leg, pose, leg.above(model));
+        }
+    }
+
+    /// Bends the leg to its goal. Where the ankle is past its limit the foot turns back about its ball, and the leg is
+    /// bent again.
+    fn reach(&self, leg: &Leg, pose: &mut Pose, above: Local, mut goal: Local) {
+        let to_ball = pose.locals[leg.ball].translation;
+        let ball = goal.translation + goal.rotation * to_ball;
+        for _ in 0..4 {
+            leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
+            if !self.limits.clamp_joint(self.rest, pose, leg.limb.end) {
+                return;
+            }
+            goal.rotation = leg.limb.model_from_joints(pose, above)[2].rotation;
+            goal.translation = ball - goal.rotation * to_ball;
+        }
+        leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
+    }
+
+    /// Lifts the toes about the ball until their tip is out of the floor.
+    fn bend_toes(&self, leg: &Leg, pose: &mut Pose, above: Local) {
+        let [_, _, foot] = leg.limb.model_from_joints(pose, above);
+        let ball = foot.then(pose.locals[leg.ball]);
+        let wanted = leg.clearance[1] - ball.translation.y - self.options.depth;
+        let (axis, toes) = (ball.rotation * Vec3::X, ball.rotation * leg.tip);
+        if toes.y >= wanted {
+            return;
+        }
+        // toes.y · cos + (axis × toes).y · sin = wanted, on the way up. The axis is level but for the foot's roll.
+        let (cos, sin) = (toes.y, axis.cross(toes).y);
+        let most = libm::sqrtf(cos * cos + sin * sin);
+        if most < 1e-6 {
+            return;
+        }
+        let angle = libm::atan2f(sin, cos) - libm::acosf((wanted / most).clamp(-1.0, 1.0));
+        pose.locals[leg.ball].rotation *= Quat::from_rotation_x(angle);
+        self.limits.clamp_joint(self.rest, pose, leg.ball);
+    }
+}

@@ -1,0 +1,146 @@
+//! The whole way of a motion onto a body of ours: matched, retargeted, limited, feet on the floor; and how well it went.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::feet::{FeetOptions, FeetReport, plant};
+use super::joint_map::{JointMap, JointMapReport, Overrides};
+use super::retarget::{DirectionError, RetargetOptions, Retargeter, direction_error};
+use super::{Clip, Motion, in_place, looped, resample};
+use crate::Result;
+use crate::pose::RestPose;
+use crate::pose::limits::JointLimits;
+
+/// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
+const LOOP_BLEND: f64 = 0.3;
+
+/// How a motion comes onto a body.
+#[derive(Clone, Debug)]
+pub struct OntoOptions {
+    /// The user's own word about joints.
+    pub mapping: Overrides,
+    /// How poses are carried over.
+    pub retarget: RetargetOptions,
+    /// Whether joints are kept within what people's joints do.
+    pub limits: bool,
+    /// How feet are held on the floor; `None` leaves them where the motion puts them.
+    pub feet: Option<FeetOptions>,
+    /// Frames per second of the result; `None`, those of the motion.
+    pub frames_per_second: Option<f64>,
+    /// Whether motion over the ground is left out.
+    pub in_place: bool,
+    /// Whether the end is made to meet the beginning.
+    pub looped: bool,
+}
+
+impl Default for OntoOptions {
+    fn default() -> Self {
+        Self {
+            mapping: Overrides::new(),
+            retarget: RetargetOptions::default(),
+            limits: true,
+            feet: Some(FeetOptions::default()),
+            frames_per_second: None,
+            in_place: false,
+            looped: false,
+        }
+    }
+}
+
+/// How well one clip came onto the body.
+#[derive(Clone, Debug, Serialize)]
+pub struct ClipQuality {
+    /// Name of the clip.
+    pub name: String,
+    /// Number of frames.
+    pub frames: usize,
+    /// Frames per second.
+    pub frames_per_second: f64,
+    /// Between bones of the motion and of the body, degrees.
+    pub direction: DirectionError,
+    /// How far a joint turns beyond its limits at most, degrees.
+    pub beyond_limits: f64,
+    /// The joint that does.
+    pub beyond_limits_joint: Option<String>,
+    /// What was done about the feet; `None` where nothing was asked for.
+    pub feet: Option<FeetReport>,
+}
+
+/// How a motion came onto a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct OntoReport {
+    /// Which joint drives which.
+    pub joints: JointMapReport,
+    /// The ratio of leg lengths, by which ways and heights are scaled.
+    pub scale: f32,
+    /// One per clip.
+    pub clips: Vec<ClipQuality>,
+}
+
+/// Brings every clip of a motion onto a body; `target` is the rest pose of its joints, see [`RestPose::of_joints`].
+///
+/// # Errors
+/// As [`JointMap::find`], [`Retargeter::new`] and [`plant`].
+pub fn onto(
+    motion: &Motion,
+    target: &Arc<RestPose>,
+    options: &OntoOptions,
+) -> Result<(Vec<Clip>, OntoReport)> {
+    let Some(first) = motion.clips.first() else {
+        return Err(crate::Error::invalid("motion", "expected at least one clip, got none"));
+    };
+    let map = JointMap::find(first.rest(), &options.mapping)?;
+    let retargeter = Retargeter::new(first.rest(), target.clone(), &map, &options.retarget)?;
+    let limits = JointLimits::of_rig(target);
+    let mut clips = Vec::with_capacity(motion.clips.len());
+    let mut report =
+        OntoReport { joints: map.report().clone(), scale: retargeter.scale(), clips: Vec::new() };
+    for source in &motion.clips {
+        let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
+        let source = resampled.as_ref().unwrap_or(source);
+        let mut clip = retargeter.retarget_with(source, |_, pose| {
+            if options.limits {
+                limits.clamp(target, pose);
+            }
+        })?;
+        let mut feet = None;
+        if let Some(options) = &options.feet {
+            let (planted, found) = plant(&clip, options)?;
+            (clip, feet) = (planted, Some(found));
+        }
+        // Directions are those of the motion as it was, so before its end is bent to its beginning.
+        let direction = direction_error(source, &clip, &map);
+        if options.in_place {
+            clip = in_place(&clip)?;
+        }
+        if options.looped {
+            clip = looped(&clip, LOOP_BLEND.min(clip.duration() / 3.0))?;
+        }
+        let (beyond, joint) = worst_excess(&limits, &clip);
+        report.clips.push(ClipQuality {
+            name: clip.name().to_owned(),
+            frames: clip.frame_count(),
+            frames_per_second: clip.frames_per_second(),
+            direction,
+            beyond_limits: f64::from(beyond).to_degrees(),
+            beyond_limits_joint: joint.and_then(|j| target.names().get(j).cloned()),
+            feet,
+        });
+        clips.push(clip);
+    }
+    Ok((clips, report))
+}
+
+/// The farthest beyond its limits that a joint turns in any frame, radians, and which.
+fn worst_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
+    let mut worst = (0.0, None);
+    for frame in 0..clip.frame_count() {
+        for (joint, excess) in limits.excess(clip.rest(), &clip.pose(frame)).into_iter().enumerate() {
+            if excess > worst.0 {
+                worst = (excess, Some(joint));
+            }
+        }
+    }
+    worst
+}

@@ -1,0 +1,146 @@
+//! A clip at any time.
+
+use super::Clip;
+use crate::pose::{Local, Pose};
+
+/// What a clip does outside its duration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// Holds the first and the last frame.
+    #[default]
+    Once,
+    /// Starts anew. The last frame is the first frame of the next round, as in clips from [`looped`](super::looped),
+    /// so the period is the clip's duration.
+    Loop,
+    /// Starts anew where it ended: as [`Wrap::Loop`], and each round the joints with translations that have no such
+    /// parent go on by what they moved in one round along the floor. For clips that walk straight ahead.
+    Travel,
+}
+
+/// Reads poses of a clip between its frames. Cheap to make and to copy; sampling allocates nothing once the pose has
+/// its size.
+///
+/// Rotations are interpolated spherically (where two frames are less than about 2° apart linearly, which differs by
+/// less than 1e-6 rad), translations linearly.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler<'a> {
+    clip: &'a Clip,
+    wrap: Wrap,
+}
+
+impl<'a> Sampler<'a> {
+    /// A reader of a clip.
+    pub fn new(clip: &'a Clip, wrap: Wrap) -> Self {
+        Self { clip, wrap }
+    }
+
+    /// Writes the pose at a time, seconds. A time that is not finite is taken for 0.
+    pub fn sample_into(&self, seconds: f64, pose: &mut Pose) {
+        let (frame, share, rounds) = self.locate(if seconds.is_finite() { seconds } else { 0.0 });
+        self.clip.pose_into(frame, pose);
+        if share > 0.0 {
+            let next = self.clip.rotations(frame + 1);
+            for (local, next) in pose.locals.iter_mut().zip(next) {
+                local.rotation = local.rotation.slerp(*next, share);
+            }
+            for track in self.clip.translations() {
+                let local = &mut pose.locals[track.joint as usize];
+                local.translation = local.translation.lerp(track.values[frame + 1], share);
+            }
+        }
+        if rounds != 0.0 {
+            for track in self.clip.top_tracks() {
+                let last = track.values[track.values.len() - 1];
+                let step = (last - track.values[0]).with_y(0.0);
+                pose.locals[track.joint as usize].translation += step * rounds;
+            }
+        }
+    }
+
+    /// The pose at a time, seconds.
+    pub fn sample(&self, seconds: f64) -> Pose {
+        let mut pose = Pose::default();
+        self.sample_into(seconds, &mut pose);
+        pose
+    }
+
+    /// Frame before a time, how far it is to the next, and rounds gone by.
+    fn locate(&self, seconds: f64) -> (usize, f32, f32) {
+        let last = self.clip.frame_count() - 1;
+        let duration = self.clip.duration();
+        let mut at = seconds;
+        let mut rounds = 0.0;
+        if self.wrap != Wrap::Once && duration > 0.0 {
+            let round = libm::floor(seconds / duration);
+            at = seconds - round * duration;
+            rounds = if self.wrap == Wrap::Travel { round as f32 } else { 0.0 };
+        }
+        let place = (at * self.clip.frames_per_second()).clamp(0.0, last as f64);
+        // Frames whose time is not exact in binary are still hit.
+        let nearest = libm::round(place);
+        if libm::fabs(place - nearest) < 1e-6 {
+            return (nearest as usize, 0.0, rounds);
+        }
+        let frame = (place as usize).min(last);
+        (frame, (place - frame as f64) as f32, rounds)
+    }
+}
+
+/// Mixes two local transforms: `a` at 0, `b` at 1.
+pub(super) fn mix(a: Local, b: Local, share: f32) -> Local {
+    if share == 0.0 {
+        return a;
+    }
+    Local {
+        rotation: a.rotation.slerp(b.rotation, share),
+        translation: a.translation.lerp(b.translation, share),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{Quat, Vec3};
+
+    use super::*;
+    use crate::clip::TranslationTrack;
+    use crate::pose::RestPose;
+
+    /// One joint that turns from 0 to 1 radian about X and moves a metre ahead and up, in two frames at 10 a second.
+    fn clip() -> Clip {
+        let rest = RestPose::new(vec!["root".into()], vec![None], vec![Local::IDENTITY], vec![None]).unwrap();
+        let turn = |angle| Quat::from_rotation_x(angle);
+        let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];
+        let tracks = vec![TranslationTrack { joint: 0, values }];
+        Clip::new("c".into(), Arc::new(rest), 10.0, vec![turn(0.0), turn(0.5), turn(1.0)], tracks).unwrap()
+    }
+
+    #[test]
+    fn between_frames_it_turns_evenly() {
+        let clip = clip();
+        let local = Sampler::new(&clip, Wrap::Once).sample(0.025).locals[0];
+        assert!(local.rotation.angle_between(Quat::from_rotation_x(0.125)) < 1e-3);
+        assert!(local.translation.distance(Vec3::new(0.0, 0.125, 0.125)) < 1e-6);
+    }
+
+    #[test]
+    fn outside_it_holds_repeats_or_travels() {
+        let clip = clip();
+        let at = |wrap, seconds| Sampler::new(&clip, wrap).sample(seconds).locals[0].translation;
+        assert_eq!(at(Wrap::Once, -1.0), Vec3::ZERO);
+        assert_eq!(at(Wrap::Once, 9.0), Vec3::new(0.0, 1.0, 1.0));
+        assert_eq!(at(Wrap::Once, f64::NAN), Vec3::ZERO);
+        assert!(at(Wrap::Loop, 0.45).distance(Vec3::new(0.0, 0.25, 0.25)) < 1e-5);
+        assert!(at(Wrap::Loop, -0.15).distance(Vec3::new(0.0, 0.25, 0.25)) < 1e-5);
+        assert!(at(Wrap::Travel, 0.45).distance(Vec3::new(0.0, 0.25, 2.25)) < 1e-5);
+    }
+
+    #[test]
+    fn frames_are_met_exactly() {
+        let clip = clip();
+        for wrap in [Wrap::Once, Wrap::Loop] {
+            assert_eq!(Sampler::new(&clip, wrap).sample(0.1), clip.pose(1));
+        }
+    }
+}

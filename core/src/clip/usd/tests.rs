@@ -1,0 +1,139 @@
+use glam::{Quat, Vec3};
+
+use super::*;
+
+/// What other programs write: centimetres, +Z up, ops above the skeleton, a child before its parent, an animation with
+/// an order of its own, without one joint and with one of somebody else.
+const OTHERS: &str = r#"#usda 1.0
+(
+    metersPerUnit = 0.01
+    timeCodesPerSecond = 48
+    upAxis = "Z"
+)
+def Xform "World"
+{
+    double3 xformOp:translate = (0, 0, 100)
+    float3 xformOp:rotateZYX = (90, 0, 0)
+    float3 xformOp:scale = (2, 2, 2)
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateZYX", "xformOp:scale"]
+    def SkelRoot "Man"
+    {
+        def Skeleton "Skel" (prepend apiSchemas = ["SkelBindingAPI"])
+        {
+            uniform token[] joints = ["Hips/Leg", "Hips", "Hips/Arm"]
+            uniform token[] jointNames = ["the leg", "hips", "arm"]
+            uniform matrix4d[] restTransforms = [
+                ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, -40, 0, 1)),
+                ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 50, 0, 1)),
+                ((0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), (20, 0, 0, 1))]
+            rel skel:animationSource = <Walk>
+            def SkelAnimation "Walk"
+            {
+                uniform token[] joints = ["Hips/Arm", "Other", "Hips"]
+                quatf[] rotations.timeSamples = {
+                    1: [(1, 0, 0, 0), (1, 0, 0, 0), (1, 0, 0, 0)],
+                    3: [(0, 0, 0, 2), (1, 0, 0, 0), (1, 0, 0, 0)],
+                    5: [(0, 0, 0, 1), (1, 0, 0, 0), (0, 1, 0, 0)],
+                }
+                float3[] translations.timeSamples = {
+                    1: [(20, 0, 0), (7, 7, 7), (0, 50, 0)],
+                    5: [(20, 0, 0), (7, 7, 7), (0, 50, 8)],
+                }
+                half3[] scales = [(1, 1, 1), (1, 1, 1), (0.5, 0.5, 0.5)]
+            }
+        }
+    }
+}
+"#;
+
+fn read(text: &str) -> Outcome<Raw> {
+    super::read(text.as_bytes(), "file", &ReadOptions::default())
+}
+
+#[test]
+fn files_of_others_are_read() {
+    let raw = read(OTHERS).unwrap();
+    assert_eq!(raw.names, ["hips", "the leg", "arm"]);
+    assert_eq!(raw.parents, [None, Some(0), Some(0)]);
+    assert_eq!((raw.unit, raw.up), (Some(Unit::Centimetre), Some(Axis::Z)));
+    // The ops above turn +Y into +Z, double every length, lift by 100.
+    let upright = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    assert!(raw.rest[0].translation.distance(Vec3::new(0.0, 0.0, 200.0)) < 1e-4);
+    assert!(raw.rest[0].rotation.dot(upright).abs() > 0.999_999);
+    assert!(raw.rest[1].translation.distance(Vec3::new(0.0, -80.0, 0.0)) < 1e-4);
+    let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
+    assert!(raw.rest[2].rotation.dot(quarter).abs() > 0.999_999);
+
+    let take = &raw.takes[0];
+    assert_eq!((take.name.as_str(), take.frames_per_second), ("Walk", 24.0));
+    assert_eq!(take.rotations.len(), 3 * 3);
+    let same = |frame: usize, joint: usize, expected: Quat| {
+        let got = take.rotations[frame * 3 + joint];
+        assert!(got.dot(expected).abs() > 0.999_999, "{frame} {joint}: {got} {expected}");
+    };
+    same(0, 2, Quat::IDENTITY);
+    same(1, 2, Quat::from_rotation_z(std::f32::consts::PI));
+    same(2, 0, upright * Quat::from_rotation_x(std::f32::consts::PI));
+    // The leg is not in the animation and rests in its parent, which is half as large as at rest.
+    same(1, 1, Quat::IDENTITY);
+    let tracks: Vec<_> = take.tracks.iter().map(|t| (t.joint, t.values.clone())).collect();
+    assert_eq!(tracks.iter().map(|t| t.0).collect::<Vec<_>>(), [0, 1, 2]);
+    assert!(tracks[0].1[1].distance(Vec3::new(0.0, -8.0, 200.0)) < 1e-4, "{:?}", tracks[0].1);
+    assert!(tracks[1].1[1].distance(Vec3::new(0.0, -40.0, 0.0)) < 1e-4, "{:?}", tracks[1].1);
+}
+
+#[test]
+fn a_rate_that_is_asked_for_is_sampled_between_keys() {
+    let options = ReadOptions { frames_per_second: Some(48.0), ..Default::default() };
+    let raw = super::read(OTHERS.as_bytes(), "file", &options).unwrap();
+    let take = &raw.takes[0];
+    assert_eq!((take.rotations.len(), take.frames_per_second), (5 * 3, 48.0));
+    let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
+    assert!(take.rotations[3 + 2].dot(quarter).abs() > 0.999_999);
+}
+
+#[test]
+fn keys_far_apart_are_sampled_at_the_rate_of_time_codes() {
+    assert_eq!(frame_rate(&[0.0, 1.25, 2.5], 30.0), 24.0);
+    assert_eq!(frame_rate(&[0.0, 30.0, 60.0], 30.0), 30.0);
+    assert_eq!(frame_rate(&[0.0, 1.0, 5.0], 30.0), 30.0);
+    assert_eq!(frame_rate(&[4.0], 25.0), 25.0);
+    assert_eq!(frame_rate(&[], 25.0), 25.0);
+}
+
+#[test]
+fn ops_above_may_move() {
+    let moving = OTHERS.replace(
+        "double3 xformOp:translate = (0, 0, 100)",
+        "double3 xformOp:translate.timeSamples = { 1: (0, 0, 100), 5: (40, 0, 100) }",
+    );
+    let take = &read(&moving).unwrap().takes[0];
+    assert!((take.tracks[0].values[1].x - 20.0).abs() < 1e-4, "{:?}", take.tracks[0].values);
+}
+
+#[test]
+fn names_what_is_wrong() {
+    let deep = format!("#usda 1.0\n{}", "def \"a\" {\n".repeat(100_000));
+    for (from, to, expected) in [
+        ("#usda 1.0", "#usdb 1.0", "expected `#usda 1.0`"),
+        ("SkelAnimation \"Walk\"", "Scope \"Walk\"", "expected a SkelAnimation, found none among"),
+        ("def Skeleton", "def Scope", "expected a Skeleton beside"),
+        ("\"Hips/Leg\", \"Hips\", ", "\"Hips\", ", "restTransforms: expected 2 matrices, got 3"),
+        ("\"Hips/Leg\", \"Hips\", ", "\"Hips\", \"Hips\", ", "a joint is listed twice"),
+        ("[\"Hips/Arm\", \"Other\", \"Hips\"]", "[\"a\", \"b\", \"c\"]", "moves a joint"),
+        ("[\"Hips/Arm\", \"Other\", ", "[\"Hips/Arm\", ", "Walk.rotations at time code 1: expected 2 values"),
+        ("3: [(0, 0, 0, 2)", "3: [(0, 0, nan, 2)", "Walk.rotations at time code 3: value 0 is not finite"),
+        ("5: [(20, 0, 0)", "5e99: [(20, 0, 0)", "are too many frames"),
+        ("(0, -40, 0, 1)", "(inf, -40, 0, 1)", "matrix 0 is not finite"),
+        ("timeCodesPerSecond = 48", "timeCodesPerSecond = 0", "expected a positive number, got 0"),
+        ("xformOp:scale = (2, 2, 2)", "xformOp:scale = (2, 0, 2)", "flatten"),
+        ("\"xformOp:scale\"]", "\"xformOp:shear\"]", "xformOpOrder names it, but it has no value"),
+        (OTHERS, &deep, "brackets nest deeper than 256"),
+    ] {
+        assert!(OTHERS.contains(from), "{from}");
+        let error = read(&OTHERS.replacen(from, to, 1)).unwrap_err();
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    let error = super::read(b"\xff\xfe", "file", &ReadOptions::default()).unwrap_err();
+    assert!(error.contains("not UTF-8 from byte 0"), "{error}");
+}

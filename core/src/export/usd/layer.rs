@@ -1,0 +1,104 @@
+//! A layer in the making: prims, attributes, relationships, in the order in which they are added.
+
+use std::fmt::Display;
+
+use openusd::sdf::{
+    AbstractData, AttributeSpecMut, Data, FieldKey, Path, PathListOp, PrimSpecMut, RelationshipSpecMut,
+    Specifier, Value, Variability,
+};
+
+use crate::{Error, Result};
+
+/// What USD makes of a wrong path or value; a scene that validates leads to none.
+pub(super) fn fault(error: impl Display) -> Error {
+    Error::invalid("USD layer", error.to_string())
+}
+
+/// Scene description that a writer turns into bytes.
+#[derive(Default)]
+pub(super) struct Layer(Data);
+
+impl Layer {
+    /// For a writer.
+    pub(super) fn data(&self) -> &Data {
+        &self.0
+    }
+
+    /// Defines a prim; `name` becomes its display name where the path says something else.
+    pub(super) fn prim(&mut self, path: &str, name: &str, type_name: &str) -> Result<()> {
+        let mut prim = PrimSpecMut::new(&mut self.0, path, Specifier::Def, type_name).map_err(fault)?;
+        if !path.ends_with(&format!("/{name}")) {
+            prim.set(FieldKey::DisplayName, Value::String(name.into()));
+        }
+        Ok(())
+    }
+
+    /// Applies an API schema to a prim.
+    pub(super) fn apply(&mut self, path: &str, schema: &str) -> Result<()> {
+        let mut prim = PrimSpecMut::over(&mut self.0, path).map_err(fault)?;
+        prim.add_applied_schema(schema).map_err(fault)?;
+        Ok(())
+    }
+
+    /// Sets a field of the layer (`/`), of a prim or of a property.
+    pub(super) fn set(&mut self, path: &str, field: impl AsRef<str>, value: Value) -> Result<()> {
+        let path = Path::new(path).map_err(fault)?;
+        self.0.set_field(&path, field.as_ref(), value);
+        Ok(())
+    }
+
+    /// An attribute with a default value; its path.
+    pub(super) fn attribute(
+        &mut self,
+        prim: &str,
+        name: &str,
+        type_name: &str,
+        value: Value,
+    ) -> Result<String> {
+        self.declare(prim, name, type_name, Variability::Varying, Some(value))
+    }
+
+    /// An attribute that never changes over time; its path.
+    pub(super) fn uniform(
+        &mut self,
+        prim: &str,
+        name: &str,
+        type_name: &str,
+        value: Value,
+    ) -> Result<String> {
+        self.declare(prim, name, type_name, Variability::Uniform, Some(value))
+    }
+
+    /// An attribute without a value, for connections and samples; its path.
+    pub(super) fn declare(
+        &mut self,
+        prim: &str,
+        name: &str,
+        type_name: &str,
+        variability: Variability,
+        value: Option<Value>,
+    ) -> Result<String> {
+        let path = format!("{prim}.{name}");
+        let mut attribute = AttributeSpecMut::new(&mut self.0, path.as_str(), type_name, variability, false)
+            .map_err(fault)?;
+        if let Some(value) = value {
+            attribute.set_default(value).map_err(fault)?;
+        }
+        Ok(path)
+    }
+
+    /// Connects an attribute to another.
+    pub(super) fn connect(&mut self, attribute: &str, source: &str) -> Result<()> {
+        let source = Path::new(source).map_err(fault)?;
+        self.set(attribute, FieldKey::ConnectionPaths, Value::PathListOp(PathListOp::explicit([source])))
+    }
+
+    /// A relationship with one target.
+    pub(super) fn relate(&mut self, prim: &str, name: &str, target: &str) -> Result<()> {
+        let path = format!("{prim}.{name}");
+        RelationshipSpecMut::new(&mut self.0, path, Variability::Uniform, false)
+            .map_err(fault)?
+            .set_target_paths([target])
+            .map_err(fault)
+    }
+}

@@ -1,0 +1,228 @@
+//! Two-bone inverse kinematics: hip, knee, ankle; shoulder, elbow, wrist.
+//!
+//! The law of cosines gives the bend, the shortest turn of the whole limb the direction, so that the plane in which
+//! the limb bends swings with it and is otherwise kept. A limb that is straight, or bent the wrong way, bends the way
+//! its middle joint does.
+
+use glam::{Quat, Vec3};
+
+use super::{Local, Pose, RestPose};
+use crate::{Error, Result};
+
+/// Which way the middle joint of a limb points when the limb bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// To where the upper bone's +Z axis leans: knees.
+    Forwards,
+    /// Away from it: elbows.
+    Backwards,
+}
+
+/// Two bones and the joint at their end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limb {
+    /// Hip or shoulder.
+    pub upper: usize,
+    /// Knee or elbow, a child of `upper`.
+    pub lower: usize,
+    /// Ankle or wrist, a child of `lower`.
+    pub end: usize,
+    /// Which way it bends.
+    pub bend: Bend,
+}
+
+/// Where a limb shall reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// The end joint's place and rotation, `model_from_end`.
+    pub target: Local,
+    /// The stretch, as a share of the limb's length, over which it slows down before it is straight; a target within
+    /// it is missed by up to that. 0 to 0.5.
+    pub softness: f32,
+}
+
+impl Limb {
+    /// The limb of these three joints.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
+    pub fn named(rest: &RestPose, names: [&str; 3], bend: Bend) -> Result<Self> {
+        let mut joints = [0; 3];
+        for (i, name) in names.iter().enumerate() {
+            joints[i] = rest.require(name)?;
+            if i > 0 && rest.parents()[joints[i]] != Some(joints[i - 1] as u32) {
+                let message = format!("expected joint `{name}` to be a child of `{}`", names[i - 1]);
+                return Err(Error::invalid("skeleton", message));
+            }
+        }
+        let [upper, lower, end] = joints;
+        Ok(Self { upper, lower, end, bend })
+    }
+
+    /// The joints' `model_from_joint`: upper, lower, end. `parent` is `model_from_parent` of the upper joint.
+    pub fn model_from_joints(&self, pose: &Pose, parent: Local) -> [Local; 3] {
+        let upper = parent.then(pose.locals[self.upper]);
+        let lower = upper.then(pose.locals[self.lower]);
+        [upper, lower, lower.then(pose.locals[self.end])]
+    }
+
+    /// The limb's length when it is straight, metres.
+    pub fn length(&self, pose: &Pose) -> f32 {
+        pose.locals[self.lower].translation.length() + pose.locals[self.end].translation.length()
+    }
+
+    /// Turns the three joints so that the end stands at its target with the rotation asked for. A target out of reach
+    /// is pointed at. `parent` is `model_from_parent` of the upper joint; nothing changes when a bone has no length or
+    /// a number is not finite.
+    pub fn reach(&self, pose: &mut Pose, parent: Local, reach: &Reach) {
+        let [upper, lower, end] = self.model_from_joints(pose, parent);
+        let (first, second) = (lower.translation - upper.translation, end.translation - lower.translation);
+        let (a, b) = (first.length(), second.length());
+        let to_target = reach.target.translation - upper.translation;
+        let finite = to_target.is_finite() && reach.target.rotation.is_finite();
+        if !finite || a.min(b) < 1e-6 {
+            return;
+        }
+        let line = (first + second).try_normalize().or(first.try_normalize()).unwrap_or(Vec3::NEG_Y);
+        let distance = soften(to_target.length(), a + b, reach.softness).max((a - b).abs());
+        let pole = self.pole(upper.rotation, line, first);
+
+        // The limb bent to the distance, still along its old line, then swung to the target.
+        let cos = ((a * a + distance * distance - b * b) / (2.0 * a * distance.max(1e-6))).clamp(-1.0, 1.0);
+        let sin = libm::sqrtf(1.0 - cos * cos);
+        let new_first = line * (a * cos) + pole * (a * sin);
+        let new_second = line * distance - new_first;
+        let swing = arc(line, to_target);
+        let upper_rotation = (swing * arc(first, new_first) * upper.rotation).normalize();
+        let carried = upper_rotation * pose.locals[self.lower].rotation;
+        let second_now = carried * pose.locals[self.end].translation;
+        let lower_rotation = (arc(second_now, swing * new_second) * carried).normalize();
+
+        pose.locals[self.upper].rotation = (parent.rotation.conjugate() * upper_rotation).normalize();
+        pose.locals[self.lower].rotation = (upper_rotation.conjugate() * lower_rotation).normalize();
+        pose.locals[self.end].rotation = (lower_rotation.conjugate() * reach.target.rotation).normalize();
+    }
+
+    /// Where the middle joint shall stand off the line from end to end: where it does, and a little towards where it
+    /// bends, which decides when it is on the line or on its wrong side.
+    fn pole(&self, upper: Quat, line: Vec3, first: Vec3) -> Vec3 {
+        let across = |v: Vec3| v - line * v.dot(line);
+        let front = match self.bend {
+            Bend::Forwards => upper * Vec3::Z,
+            Bend::Backwards => upper * Vec3::NEG_Z,
+        };
+        let natural = across(front).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
+        let offset = across(first);
+        let right_side = offset - natural * offset.dot(natural).min(0.0);
+        // Bent by less than about 5° it is nearly straight.
+        (right_side + natural * (0.04 * first.length())).try_normalize().unwrap_or(natural)
+    }
+}
+
+/// The reach for a target at this distance: exact up to the soft stretch, then ever slower towards `length`
+/// (A. Nicholls, "Soft IK", 2010).
+fn soften(distance: f32, length: f32, softness: f32) -> f32 {
+    let soft = length * softness.clamp(0.0, 0.5);
+    let exact = length - soft;
+    if distance <= exact {
+        distance
+    } else if soft < 1e-6 {
+        length
+    } else {
+        length - soft * libm::expf(-(distance - exact) / soft)
+    }
+}
+
+/// The shortest turn from one direction to another; none when one of them has no length.
+fn arc(from: Vec3, to: Vec3) -> Quat {
+    match (from.try_normalize(), to.try_normalize()) {
+        (Some(from), Some(to)) => Quat::from_rotation_arc(from, to),
+        _ => Quat::IDENTITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
+    fn leg() -> (RestPose, Limb) {
+        let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
+        let local = |rotation, translation| Local { rotation, translation };
+        let locals = vec![
+            local(down, Vec3::ZERO),
+            local(Quat::IDENTITY, Vec3::Y * 0.5),
+            local(Quat::IDENTITY, Vec3::Y * 0.4),
+        ];
+        let names = ["thigh_l", "calf_l", "foot_l"];
+        let parents = vec![None, Some(0), Some(1)];
+        let rest = RestPose::new(names.map(String::from).to_vec(), parents, locals, vec![None; 3]).unwrap();
+        let limb = Limb::named(&rest, names, Bend::Forwards).unwrap();
+        (rest, limb)
+    }
+
+    fn reached(target: Vec3, softness: f32) -> [Local; 3] {
+        let (rest, limb) = leg();
+        let mut pose = rest.pose().clone();
+        let target = Local { rotation: Quat::from_rotation_y(0.3), translation: target };
+        limb.reach(&mut pose, Local::IDENTITY, &Reach { target, softness });
+        limb.model_from_joints(&pose, Local::IDENTITY)
+    }
+
+    #[test]
+    fn a_straight_leg_bends_its_knee_forwards() {
+        assert!((leg().0.model_from_joints()[0].rotation * Vec3::Z - Vec3::Z).length() < 1e-5);
+        let [_, knee, ankle] = reached(Vec3::new(0.0, -0.7, 0.0), 0.0);
+        assert!(ankle.translation.distance(Vec3::new(0.0, -0.7, 0.0)) < 1e-5);
+        assert!(knee.translation.z > 0.2 && knee.translation.x.abs() < 1e-4, "{knee:?}");
+        assert!(ankle.rotation.angle_between(Quat::from_rotation_y(0.3)) < 1e-3);
+    }
+
+    #[test]
+    fn out_of_reach_is_straight_and_soft_reach_falls_short_by_little() {
+        let [_, knee, ankle] = reached(Vec3::new(0.0, 0.0, 3.0), 0.0);
+        assert!(ankle.translation.distance(Vec3::new(0.0, 0.0, 0.9)) < 1e-4, "{ankle:?}");
+        assert!(knee.translation.distance(Vec3::new(0.0, 0.0, 0.5)) < 1e-3, "{knee:?}");
+        let [_, _, soft] = reached(Vec3::new(0.0, -0.9, 0.0), 0.02);
+        let short = 0.9 + soft.translation.y;
+        // 2 % of 0.9 m, over e.
+        assert!((short - 0.018 / std::f32::consts::E).abs() < 1e-4, "{short}");
+    }
+
+    #[test]
+    fn a_missing_joint_is_named() {
+        let (rest, _) = leg();
+        let error =
+            Limb::named(&rest, ["thigh_l", "knee", "foot_l"], Bend::Forwards).unwrap_err().to_string();
+        assert!(error.contains("`knee`"), "{error}");
+        let error =
+            Limb::named(&rest, ["thigh_l", "foot_l", "calf_l"], Bend::Forwards).unwrap_err().to_string();
+        assert!(error.contains("`foot_l` to be a child of `thigh_l`"), "{error}");
+    }
+
+    proptest! {
+        #[test]
+        fn every_target_is_reached_or_pointed_at(
+            x in -1.2f32..1.2, y in -1.2f32..1.2, z in -1.2f32..1.2, bend in -2.0f32..0.2, turn in -1.5f32..1.5,
+        ) {
+            let (rest, limb) = leg();
+            let mut pose = rest.pose().clone();
+            pose.locals[0].rotation *= Quat::from_rotation_z(turn);
+            pose.locals[1].rotation *= Quat::from_rotation_x(bend);
+            let parent = Local { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
+            let translation = parent.translation + Vec3::new(x, y, z);
+            let target = Local { rotation: Quat::from_rotation_x(turn), translation };
+            limb.reach(&mut pose, parent, &Reach { target, softness: 0.0 });
+            let [upper, _, end] = limb.model_from_joints(&pose, parent);
+            let asked = Vec3::new(x, y, z).length();
+            prop_assume!(asked > 1e-3);
+            let distance = asked.clamp(0.1, 0.9);
+            prop_assert!((end.translation.distance(upper.translation) - distance).abs() < 1e-4);
+            let direction = Vec3::new(x, y, z) / asked;
+            prop_assert!(end.translation.distance(upper.translation + direction * distance) < 1e-3);
+            prop_assert!(end.rotation.dot(target.rotation).abs() > 1.0 - 1e-5);
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! How far the joints of our rig may turn.
+//!
+//! The ranges start from the clinical tables (American Academy of Orthopaedic Surgeons, *Joint Motion: Method of
+//! Measuring and Recording*, 1965; American Medical Association, *Guides to the Evaluation of Permanent Impairment*):
+//! knee 0–150° flexion, elbow 0–150°, hip 120° flexion, 30° extension, 45° abduction, 45° rotation, shoulder 180°
+//! flexion, 60° extension, ankle 20° up, 50° down, wrist 80° and 70°, neck 45° to each side and 60–80° of turn. They
+//! are widened to passive range, for two reasons: athletes and dancers reach it, and one joint often has to do what
+//! several share in the body, such as the whole bend of a back that a motion file gives to one joint.
+//!
+//! Angles are about the joint's own axes in its rest frame (see [`Skeleton::bind`](crate::rig::Skeleton::bind)): +Y
+//! along the bone, +Z to the front, and count from the T-pose. For every joint +X carries the bone to where Z leans: a
+//! head nods, an elbow flexes, a hip flexes, a foot is lifted; a knee flexes about −X. For left limbs +Z carries an
+//! arm up and a leg outwards; right limbs are mirror images.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::{Pose, RestPose, SwingTwist};
+
+/// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
+/// clamping once.
+const ROUNDING: f32 = 2e-5;
+
+/// A row of the table, degrees, for a joint in the middle or on the left.
+struct Row {
+    name: &'static str,
+    /// About X: least, most.
+    x: [f32; 2],
+    /// About Z: least, most.
+    z: [f32; 2],
+    /// About the bone: least, most.
+    twist: [f32; 2],
+}
+
+const fn row(name: &'static str, x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> Row {
+    Row { name, x, z, twist }
+}
+
+/// Joints that are not here (the root, the pelvis, twist joints) turn freely.
+const TABLE: [Row; 24] = [
+    row("spine_01", [-40., 60.], [-40., 40.], [-45., 45.]),
+    row("spine_02", [-40., 60.], [-40., 40.], [-45., 45.]),
+    row("spine_03", [-40., 60.], [-40., 40.], [-45., 45.]),
+    row("neck_01", [-55., 60.], [-45., 45.], [-65., 65.]),
+    row("head", [-55., 60.], [-45., 45.], [-80., 80.]),
+    row("jaw", [-45., 5.], [-15., 15.], [-10., 10.]),
+    row("eye", [-50., 50.], [-55., 55.], [-15., 15.]),
+    row("clavicle", [-35., 45.], [-25., 50.], [-50., 50.]),
+    // From SHOULDER_CENTRE: to across the chest and behind, to overhead and hanging.
+    row("upperarm", [-125., 120.], [-125., 125.], [-125., 125.]),
+    // The palm rests downwards, which is nearly full pronation; it may turn until it faces up and behind.
+    row("lowerarm", [-15., 160.], [-15., 15.], [-170., 60.]),
+    row("hand", [-55., 45.], [-95., 95.], [-170., 60.]),
+    row("thumb_01", [-60., 60.], [-60., 60.], [-60., 60.]),
+    row("thumb_02", [-60., 60.], [-75., 60.], [-30., 30.]),
+    row("thumb_03", [-50., 50.], [-95., 60.], [-30., 30.]),
+    row("index_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
+    row("middle_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
+    row("ring_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
+    row("pinky_01", [-45., 30.], KNUCKLE, FINGER_TWIST),
+    row("finger", [-20., 20.], [-115., 35.], FINGER_TWIST),
+    row("thigh", [-40., 145.], [-50., 90.], [-70., 70.]),
+    row("calf", [-160., 12.], [-15., 15.], [-45., 45.]),
+    row("foot", [-70., 50.], [-45., 45.], [-45., 45.]),
+    row("ball", [-50., 90.], [-25., 25.], [-25., 25.]),
+    row("twist", [-180., 180.], [-180., 180.], [-180., 180.]),
+];
+const FINGER_SPREAD: [f32; 2] = [-30., 30.];
+const KNUCKLE: [f32; 2] = [-100., 60.];
+const FINGER_TWIST: [f32; 2] = [-30., 30.];
+
+/// Where a left shoulder's range has its middle, swing about X and Z: half forward and a little down.
+const SHOULDER_CENTRE: [f32; 2] = [45., -15.];
+/// A swing is never farther from its middle than this.
+const SHOULDER_CONE: f32 = 128.;
+const HIP_CONE: f32 = 150.;
+
+/// How far one joint may turn, radians, from [`centre`](Self::centre).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointLimit {
+    /// Swing about X and Z that the ranges count from.
+    pub centre: Vec2,
+    /// Least and most swing about X.
+    pub swing_x: [f32; 2],
+    /// Least and most swing about Z.
+    pub swing_z: [f32; 2],
+    /// The longest swing in any direction.
+    pub cone: f32,
+    /// Least and most twist about the bone.
+    pub twist: [f32; 2],
+}
+
+impl JointLimit {
+    /// The nearest swing and twist within, and how far off that is: the larger of the two.
+    fn within(&self, given: SwingTwist) -> (SwingTwist, f32) {
+        let inside = Vec2::new(
+            given.swing.x.clamp(self.swing_x[0], self.swing_x[1]),
+            given.swing.y.clamp(self.swing_z[0], self.swing_z[1]),
+        )
+        .clamp_length_max(self.cone);
+        let middle = 0.5 * (self.twist[0] + self.twist[1]);
+        let off = given.twist - middle;
+        // The shorter way round.
+        let off = off - TAU * libm::roundf(off / TAU);
+        let half = 0.5 * (self.twist[1] - self.twist[0]);
+        let twist = middle + off.clamp(-half, half);
+        let excess = inside.distance(given.swing).max(libm::fabsf(off) - half).max(0.0);
+        (SwingTwist { swing: inside, twist }, excess)
+    }
+
+    /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
+    fn clamped(&self, from_rest: Quat) -> Option<(Quat, f32)> {
+        let centre = Quat::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
+        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest));
+        (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
+    }
+
+    /// The mirror image, for the other side.
+    fn mirrored(self) -> Self {
+        let flip = |[least, most]: [f32; 2]| [-most, -least];
+        Self {
+            centre: Vec2::new(self.centre.x, -self.centre.y),
+            swing_z: flip(self.swing_z),
+            twist: flip(self.twist),
+            ..self
+        }
+    }
+
+    /// The limit of a joint by its name in our rig; `None` when it turns freely.
+    fn named(name: &str) -> Option<Self> {
+        let (base, right) = match name.strip_suffix("_r") {
+            Some(base) => (base, true),
+            None => (name.strip_suffix("_l").unwrap_or(name), false),
+        };
+        let finger = ["index", "middle", "ring", "pinky"].iter().any(|f| base.starts_with(f));
+        let key = if finger && !base.ends_with("_01") { "finger" } else { base };
+        let row = TABLE.iter().find(|row| row.name == key)?;
+        let range = |r: [f32; 2]| r.map(f32::to_radians);
+        let (centre, cone) = match key {
+            "upperarm" => (Vec2::from(SHOULDER_CENTRE.map(f32::to_radians)), SHOULDER_CONE.to_radians()),
+            "thigh" => (Vec2::ZERO, HIP_CONE.to_radians()),
+            _ => (Vec2::ZERO, PI),
+        };
+        let limit =
+            Self { centre, swing_x: range(row.x), swing_z: range(row.z), cone, twist: range(row.twist) };
+        Some(if right { limit.mirrored() } else { limit })
+    }
+}
+
+/// The limits of a skeleton's joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointLimits {
+    limits: Vec<Option<JointLimit>>,
+}
+
+impl JointLimits {
+    /// Those of the joints that bear our rig's names; joints of other names turn freely.
+    pub fn of_rig(rest: &RestPose) -> Self {
+        Self { limits: rest.names().iter().map(|name| JointLimit::named(name)).collect() }
+    }
+
+    /// The limit of a joint; `None` when it turns freely.
+    pub fn get(&self, joint: usize) -> Option<&JointLimit> {
+        self.limits.get(joint)?.as_ref()
+    }
+
+    /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
+    /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
+    pub fn clamp(&self, rest: &RestPose, pose: &mut Pose) {
+        for joint in 0..self.limits.len() {
+            self.clamp_joint(rest, pose, joint);
+        }
+    }
+
+    /// Brings one joint within its limits; whether it had to be moved.
+    pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
+        let (Some(limit), Some(rest), Some(local)) =
+            (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
+        else {
+            return false;
+        };
+        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation) else {
+            return false;
+        };
+        local.rotation = (rest.rotation * inside).normalize();
+        true
+    }
+
+    /// Radians beyond the limit, a joint each: 0 within.
+    pub fn excess(&self, rest: &RestPose, pose: &Pose) -> Vec<f32> {
+        let from_rest = rest.pose().locals.iter().zip(&pose.locals);
+        self.limits
+            .iter()
+            .zip(from_rest)
+            .map(|(limit, (rest, local))| {
+                let clamped = limit.and_then(|l| l.clamped(rest.rotation.conjugate() * local.rotation));
+                clamped.map_or(0.0, |(_, excess)| excess)
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+#[path = "limits_tests.rs"]
+mod tests;

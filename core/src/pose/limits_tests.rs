@@ -1,0 +1,110 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::pose::Local;
+
+const NAMES: [&str; 8] = [
+    "pelvis",
+    "upperarm_l",
+    "upperarm_r",
+    "lowerarm_l",
+    "lowerarm_r",
+    "calf_l",
+    "calf_twist_01_l",
+    "index_02_r",
+];
+
+fn rest() -> RestPose {
+    let turned = Local { rotation: Quat::from_rotation_x(0.4), translation: Vec3::Y };
+    let names = NAMES.map(String::from).to_vec();
+    let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
+    RestPose::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
+}
+
+/// Degrees beyond the limit when one joint is turned from rest about its own axes.
+fn beyond(joint: &str, x: f32, y: f32, z: f32) -> f32 {
+    let rest = rest();
+    let mut pose = rest.pose().clone();
+    let turn = Vec3::new(x, y, z).map(f32::to_radians);
+    pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_scaled_axis(turn);
+    JointLimits::of_rig(&rest).excess(&rest, &pose).into_iter().sum::<f32>().to_degrees()
+}
+
+#[test]
+fn limbs_bend_the_way_they_do() {
+    assert_eq!(beyond("calf_l", -140.0, 0.0, 0.0), 0.0, "a knee flexes");
+    assert!((beyond("calf_l", 40.0, 0.0, 0.0) - 28.0).abs() < 0.01, "and does not bend forwards");
+    assert_eq!(beyond("lowerarm_r", 140.0, 0.0, 0.0), 0.0, "an elbow flexes");
+    assert!((beyond("lowerarm_r", -40.0, 0.0, 0.0) - 25.0).abs() < 0.01);
+    assert_eq!(beyond("upperarm_l", 0.0, 0.0, -90.0), 0.0, "an arm hangs");
+    assert_eq!(beyond("upperarm_r", 0.0, 0.0, 90.0), 0.0);
+    assert!(beyond("upperarm_l", -110.0, 0.0, 0.0) > 0.0, "an arm does not point backwards");
+    assert_eq!(beyond("pelvis", 170.0, 0.0, 0.0), 0.0);
+    assert_eq!(beyond("calf_twist_01_l", 0.0, 179.0, 0.0), 0.0);
+}
+
+#[test]
+fn right_is_the_mirror_image_of_left() {
+    for (left, right) in [("upperarm_l", "upperarm_r"), ("lowerarm_l", "lowerarm_r")] {
+        for [x, y, z] in [[30., 150., 20.], [-100., 20., -60.], [10., -140., 100.], [150., 0., -30.]] {
+            assert!((beyond(left, x, y, z) - beyond(right, x, -y, -z)).abs() < 0.01);
+        }
+    }
+}
+
+#[test]
+fn twist_is_clamped_the_shorter_way_round() {
+    // −170 to 60: 175 is nearer to −170 than to 60.
+    assert!((beyond("lowerarm_l", 0.0, 175.0, 0.0) - 15.0).abs() < 0.01);
+    assert!((beyond("lowerarm_l", 0.0, 90.0, 0.0) - 30.0).abs() < 0.01);
+}
+
+proptest! {
+    #[test]
+    fn clamping_twice_is_clamping_once_and_ends_within(
+        turns in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0), NAMES.len()),
+    ) {
+        let rest = rest();
+        let limits = JointLimits::of_rig(&rest);
+        let mut pose = rest.pose().clone();
+        for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(turns) {
+            let turn = Quat::from_xyzw(x, y, z, w);
+            prop_assume!(turn.length_squared() > 1e-3);
+            local.rotation *= turn.normalize();
+        }
+        let given = pose.clone();
+        let before = limits.excess(&rest, &pose);
+        limits.clamp(&rest, &mut pose);
+        prop_assert!(limits.excess(&rest, &pose).iter().all(|e| *e == 0.0));
+        let once = pose.clone();
+        limits.clamp(&rest, &mut pose);
+        prop_assert_eq!(&pose, &once);
+        for (j, excess) in before.iter().enumerate() {
+            if *excess == 0.0 {
+                prop_assert_eq!(given.locals[j], once.locals[j]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_step_stays_small(
+        x in -2.2f32..2.2, y in -2.0f32..2.0, z in -2.2f32..2.2,
+        dx in -0.01f32..0.01, dy in -0.01f32..0.01, dz in -0.01f32..0.01,
+    ) {
+        let rest = rest();
+        let limits = JointLimits::of_rig(&rest);
+        let clamped = |v: Vec2, twist: f32, joint: usize| {
+            let mut pose = rest.pose().clone();
+            pose.locals[joint].rotation *= SwingTwist { swing: v, twist }.rotation();
+            limits.clamp(&rest, &mut pose);
+            pose.locals[joint].rotation
+        };
+        prop_assume!(Vec2::new(x, z).length() < 2.4);
+        for joint in [rest.find("calf_l").unwrap(), rest.find("index_02_r").unwrap()] {
+            let a = clamped(Vec2::new(x, z), y, joint);
+            let b = clamped(Vec2::new(x + dx, z + dz), y + dy, joint);
+            // Swing and twist each move by at most their step; near a half turn of swing the coordinates stretch.
+            prop_assert!(a.angle_between(b) < 0.08, "{}", a.angle_between(b));
+        }
+    }
+}

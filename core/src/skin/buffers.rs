@@ -1,0 +1,197 @@
+//! Buffers of the caller's that skinned vertices are written to: three f32 per vertex in the machine's byte order,
+//! any number of bytes from vertex to vertex, no alignment asked for.
+
+use glam::Vec4;
+
+use super::block::{CHUNK_VERTICES, LANES, Lanes, transposed};
+use crate::{Error, Result};
+
+/// Bytes of three f32.
+const WIDTH: usize = 12;
+
+/// Three f32 per vertex somewhere in a buffer: vertex v at `offset + v · stride`.
+#[derive(Debug)]
+pub struct StridedMut<'a> {
+    /// The buffer; bytes between the vertices are left as they are.
+    pub bytes: &'a mut [u8],
+    /// Where the first vertex begins, bytes.
+    pub offset: usize,
+    /// From vertex to vertex, bytes; at least 12.
+    pub stride: usize,
+}
+
+/// Where positions and normals go.
+#[derive(Debug)]
+pub enum SurfaceMut<'a> {
+    /// Two buffers, or positions alone.
+    Separate {
+        /// Metres.
+        positions: StridedMut<'a>,
+        /// Unit vectors.
+        normals: Option<StridedMut<'a>>,
+    },
+    /// One buffer that holds both per vertex, as graphics cards like it.
+    Interleaved {
+        /// The buffer; bytes between the vertices' parts are left as they are.
+        bytes: &'a mut [u8],
+        /// From vertex to vertex, bytes.
+        stride: usize,
+        /// Where a vertex's position begins, bytes from the vertex's beginning.
+        position_offset: usize,
+        /// Where a vertex's normal begins, bytes from the vertex's beginning.
+        normal_offset: usize,
+    },
+}
+
+impl<'a> From<&'a mut [[f32; 3]]> for StridedMut<'a> {
+    fn from(vectors: &'a mut [[f32; 3]]) -> Self {
+        Self { bytes: bytemuck::cast_slice_mut(vectors), offset: 0, stride: WIDTH }
+    }
+}
+
+impl<'a> SurfaceMut<'a> {
+    /// Tightly packed positions and normals.
+    pub fn packed(positions: &'a mut [[f32; 3]], normals: &'a mut [[f32; 3]]) -> Self {
+        Self::Separate { positions: positions.into(), normals: Some(normals.into()) }
+    }
+
+    /// The buffers cut where the chunks of `count` vertices begin.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when a buffer is too small or its parts overlap.
+    pub(super) fn into_chunks(self, count: usize) -> Result<Vec<Target<'a>>> {
+        match self {
+            Self::Separate { positions, normals } => {
+                let positions = positions.into_chunks("position buffer", count)?;
+                let targets = match normals {
+                    None => positions.map(|part| Target { first: part, second: Normals::None }).collect(),
+                    Some(normals) => positions
+                        .zip(normals.into_chunks("normal buffer", count)?)
+                        .map(|(first, second)| Target { first, second: Normals::Own(second) })
+                        .collect(),
+                };
+                Ok(targets)
+            }
+            Self::Interleaved { bytes, stride, position_offset, normal_offset } => {
+                let what = "vertex buffer";
+                let (low, high) = (position_offset.min(normal_offset), position_offset.max(normal_offset));
+                let apart = high - low >= WIDTH;
+                if !(apart && high.checked_add(WIDTH).is_some_and(|end| end <= stride)) {
+                    return Err(Error::invalid(
+                        what,
+                        format!(
+                            "expected positions and normals of {WIDTH} bytes each, side by side in a stride of \
+                             {stride} bytes, got offsets {position_offset} and {normal_offset}"
+                        ),
+                    ));
+                }
+                let whole = StridedMut { bytes, offset: 0, stride };
+                let chunks = whole.into_chunks_of(what, count, high + WIDTH)?;
+                let at = |part: Part<'a>| Target {
+                    first: Part { offset: position_offset, ..part },
+                    second: Normals::Beside(normal_offset),
+                };
+                Ok(chunks.map(at).collect())
+            }
+        }
+    }
+}
+
+impl<'a> StridedMut<'a> {
+    fn into_chunks(self, what: &'static str, count: usize) -> Result<impl Iterator<Item = Part<'a>>> {
+        self.into_chunks_of(what, count, WIDTH)
+    }
+
+    /// `width`: bytes that are used of the last vertex.
+    fn into_chunks_of(
+        self,
+        what: &'static str,
+        count: usize,
+        width: usize,
+    ) -> Result<impl Iterator<Item = Part<'a>>> {
+        let Self { bytes, offset, stride } = self;
+        if stride < WIDTH {
+            let message = format!("expected a stride of at least {WIDTH} bytes, got {stride}");
+            return Err(Error::invalid(what, message));
+        }
+        let needed = count
+            .checked_sub(1)
+            .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(offset)?.checked_add(width));
+        if needed.is_none_or(|needed| needed > bytes.len()) {
+            let expected = needed.map_or("more than fits in memory".to_owned(), |n| format!("{n} bytes"));
+            let message = format!(
+                "expected {expected} for {count} vertices at offset {offset} with stride {stride}, got {} bytes",
+                bytes.len()
+            );
+            return Err(Error::invalid(what, message));
+        }
+        let bytes = bytes.get_mut(offset..).unwrap_or_default();
+        let parts = bytes.chunks_mut(stride.saturating_mul(CHUNK_VERTICES));
+        Ok(parts.take(count.div_ceil(CHUNK_VERTICES)).enumerate().map(move |(c, bytes)| Part {
+            bytes,
+            offset: 0,
+            stride,
+            count: CHUNK_VERTICES.min(count - c * CHUNK_VERTICES),
+        }))
+    }
+}
+
+/// What a chunk's vertices occupy of a buffer.
+pub(super) struct Part<'a> {
+    bytes: &'a mut [u8],
+    offset: usize,
+    stride: usize,
+    count: usize,
+}
+
+enum Normals<'a> {
+    None,
+    Own(Part<'a>),
+    /// In the positions' buffer, at this offset.
+    Beside(usize),
+}
+
+/// What one chunk writes to.
+pub(super) struct Target<'a> {
+    first: Part<'a>,
+    second: Normals<'a>,
+}
+
+impl Target<'_> {
+    /// Writes a block whose first vertex is the chunk's `first`; lanes past the last vertex go nowhere.
+    #[inline(always)]
+    pub(super) fn write(&mut self, first: usize, positions: Lanes, normals: Lanes) {
+        let offset = self.first.offset;
+        self.first.write(first, offset, positions);
+        match &mut self.second {
+            Normals::None => {}
+            Normals::Own(part) => part.write(first, 0, normals),
+            Normals::Beside(offset) => self.first.write(first, *offset, normals),
+        }
+    }
+}
+
+impl Part<'_> {
+    #[inline(always)]
+    fn write(&mut self, first: usize, offset: usize, [x, y, z]: Lanes) {
+        let vectors =
+            transposed([x, y, z, Vec4::ZERO]).map(|v| bytemuck::cast::<[f32; 4], [u8; 16]>(v.to_array()));
+        let start = first * self.stride + offset;
+        if self.stride == WIDTH
+            && let Some(packed) = self.bytes.get_mut(start..start + LANES * WIDTH)
+        {
+            // Whole registers, each over the last one's unused fourth number.
+            for (lane, vector) in vectors.iter().enumerate().take(LANES - 1) {
+                packed[lane * WIDTH..lane * WIDTH + 16].copy_from_slice(vector);
+            }
+            packed[(LANES - 1) * WIDTH..].copy_from_slice(&vectors[LANES - 1][..WIDTH]);
+            return;
+        }
+        for (lane, vector) in vectors.iter().enumerate().take(self.count.saturating_sub(first)) {
+            let at = start + lane * self.stride;
+            if let Some(out) = self.bytes.get_mut(at..at + WIDTH) {
+                out.copy_from_slice(&vector[..WIDTH]);
+            }
+        }
+    }
+}

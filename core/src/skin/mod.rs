@@ -1,0 +1,27 @@
+//! Skinning: a posed skeleton moves the vertices and normals of a surface, on top of the room [`pose`](crate::pose).
+//!
+//! A [`Skinner`] holds a surface in its bind pose, ready to be posed; it is immutable and may be shared between
+//! threads. [`Skinner::skin`] poses one character, [`skin_many`] any number of them, on all threads of the pool, into
+//! buffers of the caller's: [`SurfaceMut`]. Every vertex is computed on its own with the same operations in the same
+//! order, so the bits do not depend on the number of threads nor on the processor.
+//!
+//! Metres; right-handed; column vectors. With `D_j = posed model_from_joint · bind joint_from_model`, vertex x, its
+//! unit normal n, offset Δ in bind space and weights w_j:
+//!
+//! | [`SkinMethod`] | position | normal |
+//! |---|---|---|
+//! | `Linear` | Σ w_j D_j (x + Δ) | (Σ w_j R_j) n, normalised |
+//! | `DualQuaternion` | D (x + Δ), D the normalised Σ ± w_j d_j | R n |
+//! | `JointTranslation` | x + Δ + Σ w_j (t_j − t_j at bind) | n |
+
+mod block;
+mod buffers;
+mod dual_quaternion;
+mod joint_translation;
+mod linear;
+mod skinner;
+#[cfg(test)]
+mod tests;
+
+pub use buffers::{StridedMut, SurfaceMut};
+pub use skinner::{SkinJob, SkinMethod, Skinner, skin_many};

@@ -1,0 +1,252 @@
+//! A surface ready to be posed, and the work of posing it.
+
+use glam::{DQuat, DVec3, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::block::{Blocks, CHUNK_VERTICES, Chunk};
+use super::buffers::{SurfaceMut, Target};
+use super::dual_quaternion::{self, DualQuaternion};
+use super::joint_translation;
+use super::linear::{self, Rows};
+use crate::pose::Local;
+use crate::rig::Influences;
+use crate::{Error, Result};
+
+/// How joints move vertices; the formulas stand in the documentation of the [module](crate::skin).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SkinMethod {
+    /// Linear blend skinning: what glTF, UsdSkel and game engines do. Joints that turn far pinch.
+    #[default]
+    Linear,
+    /// Dual quaternions, Blender's *Preserve Volume*: keeps the girth of a twisted limb, bulges bent ones.
+    DualQuaternion,
+    /// The paper's own formula: joints move vertices but do not turn them. Without offsets made for it, poses are
+    /// centimetres wrong.
+    JointTranslation,
+}
+
+/// A surface in its bind pose with what each vertex follows. Immutable.
+#[derive(Clone, Debug)]
+pub struct Skinner {
+    vertex_count: usize,
+    /// Bind `joint_from_model` of each joint.
+    joint_from_model: Vec<Motion>,
+    blocks: Blocks,
+}
+
+/// One character's skinning: what is posed, how, and where the result goes.
+#[derive(Debug)]
+pub struct SkinJob<'a> {
+    /// The surface.
+    pub skinner: &'a Skinner,
+    /// The formula.
+    pub method: SkinMethod,
+    /// The pose: posed `model_from_joint` of every joint, see [`Pose::model_from_joints`](crate::pose::Pose).
+    pub model_from_joints: &'a [Local],
+    /// Added to the bind positions before they are posed: correctives. One per vertex, metres.
+    pub offsets: Option<&'a [Vec3]>,
+    /// What is written.
+    pub out: SurfaceMut<'a>,
+}
+
+impl Skinner {
+    /// From positions (metres) and unit normals in the bind pose, influences of each vertex, and the joints' bind pose
+    /// `model_from_joint`. Weights of a vertex are normalised.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when arrays differ in length, a number is not finite, a joint does not exist, or the weights
+    /// of a vertex are negative or far from summing to one.
+    pub fn new(
+        positions: &[Vec3],
+        normals: &[Vec3],
+        influences: &Influences,
+        model_from_joints: &[Local],
+    ) -> Result<Self> {
+        let count = positions.len();
+        let expect = |what, expected: usize, got: usize| match expected == got {
+            true => Ok(()),
+            false => {
+                Err(Error::invalid(what, format!("expected {expected} for {count} vertices, got {got}")))
+            }
+        };
+        expect("normals", count, normals.len())?;
+        if influences.per_vertex == 0 {
+            return Err(Error::invalid("skin weights", "expected at least 1 influence per vertex, got 0"));
+        }
+        let slots = count.saturating_mul(influences.per_vertex);
+        expect("skin joints", slots, influences.joints.len())?;
+        expect("skin weights", slots, influences.weights.len())?;
+        finite("positions", positions)?;
+        finite("normals", normals)?;
+        Ok(Self {
+            vertex_count: count,
+            joint_from_model: motions("bind pose", model_from_joints)?.iter().map(Motion::inverse).collect(),
+            blocks: Blocks::new(positions, normals, influences, model_from_joints.len())?,
+        })
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.joint_from_model.len()
+    }
+
+    /// Poses the surface: [`skin_many`] of one character without offsets.
+    ///
+    /// # Errors
+    /// As [`skin_many`].
+    pub fn skin(&self, method: SkinMethod, model_from_joints: &[Local], out: SurfaceMut<'_>) -> Result<()> {
+        skin(SkinJob { skinner: self, method, model_from_joints, offsets: None, out })
+    }
+
+    /// How each joint moves what follows it: posed `model_from_joint` · bind `joint_from_model`.
+    fn palette(&self, method: SkinMethod, model_from_joints: &[Local]) -> Result<Palette> {
+        let (expected, got) = (self.joint_count(), model_from_joints.len());
+        if expected != got {
+            return Err(Error::invalid("pose", format!("expected {expected} joints, got {got}")));
+        }
+        let posed = motions("pose", model_from_joints)?;
+        let joints = posed.iter().zip(&self.joint_from_model);
+        Ok(match method {
+            SkinMethod::Linear => Palette::Linear(joints.map(|(p, b)| linear::rows(&p.after(b))).collect()),
+            SkinMethod::DualQuaternion => Palette::DualQuaternion(
+                joints.map(|(p, b)| dual_quaternion::dual_quaternion(&p.after(b))).collect(),
+            ),
+            SkinMethod::JointTranslation => Palette::JointTranslation(
+                joints
+                    .map(|(p, b)| (p.translation - b.inverse().translation).extend(0.0).as_vec4())
+                    .collect(),
+            ),
+        })
+    }
+}
+
+/// Poses one character.
+fn skin(job: SkinJob<'_>) -> Result<()> {
+    let prepared = Prepared::new(job)?;
+    run([prepared].into());
+    Ok(())
+}
+
+/// Poses many characters, each vertex of each on whatever thread is free. Nothing is written unless all are in order.
+///
+/// # Errors
+/// [`Error::Invalid`] when the joints or offsets of a job are not as many as its skinner's, a number is not finite, a
+/// rotation is not of unit length, or a buffer is too small for its offset and stride; the message counts the
+/// characters from 0.
+pub fn skin_many(jobs: Vec<SkinJob<'_>>) -> Result<()> {
+    let prepared = jobs.into_iter().enumerate().map(|(i, job)| {
+        Prepared::new(job).map_err(|error| match error {
+            Error::Invalid { what, message } => Error::invalid(what, format!("character {i}: {message}")),
+            other => other,
+        })
+    });
+    run(prepared.collect::<Result<_>>()?);
+    Ok(())
+}
+
+/// A job that was found in order.
+struct Prepared<'a> {
+    skinner: &'a Skinner,
+    palette: Palette,
+    offsets: Option<&'a [Vec3]>,
+    targets: Vec<Target<'a>>,
+}
+
+/// What the kernels look joints up in.
+enum Palette {
+    Linear(Vec<Rows>),
+    DualQuaternion(Vec<DualQuaternion>),
+    JointTranslation(Vec<Vec4>),
+}
+
+impl<'a> Prepared<'a> {
+    fn new(job: SkinJob<'a>) -> Result<Self> {
+        let SkinJob { skinner, method, model_from_joints, offsets, out } = job;
+        let palette = skinner.palette(method, model_from_joints)?;
+        if let Some(offsets) = offsets {
+            if offsets.len() != skinner.vertex_count {
+                let message = format!("expected {} vertices, got {}", skinner.vertex_count, offsets.len());
+                return Err(Error::invalid("offsets", message));
+            }
+            finite("offsets", offsets)?;
+        }
+        Ok(Self { skinner, palette, offsets, targets: out.into_chunks(skinner.vertex_count)? })
+    }
+}
+
+fn run(mut characters: Vec<Prepared<'_>>) {
+    let mut work = Vec::new();
+    for character in &mut characters {
+        let Prepared { skinner, palette, offsets, targets } = character;
+        let mut offsets = offsets.map(|all| all.chunks(CHUNK_VERTICES));
+        for (chunk, target) in skinner.blocks.chunks().zip(targets) {
+            work.push((&*palette, chunk, offsets.as_mut().and_then(Iterator::next), target));
+        }
+    }
+    work.into_par_iter().for_each(|(palette, chunk, offsets, target)| palette.skin(chunk, offsets, target));
+}
+
+impl Palette {
+    fn skin(&self, chunk: Chunk<'_>, offsets: Option<&[Vec3]>, target: &mut Target<'_>) {
+        match self {
+            Self::Linear(palette) => chunk.run(offsets, target, |block| linear::deform(palette, block)),
+            Self::DualQuaternion(palette) => {
+                chunk.run(offsets, target, |block| dual_quaternion::deform(palette, block));
+            }
+            Self::JointTranslation(palette) => {
+                chunk.run(offsets, target, |block| joint_translation::deform(palette, block));
+            }
+        }
+    }
+}
+
+/// A rigid motion in double precision, so that the two poses of a joint cancel where it rests.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) rotation: DQuat,
+    pub(super) translation: DVec3,
+}
+
+impl Motion {
+    fn after(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            translation: self.translation + self.rotation * inner.translation,
+        }
+    }
+
+    fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self { rotation, translation: rotation * -self.translation }
+    }
+}
+
+/// Checked and normalised.
+fn motions(what: &'static str, locals: &[Local]) -> Result<Vec<Motion>> {
+    let motion = |(j, local): (usize, &Local)| {
+        let (rotation, translation) = (local.rotation.as_dquat(), local.translation.as_dvec3());
+        // False for what is not a number, too.
+        let unit = (rotation.length() - 1.0).abs() <= 1e-3;
+        if unit && translation.is_finite() {
+            return Ok(Motion { rotation: rotation.normalize(), translation });
+        }
+        let message =
+            format!("joint {j}: expected a unit quaternion and finite metres, got {rotation} {translation}");
+        Err(Error::invalid(what, message))
+    };
+    locals.iter().enumerate().map(motion).collect()
+}
+
+fn finite(what: &'static str, vectors: &[Vec3]) -> Result<()> {
+    match vectors.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(v) => {
+            Err(Error::invalid(what, format!("vertex {v}: expected finite numbers, got {}", vectors[v])))
+        }
+    }
+}
