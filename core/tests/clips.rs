@@ -58,3 +58,26 @@ fn every_clip_is_a_person_on_a_floor() {
         }
     }
 }
+
+#[test]
+fn damaged_clips_do_no_harm() {
+    let Some(files) = clips() else {
+        println!("skipped: there is no folder shared/data/clips beside the repository");
+        return;
+    };
+    for path in files.iter().filter(|path| path.extension().is_some_and(|e| e == "fbx")) {
+        let bytes = std::fs::read(path).unwrap();
+        for i in 0..40 {
+            let at = i * bytes.len() / 40;
+            assert!(clip::from_bytes(&bytes[..at], path, &ReadOptions::default()).is_err(), "cut at {at}");
+            for value in [0, 0x7f, 0xff] {
+                let mut damaged = bytes.clone();
+                damaged[at] = value;
+                // Whether it is a motion is the file's luck; that this returns is what counts.
+                if let Ok(motion) = clip::from_bytes(&damaged, path, &ReadOptions::default()) {
+                    assert!(!motion.clips.is_empty());
+                }
+            }
+        }
+    }
+}

@@ -77,20 +77,24 @@ fn unit(raw: &mut Raw, body: &Proportions, height: f64, options: &ReadOptions) -
     let powers =
         raw.unit.into_iter().flat_map(|said| [1e-4, 1e-3, 1e-2, 1e2, 1e3, 1e4].map(|p| said.metres() * p));
     let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::of_metres));
-    let likely = candidates.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
-    match raw.unit {
-        Some(said) if !body.is_figure() || PLAUSIBLE.contains(&(height * said.metres())) => {
-            (said, Found::File)
+    let mut likely = candidates.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
+    if let Some(said) = raw.unit {
+        let was = height * said.metres();
+        if !body.is_figure() || PLAUSIBLE.contains(&was) {
+            return (said, Found::File);
         }
-        Some(said) => {
-            let (was, is) = (height * said.metres(), height * likely.metres());
-            raw.warnings.push(format!(
-                "the file says {said}, by which the body is {was:.3} m tall: taken as {likely}, {is:.2} m"
-            ));
-            (likely, Found::Detected)
-        }
-        None => (likely, Found::Detected),
+        raw.warnings.push(format!("the file says {said}, by which the body is {was:.3} m tall"));
     }
+    if body.is_figure() && !ORDINARY.contains(&(height * likely.metres())) {
+        likely = Unit::Metres(TYPICAL / height);
+        raw.warnings.push(format!("no usual unit makes the body a person: it was scaled to {TYPICAL:.2} m"));
+    } else if raw.unit.is_some() {
+        raw.warnings.push(format!(
+            "lengths were taken to be in {likely}, which makes it {:.2} m",
+            height * likely.metres()
+        ));
+    }
+    (likely, Found::Detected)
 }
 
 fn up(raw: &mut Raw, body: &Proportions, options: &ReadOptions) -> (Axis, Found) {

@@ -9,16 +9,13 @@ pub mod obj;
 pub mod scene;
 pub mod usd;
 
-use std::{ffi::OsStr, fs, path::Path};
+use std::{ffi::OsStr, path::Path};
 
 use glam::Vec3;
 
+use crate::input::{MAX_ELEMENTS, read};
 use crate::{Error, Result};
 
-/// Largest file that is read: far above any character, far below the memory of a small machine.
-const MAX_FILE_BYTES: u64 = 1 << 30;
-/// Most vertices, and most triangles, of all meshes of one file together.
-const MAX_ELEMENTS: usize = 4 << 20;
 /// Most meshes of one file.
 const MAX_MESHES: usize = 1 << 16;
 
@@ -67,21 +64,4 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
         Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
         _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj")),
     }
-}
-
-/// The whole of a regular file of a sensible size.
-fn read(path: &Path) -> Result<Vec<u8>> {
-    let fault = |source| Error::Io { path: path.into(), action: "read", source };
-    let metadata = fs::metadata(path).map_err(fault)?;
-    if !metadata.is_file() {
-        return Err(Error::file(path, "is not a regular file"));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        let bytes = metadata.len();
-        return Err(Error::file(
-            path,
-            format!("expected a file of at most {MAX_FILE_BYTES} bytes, got {bytes}"),
-        ));
-    }
-    fs::read(path).map_err(fault)
 }

@@ -8,6 +8,8 @@ use crate::{Error, Result};
 
 /// Largest file that is read: far above any character or motion, far below the memory of a small machine.
 const MAX_FILE_BYTES: u64 = 1 << 30;
+/// Most vertices, and most triangles, of all meshes of one file together.
+pub(crate) const MAX_ELEMENTS: usize = 4 << 20;
 
 /// The whole of a regular file of a sensible size.
 ///

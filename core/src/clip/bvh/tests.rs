@@ -107,7 +107,10 @@ fn says_what_is_wrong_and_in_which_line() {
             "line 18: truncated: 900000 frames",
             SMALL.replace("Frames: 2", "Frames: 900000").replace("Frame Time", "Frame\tTime"),
         ),
-        ("truncated: expected 3 frames, got 2", SMALL.replace("Frames: 2", "Frames: 3")),
+        (
+            "truncated: expected 3 frames, got 2",
+            SMALL.replace("Frames: 2", "Frames: 3").replace("4 5 6", "4.0000 5.0000 6.0000"),
+        ),
         ("expected the end of the file after 1 frames, got `4`", SMALL.replace("Frames: 2", "Frames: 1")),
         ("line 18: Frame Time: expected 0.001 to 10 seconds, got 0", SMALL.replace("0.0333333", "0")),
         ("line 19: expected 7 channels, got 6", SMALL.replace(" 40\n", "\n")),

@@ -129,6 +129,25 @@ fn a_file_is_believed_unless_its_body_is_impossible() {
 }
 
 #[test]
+fn a_body_of_no_usual_unit_is_scaled_to_a_person() {
+    let report = read(&person(0.04, Axis::Y), &ReadOptions::default()).report;
+    assert!((report.stature - TYPICAL).abs() < 1e-6 && report.unit_found == Found::Detected);
+    assert!((report.unit.metres() / 0.04 - 1.0).abs() < 0.1, "{}", report.unit);
+    assert!(report.warnings[0].contains("scaled to 1.70 m"), "{:?}", report.warnings);
+}
+
+#[test]
+fn a_scale_of_a_hundred_too_much_is_seen() {
+    // Millimetres, said to be decimetres.
+    let motion = claiming(Unit::Millimetre, Axis::Y, (Unit::Decimetre, Axis::Y));
+    assert_eq!(motion.report.unit, Unit::Millimetre);
+    // A hundredth of a centimetre, for which there is no name.
+    let motion = claiming(Unit::Metres(1e-4), Axis::Y, (Unit::Centimetre, Axis::Y));
+    assert!((motion.report.unit.metres() - 1e-4).abs() < 1e-12);
+    assert!(joint(&motion, "Neck").distance(Vec3::new(0.0, 1.47, 0.0)) < 1e-5);
+}
+
+#[test]
 fn a_body_that_tells_nothing_is_taken_as_it_is() {
     let text = "HIERARCHY ROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.04\n7\n";
     let report = read(text, &ReadOptions::default()).report;

@@ -15,9 +15,9 @@ use gltf_json::{
 };
 
 use super::Outcome;
-use super::document::Document;
 use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
 use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
+use crate::input::gltf::Document;
 use crate::pose::{Local, RestPose};
 
 /// Rates to look for, the lowest first, frames a second.

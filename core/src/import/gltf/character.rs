@@ -7,10 +7,10 @@ use gltf_json::{
     Accessor, Index, Material, material::AlphaMode as GltfAlphaMode, mesh::Semantic, validation::Checked,
 };
 
-use super::document::{Document, Tree};
 use super::skeleton::{Skeleton, hung_on};
 use super::{Outcome, Part, animation};
 use crate::export::{AlphaMode, Corners, Scene, SceneMaterial, SceneMesh};
+use crate::input::gltf::{Document, Tree};
 
 /// How far weights may sum away from 1 to be taken as they are; those of others are made to.
 const SUM_TOLERANCE: f64 = 1e-6;

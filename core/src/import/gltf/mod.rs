@@ -1,15 +1,10 @@
 //! glTF 2.0, binary or JSON: triangles with `f32` positions, as every exporter writes them by default.
 //!
-//! EXT_meshopt_compression is undone; quantised and sparse geometry is refused by name. The JSON is read into
-//! `gltf-json`'s types; the data behind them is fetched here, with every offset checked, and not by a general loader,
-//! which trusts the document.
+//! EXT_meshopt_compression is undone; quantised and sparse geometry is refused by name.
 
 mod animation;
 mod character;
-mod document;
-mod meshopt;
 mod skeleton;
-mod uri;
 
 use std::path::Path;
 
@@ -22,11 +17,8 @@ use gltf_json::{
 
 use super::{ImportedMesh, ImportedScene, MAX_ELEMENTS, MAX_MESHES};
 use crate::export::Scene;
+use crate::input::gltf::{Document, Outcome};
 use crate::{Error, Result};
-use document::Document;
-
-/// What is wrong with a document; the path is added at the end.
-type Outcome<T> = std::result::Result<T, String>;
 
 /// Reads a `.glb` or `.gltf` that is already in memory. Buffers of a `.gltf` are looked for beside `path`.
 ///

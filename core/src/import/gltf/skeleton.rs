@@ -6,9 +6,9 @@ use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
 use gltf_json::{Index, Node, Skin};
 
 use super::Outcome;
-use super::document::{Document, Tree};
 use crate::export::SceneJoint;
 use crate::export::gltf::skeleton::{NodeTransform, rounded};
+use crate::input::gltf::{Document, Tree};
 use crate::pose::Local;
 
 /// How far scale may be from 1, and axes from a right angle.

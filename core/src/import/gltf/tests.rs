@@ -4,7 +4,6 @@ use glam::Vec3;
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::uri::base64_decoded;
 use super::*;
 use crate::export::{
     gltf::{to_glb, to_gltf},
@@ -85,16 +84,6 @@ fn base64(bytes: &[u8]) -> String {
         }
     }
     text
-}
-
-#[test]
-fn decodes_the_base64_of_the_standard() {
-    // RFC 4648, section 10.
-    for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob")] {
-        assert_eq!(base64_decoded(text).unwrap(), bytes.as_bytes());
-        assert_eq!(base64(bytes.as_bytes()).trim_end_matches('='), text.trim_end_matches('='));
-    }
-    assert_eq!(base64_decoded("Zm9*"), None);
 }
 
 #[test]

@@ -1,4 +1,6 @@
-//! A glTF document and the bytes that it refers to. Every offset and size is checked against what is there.
+//! A glTF document and the bytes that it refers to. The JSON is read into `gltf-json`'s types; the data behind them is
+//! fetched here, every offset and size checked against what is there, and not by a general loader, which trusts the
+//! document.
 
 mod meshopt;
 mod uri;
@@ -12,13 +14,11 @@ use gltf_json::{
     validation::{Checked, USize64},
 };
 
+use super::MAX_ELEMENTS;
 use crate::{Error, Result};
 
 /// What is wrong with a document; the path is added at the end.
 pub(crate) type Outcome<T> = std::result::Result<T, String>;
-
-/// Most vertices, and most triangles, of a document.
-const MAX_ELEMENTS: usize = 4 << 20;
 
 /// Required extensions that change no geometry.
 const HARMLESS_EXTENSIONS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];

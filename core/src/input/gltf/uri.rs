@@ -59,3 +59,17 @@ pub(crate) fn base64_decoded(text: &str) -> Option<Vec<u8>> {
     }
     Some(bytes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decodes_the_base64_of_the_standard() {
+        // RFC 4648, section 10.
+        for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob")] {
+            assert_eq!(base64_decoded(text).unwrap(), bytes.as_bytes());
+        }
+        assert_eq!(base64_decoded("Zm9*"), None);
+    }
+}
