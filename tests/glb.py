@@ -74,14 +74,36 @@ class Glb:
         # Stored column by column.
         return skin["joints"], matrices.reshape(-1, 4, 4).transpose(0, 2, 1)
 
-    def world(self, rotations=None):
-        """World matrices of all nodes (nodes, 4, 4), each local rotation followed by the one given for its name."""
-        rotations = rotations or {}
+    def animated(self, animation, time):
+        """{node: {path: value}} of an animation at a time, seconds: linear, spherical for rotations."""
+        values = {}
+        for channel in animation["channels"]:
+            sampler = animation["samplers"][channel["sampler"]]
+            if sampler.get("interpolation", "LINEAR") != "LINEAR":
+                raise ValueError(f"interpolation {sampler['interpolation']}, which this reader does not know")
+            times = self.accessor(sampler["input"]).astype(np.float64)
+            keys = self.accessor(sampler["output"]).astype(np.float64)
+            after = int(np.searchsorted(times, time))
+            if after == 0 or after == len(times):
+                value = keys[min(after, len(times) - 1)]
+            else:
+                t = (time - times[after - 1]) / (times[after] - times[after - 1])
+                blend = slerp if channel["target"]["path"] == "rotation" else lambda a, b, t: a + (b - a) * t
+                value = blend(keys[after - 1], keys[after], t)
+            values.setdefault(channel["target"]["node"], {})[channel["target"]["path"]] = value
+        return values
+
+    def world(self, rotations=None, animated=None):
+        """World matrices of all nodes (nodes, 4, 4), each local rotation followed by the one given for its name.
+
+        What `animated` has of a node stands in the place of the node's own.
+        """
+        rotations, animated = rotations or {}, animated or {}
         done = {}
 
         def matrix(i):
             if i not in done:
-                node = self.nodes[i]
+                node = {**self.nodes[i], **animated.get(i, {})}
                 if "matrix" in node:
                     local = np.array(node["matrix"], float).reshape(4, 4).T
                 else:
@@ -106,6 +128,16 @@ def rotation(quaternion):
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     )
+
+
+def slerp(a, b, t):
+    """Between unit quaternions, the short way."""
+    cosine = float(a @ b)
+    b, cosine = (-b, -cosine) if cosine < 0 else (b, cosine)
+    angle = np.arccos(min(cosine, 1.0))
+    if angle < 1e-9:
+        return a
+    return (np.sin((1 - t) * angle) * a + np.sin(t * angle) * b) / np.sin(angle)
 
 
 class Cases:

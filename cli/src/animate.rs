@@ -41,6 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         return Err(Failure::usage("--clip: expected at least one motion, got none"));
     }
     let mut scene = backend::motion::open(&arguments.input)?;
-    backend::motion::animate(&mut scene, &arguments.motion)?;
+    let rest = backend::motion::rest_pose(&scene)?;
+    backend::motion::animate(&mut scene, rest, &arguments.motion)?;
     backend::write_scene(&scene, &arguments.output, arguments.compress)
 }

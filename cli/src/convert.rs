@@ -7,7 +7,7 @@ use clap::Args;
 use crate::backend;
 use crate::failure::Result;
 use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
-use crate::request::check_ending;
+use crate::request::{check_ending, ending};
 
 /// Write a character file in another format, with its skin, joints, materials and motions.
 #[derive(Args)]
@@ -36,6 +36,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut scene = backend::motion::open(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         backend::motion::rename_joints(&mut scene, names);
+    }
+    if matches!(ending(&arguments.output).as_str(), "vrm" | "obj") && !scene.clips.is_empty() {
+        eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
+        scene.clips.clear();
     }
     backend::write_scene(&scene, &arguments.output, arguments.compress)
 }

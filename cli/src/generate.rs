@@ -1,13 +1,16 @@
 //! `anthronet generate`: a person from measures, as a file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
-use crate::progress::print;
+use crate::motion::MotionArguments;
 use crate::request::{RequestArguments, check_ending, read_text};
+
+/// Endings of the files that hold a character.
+pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
 
 /// What the file's joints are called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -28,6 +31,7 @@ pub(crate) enum JointNamesChoice {
     anthronet generate --sex female -m height=170cm -m waist_circumference=72cm -o anna.glb\n  \
     anthronet generate -m height=6ft1in -m chest_circumference=40in --joint-names mixamo -o bob.glb\n  \
     anthronet generate --sex male --fill sample --seed 7 --lod 1 -o someone.obj --report -\n  \
+    anthronet generate --sex female -m height=170cm --clip walk --clip dance.bvh -o moves.glb\n  \
     anthronet generate --request slim.json --interpolate heavy.json --at 0.5 -o between.glb")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -57,9 +61,17 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TONE", help_heading = "File")]
     skin_tone: Option<String>,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf (with a .bin beside it) or .obj.
+    #[command(flatten)]
+    motion: MotionArguments,
+
+    /// The file to write; its ending chooses the format: .glb, .gltf (with a .bin beside it), .vrm, .usda, .usdc,
+    /// .usdz or .obj.
     #[arg(short = 'o', long = "output", value_name = "FILE", help_heading = "File")]
     output: PathBuf,
+
+    /// Write a .glb or .gltf with EXT_meshopt_compression.
+    #[arg(long, help_heading = "File")]
+    compress: bool,
 
     /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output.
     #[arg(long, value_name = "FILE", help_heading = "File")]
@@ -82,7 +94,7 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &["glb", "gltf", "obj"])?;
+    check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected another file than that of -o"));
     }
@@ -102,11 +114,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         (Some(text), Some(t)) => model.interpolate(&request, &backend::request_from_json(text)?, t)?,
         _ => model.generate(&request, typed)?,
     };
-    person.write(&arguments.output, &choice)?;
-    match &arguments.report {
-        Some(path) if path == Path::new("-") => print(&(person.report_json() + "\n"))?,
-        Some(path) => backend::write(path, (person.report_json() + "\n").as_bytes())?,
-        None => {}
+    let mut scene = person.scene(&choice)?;
+    backend::motion::animate(&mut scene, person.rest_pose()?, &arguments.motion)?;
+    backend::write_scene(&scene, &arguments.output, arguments.compress)?;
+    if let Some(path) = &arguments.report {
+        backend::write_or_print(path, &(person.report_json() + "\n"))?;
     }
 
     let summary = person.summary();

@@ -1,20 +1,22 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
-//! One file per command. `backend` (with `surface`) is the only one that calls the library, `train` the only one that calls the
+//! One file per command. `backend` is the only one that calls the library, `train` the only one that calls the
 //! trainer; `render` makes pictures; `units` reads lengths. Exit codes: 0 done, 1 failed, 2 bad usage. Files appear
 //! whole or not at all.
 
+mod animate;
 mod backend;
 mod contact_sheet;
+mod convert;
 mod failure;
 mod generate;
 mod info;
 mod measure;
+mod motion;
 mod preview;
 mod progress;
 mod render;
 mod request;
-mod surface;
 mod train;
 mod units;
 
@@ -37,7 +39,8 @@ use crate::failure::Result;
     after_help = "Examples:\n  \
         anthronet generate --sex female -m height=170cm -m waist_circumference=72cm -o anna.glb\n  \
         anthronet preview anna.glb -o anna.png\n  \
-        anthronet measure anna.glb\n\n\
+        anthronet measure anna.glb\n  \
+        anthronet animate anna.glb --clip walk -o walking.glb\n\n\
         Exit codes: 0 done, 1 failed, 2 bad usage. ANTHRONET_MODEL names a model file to use instead of the built-in one."
 )]
 struct Arguments {
@@ -52,6 +55,8 @@ enum Command {
     Info(info::Arguments),
     Preview(preview::Arguments),
     ContactSheet(contact_sheet::Arguments),
+    Animate(animate::Arguments),
+    Convert(convert::Arguments),
     Evaluate(train::EvaluateArguments),
     Train(train::TrainArguments),
 }
@@ -63,6 +68,8 @@ fn run(command: &Command) -> Result<()> {
         Command::Info(arguments) => info::run(arguments),
         Command::Preview(arguments) => preview::run(arguments),
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),
+        Command::Animate(arguments) => animate::run(arguments),
+        Command::Convert(arguments) => convert::run(arguments),
         Command::Evaluate(arguments) => train::evaluate(arguments),
         Command::Train(arguments) => train::train(arguments),
     }

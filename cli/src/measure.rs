@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
+use crate::generate::CHARACTER_ENDINGS;
 use crate::progress::print;
 use crate::request::ending;
 
@@ -43,9 +44,11 @@ pub(crate) struct NamedValue {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    if !["glb", "gltf", "obj"].contains(&ending(&arguments.file).as_str()) {
+    if !CHARACTER_ENDINGS.contains(&ending(&arguments.file).as_str()) {
         let file = arguments.file.display();
-        return Err(Failure::usage(format!("{file}: unknown ending, expected one of .glb .gltf .obj")));
+        return Err(Failure::usage(format!(
+            "{file}: unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"
+        )));
     }
     let measured = backend::measure_file(&Model::open()?, &arguments.file)?;
     if arguments.json {

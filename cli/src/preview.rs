@@ -49,10 +49,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let request = backend::request(&request)?;
             Model::open()?.generate(&request, false)?.figure(0, None)?
         }
-        "glb" | "gltf" | "obj" => backend::figure_from_file(&arguments.input)?,
+        "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => {
+            backend::figure_from_file(&arguments.input)?
+        }
         _ => {
             let input = arguments.input.display();
-            let known = ".glb .gltf .obj .json";
+            let known = ".glb .gltf .vrm .usda .usdc .usdz .obj .json";
             return Err(Failure::usage(format!("{input}: unknown ending, expected one of {known}")));
         }
     };

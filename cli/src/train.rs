@@ -1,7 +1,7 @@
 //! `anthronet train` and `anthronet evaluate`, the commands that need networks. Built only with the feature `train`;
 //! without it they say how to get it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 
@@ -14,6 +14,8 @@ pub(crate) enum Table {
     Generator,
     /// Mean, deviation, least and most of every measure over the sampled bodies.
     Statistics,
+    /// How motion files come onto bodies from small to tall: directions, joint limits, feet.
+    Motion,
 }
 
 /// Bodies that no network was fitted to.
@@ -44,7 +46,11 @@ pub(crate) struct EvaluateArguments {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// How many bodies.
+    /// Folder of motion files, for the table of motion [default: ../shared/data/clips].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) clips: Option<PathBuf>,
+
+    /// How many bodies; of motion, 10.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) bodies: Option<u32>,
 }
@@ -91,8 +97,20 @@ fn no_networks(command: &str) -> crate::failure::Failure {
     ))
 }
 
+/// `anthronet evaluate`. The table of motion needs no network.
+pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
+    if arguments.table == Table::Motion { motion(arguments) } else { networks(arguments) }
+}
+
+fn motion(arguments: &EvaluateArguments) -> Result<()> {
+    let folder = arguments.clips.as_deref().unwrap_or(Path::new("../shared/data/clips"));
+    let bodies = arguments.bodies.map_or(10, |n| n as usize);
+    let table = crate::backend::motion_table::motion_table(folder, bodies)?;
+    crate::progress::print(&if arguments.json { table.to_json()? } else { table.to_text() })
+}
+
 #[cfg(not(feature = "train"))]
-pub(crate) fn evaluate(_: &EvaluateArguments) -> Result<()> {
+fn networks(_: &EvaluateArguments) -> Result<()> {
     Err(no_networks("evaluate"))
 }
 
@@ -105,12 +123,12 @@ pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
 }
 
 #[cfg(feature = "train")]
-pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
+fn networks(arguments: &EvaluateArguments) -> Result<()> {
     use crate::failure::Failure;
     use anthronet_trainer::corpus;
     let table = match arguments.table {
         Table::Generator => "generator",
-        Table::Statistics => "statistics",
+        _ => "statistics",
     };
     let split = match arguments.split {
         Split::HeldOut => corpus::Split::HeldOut,

@@ -64,11 +64,12 @@ fn the_output_is_required_and_its_ending_known() {
     for name in ["a.stl", "a", "a.glb.txt", "glb"] {
         let path = folder.path().join(name);
         let path = path.to_string_lossy();
-        anthronet(&["generate", "-o", &path], &[]).fails(2, &[name, ".glb .gltf .obj"]);
+        anthronet(&["generate", "-o", &path], &[])
+            .fails(2, &[name, ".glb .gltf .vrm .usda .usdc .usdz .obj"]);
         anthronet(&["contact-sheet", "-o", &path], &[]).fails(2, &[name, ".png"]);
     }
     assert!(files_in(folder.path()).is_empty());
-    anthronet(&["measure", "a.fbx"], &[]).fails(2, &["a.fbx", ".glb .gltf .obj"]);
+    anthronet(&["measure", "a.fbx"], &[]).fails(2, &["a.fbx", ".glb .gltf .vrm .usda .usdc .usdz .obj"]);
     anthronet(&["preview", "a.fbx", "-o", "a.png"], &[]).fails(2, &["a.fbx", ".json"]);
     anthronet(&["preview", "a.glb", "-o", "a.png", "--size", "0x4"], &[]).fails(2, &["--size", "0x4"]);
     anthronet(&["preview", "a.glb", "-o", "a.png", "--views", "below"], &[]).fails(2, &["--views", "front"]);
@@ -178,6 +179,42 @@ fn a_place_that_cannot_be_written_is_named_and_left_alone() {
     }
     assert_eq!(files_in(folder.path()), ["dir.glb", "file"]);
     assert_eq!(fs::read(&file).unwrap(), b"a file, not a folder");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_read_only_folder_is_named_and_left_alone() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    use std::os::unix::process::CommandExt;
+    use std::path::Path;
+    use std::process::Command;
+    /// The user that owns nothing.
+    const NOBODY: u32 = 65_534;
+    if !model_is_built_in() {
+        return;
+    }
+    let folder = folder();
+    let read_only = folder.path().join("read-only");
+    fs::create_dir(&read_only).unwrap();
+    let mode = |path: &Path, mode| fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();
+    mode(&read_only, 0o555);
+    let mut command = if fs::metadata(&read_only).unwrap().uid() == 0 {
+        // Root may write anywhere, so somebody else tries, who may be unable to reach the command in its own place.
+        let copy = folder.path().join("anthronet");
+        // By a process of its own: a file that this one has open for writing cannot be run while other tests fork.
+        let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_anthronet")).arg(&copy).status().unwrap();
+        assert!(copied.success());
+        mode(folder.path(), 0o755);
+        let mut command = Command::new(copy);
+        command.uid(NOBODY).gid(NOBODY).current_dir(folder.path());
+        command
+    } else {
+        Command::new(env!("CARGO_BIN_EXE_anthronet"))
+    };
+    let out = read_only.join("out.glb");
+    command.env_remove("ANTHRONET_MODEL").args(["generate", "-o"]).arg(&out);
+    common::run(&mut command).fails(1, &["out.glb: cannot create", "denied"]);
+    assert!(files_in(&read_only).is_empty());
 }
 
 #[cfg(target_os = "linux")]

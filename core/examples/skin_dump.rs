@@ -4,7 +4,7 @@
 //!
 //! FOLDER gets `skin.json` (counts, joint names, parents) and, per surface and pose, arrays of little-endian numbers;
 //! `tests/skin_reference.py` reads them. With `--time`, every line on standard input is answered with the nanoseconds
-//! that one linear skinning of level 0 and one copy of as many bytes took, on one thread.
+//! that one linear skinning of level 0 and one copy of as many bytes took, on one thread; `tests/skin_speed.py` asks.
 
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -74,7 +74,7 @@ fn main() -> Outcome {
             }
         }
         if per_vertex == 4 && time {
-            answer_times(&skinner, &poses[0])?;
+            answer_times(&skinner, &influences, &poses[0])?;
         }
     }
     let description = serde_json::json!({
@@ -112,31 +112,41 @@ fn write<T: Copy, const N: usize>(file: &Path, numbers: &[T], bytes: impl Fn(T) 
     Ok(std::fs::write(file, numbers.iter().flat_map(|x| bytes(*x)).collect::<Vec<_>>())?)
 }
 
-/// What a vertex reads and writes at least: positions, normals, four joints and weights; positions and normals.
-const BYTES_PER_VERTEX: usize = 24 + 24 + 24;
-
-fn answer_times(skinner: &Skinner, pose: &[Local]) -> Outcome {
+/// Answers each line with the times, in nanoseconds, of one linear skinning and of one copy that moves as many bytes.
+///
+/// The copies go through memory that no cache holds, each time the next part of it, as a crowd's skinning would.
+fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[Local]) -> Outcome {
     let count = skinner.vertex_count();
     let (mut positions, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-    // A copy reads and writes: half of the bytes each.
-    let from = vec![1_u8; count * BYTES_PER_VERTEX / 2];
+    let part = bytes_moved(influences) / 2;
+    let from = vec![1_u8; 64 * part];
     let mut to = from.clone();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut out = std::io::stdout();
-    for line in std::io::stdin().lock().lines() {
+    for (turn, line) in std::io::stdin().lock().lines().enumerate() {
         line?;
-        let start = Instant::now();
-        pool.install(|| {
-            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(&mut positions, &mut normals))
+        let skinned = pool.install(|| {
+            let start = Instant::now();
+            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(&mut positions, &mut normals))?;
+            anthronet::Result::Ok(start.elapsed())
         })?;
-        let skinned = start.elapsed();
         std::hint::black_box((&positions, &normals));
+        let range = (turn % 64) * part..(turn % 64 + 1) * part;
         let start = Instant::now();
-        to.copy_from_slice(std::hint::black_box(&from));
+        to[range.clone()].copy_from_slice(std::hint::black_box(&from[range]));
         let copied = start.elapsed();
         std::hint::black_box(&to);
         writeln!(out, "{} {}", skinned.as_nanos(), copied.as_nanos())?;
         out.flush()?;
     }
     Ok(())
+}
+
+/// What a skinning of positions and normals reads and writes: both twice, and joints and weights, of which four
+/// vertices side by side have as many as the busiest of them.
+fn bytes_moved(influences: &Influences) -> usize {
+    let vertices = influences.weights.chunks(influences.per_vertex);
+    let used: Vec<usize> = vertices.map(|w| w.iter().filter(|w| **w > 0.0).count()).collect();
+    let slots: usize = used.chunks(4).map(|four| 4 * four.iter().max().unwrap_or(&0)).sum();
+    used.len() * 4 * size_of::<[f32; 3]>() + slots * (size_of::<f32>() + size_of::<u16>())
 }

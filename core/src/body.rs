@@ -107,8 +107,7 @@ impl Body {
         }
         let volume = enclosed_volume(|v| body[v as usize].as_dvec3(), &refined.quads);
         let measurements = solved.outcome.obtained;
-        let height = MeasureId::from_name("height").map_or(0, MeasureId::index);
-        let mass = Mass::new(volume, measurements[height]);
+        let mass = Mass::new(volume, measurements[MeasureId::HEIGHT.index()]);
         let report = Report::new(
             request,
             &solved.prepared,

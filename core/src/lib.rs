@@ -6,6 +6,7 @@ pub mod condition;
 mod error;
 pub mod export;
 pub mod import;
+mod input;
 pub mod measure;
 pub mod mesh;
 pub mod model;

@@ -36,10 +36,10 @@ fn every_clip_is_a_person_on_a_floor() {
                 .collect();
             let root = clip.pose(0).locals[0].translation.y;
             lows.sort_by(f32::total_cmp);
-            let low = lows[lows.len() / 2];
+            let low = lows[lows.len() / 20];
             println!(
                 "{name} `{}`: {} frames at {:.3} ({:?}), {} joints, {} ({:?}), {} up ({:?}), stature {:.2}, rest {rest:.2}, \
-                 root at {root:.2}, lowest joint {low:.3} {:?}",
+                 root at {root:.2}, lowest joints {low:.3}; {:?}",
                 clip.name(),
                 clip.frame_count(),
                 clip.frames_per_second(),
@@ -53,7 +53,8 @@ fn every_clip_is_a_person_on_a_floor() {
                 report.warnings,
             );
             assert!((1.4..2.1).contains(&report.stature), "{name}: stature {}", report.stature);
-            assert!((-0.1..0.2).contains(&low), "{name}: lowest joint at {low}");
+            // Most stand on a floor at zero; some climb, and some floors lie a little off.
+            assert!((-0.2..0.4).contains(&low), "{name}: lowest joints at {low}");
         }
     }
 }

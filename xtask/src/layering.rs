@@ -19,11 +19,12 @@ const TABLE: &[(&str, &[&str])] = &[
     ("model", &["condition", "measure", "mesh", "rig"]),
     ("body", &["model", "condition", "measure", "mesh", "rig"]),
     ("space", &[]),
+    ("input", &[]),
     ("pose", &["rig"]),
-    ("clip", &["pose", "rig", "space"]),
+    ("clip", &["pose", "rig", "space", "input"]),
     ("skin", &["pose", "rig", "mesh"]),
     ("export", &["body", "model", "condition", "measure", "mesh", "rig", "pose", "clip", "space"]),
-    ("import", &["export", "measure", "mesh", "rig", "pose", "clip", "space"]),
+    ("import", &["export", "measure", "mesh", "rig", "pose", "clip", "space", "input"]),
 ];
 
 /// Rooms without a view of bodies, open to everybody.

@@ -1,12 +1,16 @@
 //! The only file that calls the library: from the command line's words to its types and back.
 
+pub(crate) mod motion;
+pub(crate) mod motion_table;
+
 use std::path::Path;
 
 use anthronet::Error;
 use anthronet::condition::{Fill, Request};
-use anthronet::export::{Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone};
-use anthronet::measure::{Mass, MeasureId, Sex, enclosed_volume};
+use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone, WriteOptions};
+use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
+use anthronet::pose::RestPose;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
 use serde_json::json;
@@ -16,7 +20,6 @@ use crate::generate::{FileChoice, JointNamesChoice};
 use crate::measure::{Measured, NamedValue};
 use crate::render::{Figure, Material, Part};
 use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
-use crate::surface::level0;
 
 /// The generator with its prior and definitions.
 pub(crate) struct Model(anthronet::model::Model);
@@ -109,18 +112,19 @@ impl Person {
         self.0.report().to_json()
     }
 
-    /// Writes the file; its ending chooses the format.
-    pub(crate) fn write(&self, path: &Path, choice: &FileChoice<'_>) -> Result<()> {
-        Ok(anthronet::export::write_scene(&self.scene(choice)?, path)?)
-    }
-
     /// The person as the renderer takes it.
     pub(crate) fn figure(&self, lod: u8, skin_tone: Option<&str>) -> Result<Figure> {
         let joint_names = JointNamesChoice::Native;
         figure_from_scene(&self.scene(&FileChoice { lod, influences: 4, joint_names, skin_tone })?)
     }
 
-    fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
+    /// The joints at rest.
+    pub(crate) fn rest_pose(&self) -> Result<RestPose> {
+        Ok(RestPose::of_joints(self.0.joints())?)
+    }
+
+    /// The person as files take it.
+    pub(crate) fn scene(&self, choice: &FileChoice<'_>) -> Result<Scene> {
         let options = SceneOptions {
             lod: Lod::try_from(choice.lod)?,
             influences: choice.influences,
@@ -154,14 +158,11 @@ pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
     let in_file = |failure: Failure| Failure::failed(format!("{}: {failure}", path.display()));
     let scene = anthronet::import::open(path)?;
     let mesh = scene.meshes.first().ok_or_else(|| in_file(Failure::failed("has no mesh")))?;
-    let points = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
-    let surface = level0(&model.0, points).map_err(in_file)?;
-    let at = |v: u32| surface.get(v as usize).copied().unwrap_or_default();
-    let values = model.0.definitions().read_all(at);
-    let volume = enclosed_volume(at, &model.0.character().subdivision().refined().quads);
-    let stature = MeasureId::from_name("height").map_or(0.0, |id| values[id.index()]);
-    let Mass { volume_m3, mass_kg, bmi } = Mass::new(volume, stature);
-    let named = MeasureId::all().zip(values).map(|(id, value)| NamedValue { name: id.name(), value });
+    let vertices = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
+    let measured = model.0.measure_mesh(vertices).map_err(|error| in_file(error.into()))?;
+    let Mass { volume_m3, mass_kg, bmi } = measured.mass;
+    let named = MeasureId::all().zip(measured.measurements);
+    let named = named.map(|(id, value)| NamedValue { name: id.name(), value });
     Ok(Measured { measures: named.collect(), mass_kg, volume_m3, bmi })
 }
 
@@ -185,6 +186,22 @@ pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
         .collect();
     Figure::new(parts, Vec3::new(r, g, b))
         .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))
+}
+
+/// Writes the scene; the path's ending chooses the format.
+pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<()> {
+    let ending = crate::request::ending(path);
+    if compress && !matches!(ending.as_str(), "glb" | "gltf") {
+        return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
+    }
+    let options =
+        WriteOptions { gltf: GltfOptions { compress, ..GltfOptions::default() }, ..Default::default() };
+    Ok(anthronet::export::write_scene_with(scene, path, &options)?)
+}
+
+/// Writes text to a file, or with `-` to standard output.
+pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<()> {
+    if path == Path::new("-") { crate::progress::print(text) } else { write(path, text.as_bytes()) }
 }
 
 /// Writes a file whole or not at all.
@@ -268,8 +285,7 @@ fn tone(text: Option<&str>) -> Result<SkinTone> {
 
 /// Mean, deviation and correlation of height and waist. `covariance` is (36, 36), row by row.
 fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
-    let index = |name| MeasureId::from_name(name).map_or(0, MeasureId::index);
-    let (h, w) = (index("height"), index("waist_circumference"));
+    let (h, w) = (MeasureId::HEIGHT.index(), MeasureId::WAIST.index());
     let cov = |a: usize, b: usize| covariance.get(a * mean.len() + b).copied().unwrap_or(0.0);
     let (sh, sw) = (cov(h, h).sqrt(), cov(w, w).sqrt());
     let at = |i: usize| mean.get(i).copied().unwrap_or(0.0);

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use anthronet::clip::{self, BUILTIN, Clip, FeetOptions, FingerMode, OntoOptions, ReadOptions};
+use anthronet::clip::feet::FeetOptions;
+use anthronet::clip::{self, BUILTIN, Clip, FingerMode, OntoOptions, ReadOptions};
 use anthronet::export::Scene;
 use anthronet::pose::RestPose;
 use anthronet::rig::humanoid::{native_name, renamed};
@@ -19,7 +20,12 @@ use crate::request::read_text;
 
 /// A character file, whole: skin, joints, materials, motions.
 pub(crate) fn open(path: &Path) -> Result<Scene> {
-    Ok(anthronet::import::open_scene(path)?)
+    Ok(anthronet::import::scene::open_scene(path)?)
+}
+
+/// The joints of a scene under our names, at rest.
+pub(crate) fn rest_pose(scene: &Scene) -> Result<RestPose> {
+    Ok(scene.rest_pose(|name| native_name(name).into_owned())?)
 }
 
 /// Names the joints in another vocabulary.
@@ -30,14 +36,14 @@ pub(crate) fn rename_joints(scene: &mut Scene, names: JointNamesChoice) {
 }
 
 /// Adds the motions that the options ask for to the scene, and writes the report.
-pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<()> {
+pub(crate) fn animate(scene: &mut Scene, rest: RestPose, arguments: &MotionArguments) -> Result<()> {
     if arguments.clips.is_empty() {
         return match arguments.motion_report {
             Some(_) => Err(Failure::usage("--motion-report: expected with --clip")),
             None => Ok(()),
         };
     }
-    let rest = Arc::new(scene.rest_pose(|name| native_name(name).into_owned())?);
+    let rest = Arc::new(rest);
     let mut names: BTreeMap<String, usize> =
         scene.clips.iter().map(|clip| (clip.name().to_owned(), 1)).collect();
     let mut reports = Vec::new();
@@ -58,7 +64,11 @@ pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<
 }
 
 /// The clips of one `--clip`, on the body, with their report.
-fn load(source: &str, rest: &Arc<RestPose>, arguments: &MotionArguments) -> Result<(Vec<Clip>, serde_json::Value)> {
+fn load(
+    source: &str,
+    rest: &Arc<RestPose>,
+    arguments: &MotionArguments,
+) -> Result<(Vec<Clip>, serde_json::Value)> {
     if BUILTIN.contains(&source) {
         let clip = clip::builtin(source, rest)?;
         let clip = match arguments.fps {

@@ -189,7 +189,10 @@ impl Row {
 impl MotionTable {
     /// As text, the worst over the bodies.
     pub(crate) fn to_text(&self) -> String {
-        let mut out = format!("{} clips on {} bodies; the worst over the bodies, in brackets before feet were held\n", self.clips, self.bodies);
+        let mut out = format!(
+            "{} clips on {} bodies; the worst over the bodies, in brackets before feet were held\n",
+            self.clips, self.bodies
+        );
         let _ = writeln!(
             out,
             "  {:24} {:>6} {:>9} {:>14} {:>8} {:>16} {:>16}",

@@ -38,14 +38,15 @@ impl Run {
 
 /// Runs the command with these arguments and environment variables.
 pub(crate) fn anthronet(arguments: &[&str], environment: &[(&str, &str)]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_anthronet"))
-        .args(arguments)
-        .env_remove("ANTHRONET_MODEL")
-        .envs(environment.iter().copied())
-        .output()
-        .expect("the command starts");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_anthronet"));
+    run(command.args(arguments).env_remove("ANTHRONET_MODEL").envs(environment.iter().copied()))
+}
+
+/// Runs a prepared command.
+pub(crate) fn run(command: &mut Command) -> Run {
+    let output = command.output().expect("the command starts");
     Run {
-        arguments: arguments.join(" "),
+        arguments: format!("{command:?}"),
         code: output.status.code(),
         out: String::from_utf8_lossy(&output.stdout).into_owned(),
         err: String::from_utf8_lossy(&output.stderr).into_owned(),

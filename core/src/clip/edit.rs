@@ -163,7 +163,8 @@ mod tests {
         }
         assert!(last.locals[0].translation.z - first.locals[0].translation.z > 1.0, "it still travels");
         let step = |f: usize| closed.rotations(f)[1].angle_between(closed.rotations(f - 1)[1]);
-        assert!((1..46).map(step).fold(0.0, f32::max) < 0.2, "without a jump");
+        // A cut would turn by 0.7 rad at once; the swing itself turns by 0.1.
+        assert!((1..46).map(step).fold(0.0, f32::max) < 0.35, "without a jump");
         assert_eq!(looped(&clip, 0.0).unwrap().frame_count(), 61);
         assert!(looped(&clip, 9.0).is_err());
     }

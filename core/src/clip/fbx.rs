@@ -83,13 +83,14 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
     for stack in &scene.anim_stacks {
         let title = &*stack.element.name;
         let title = if title.is_empty() { name } else { title };
-        let frames = raw::frame_count(stack.time_end - stack.time_begin, rate, scene.nodes.len());
+        let (begin, end) = span(stack);
+        let frames = raw::frame_count(end - begin, rate, scene.nodes.len());
         let frames = frames.map_err(|e| format!("animation `{title}`: {e}"))?;
         frames_so_far += frames;
         raw::frame_count(frames_so_far as f64, 1.0, scene.nodes.len())?;
         let mut recorder = Recorder::new(joints.len());
         for frame in 0..frames {
-            let time = stack.time_begin + frame as f64 / rate;
+            let time = begin + frame as f64 / rate;
             let locals: Vec<ufbx::Transform> =
                 scene.nodes.iter().map(|node| ufbx::evaluate_transform(&stack.anim, node, time)).collect();
             let world = nodes.world(&scene, &locals);
@@ -217,6 +218,19 @@ impl Nodes {
         }
         joints.iter().map(|&joint| world[joint]).collect()
     }
+}
+
+/// The time that the file says an animation lasts; where it does not, from the first to the last key.
+fn span(stack: &ufbx::AnimStack) -> (f64, f64) {
+    if stack.time_begin < stack.time_end {
+        return (stack.time_begin, stack.time_end);
+    }
+    let values = stack.layers.iter().flat_map(|layer| layer.anim_values.iter());
+    let curves = values.flat_map(|value| value.curves.iter().flatten()).filter(|c| !c.keyframes.is_empty());
+    let (begin, end) = curves.fold((f64::INFINITY, f64::NEG_INFINITY), |(begin, end), curve| {
+        (begin.min(curve.min_time), end.max(curve.max_time))
+    });
+    if begin < end { (begin, end) } else { (stack.time_begin, stack.time_begin) }
 }
 
 /// The nodes that are bones, parents first; where there are none, those that are animated.

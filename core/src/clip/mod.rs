@@ -22,6 +22,8 @@ mod settle;
 mod test_bodies;
 #[cfg(test)]
 mod test_clips;
+#[cfg(test)]
+mod test_person;
 pub(crate) mod usd;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};

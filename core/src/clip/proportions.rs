@@ -11,6 +11,8 @@ use crate::space::Axis;
 const SPAN_PER_STATURE: f64 = 1.4;
 /// How much longer one extent has to be than another to tell how a body stands.
 const CLEAR: f32 = 1.5;
+/// The fewest joints of a person.
+const FIGURE: usize = 10;
 /// Most frames that are looked at.
 const SAMPLES: usize = 24;
 
@@ -67,6 +69,11 @@ impl Proportions {
         }
         let largest = (0..sizes.len()).rev().max_by_key(|&joint| sizes[joint]);
         Self { lengths, member: top.iter().map(|&t| Some(t) == largest).collect() }
+    }
+
+    /// Whether there are joints enough for limbs: a door is not to be scaled to a person.
+    pub(super) fn is_figure(&self) -> bool {
+        self.member.iter().filter(|m| **m).count() >= FIGURE
     }
 
     /// How tall the body is in the file's unit, from the longest way along its bones, which no pose changes; 0 where

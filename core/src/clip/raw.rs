@@ -100,6 +100,10 @@ impl Rigid {
         Self { rotation, position: world.translation }
     }
 
+    pub(super) fn rotation(&self) -> DQuat {
+        self.rotation
+    }
+
     /// Each joint's transform to its parent, for joints that stand after their parents.
     pub(super) fn locals(world: &[Self], parents: &[Option<u32>]) -> Vec<Local> {
         let local = |(joint, parent): (&Self, &Option<u32>)| {

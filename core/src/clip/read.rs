@@ -1,16 +1,14 @@
 //! Reading motion files: the format by the ending, confirmed by the first bytes.
 
-use std::{ffi::OsStr, fs, path::Path};
+use std::{ffi::OsStr, path::Path};
 
 use serde::Serialize;
 
 use super::raw::{Outcome, Raw};
 use super::{Clip, bvh, fbx, gltf, npz, settle, usd};
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
+use crate::{Error, Result, input};
 
-/// Largest file that is read: hours of motion, far below the memory of a small machine.
-const MAX_FILE_BYTES: u64 = 1 << 30;
 const ENDINGS: &str = ".bvh .npz .fbx .glb .gltf .usda .usdc .usdz";
 
 /// What is said of a file beforehand; it wins over what the file says.
@@ -80,7 +78,7 @@ pub struct Motion {
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
     let path = path.as_ref();
     ending(path)?;
-    from_bytes(&read_file(path)?, path, options)
+    from_bytes(&input::read(path)?, path, options)
 }
 
 /// As [`read`], from the file's bytes; `path` tells the format, and where buffers of a `.gltf` are looked for.
@@ -144,23 +142,6 @@ fn starts(bytes: &[u8], magics: &[&[u8]], expected: &str) -> Outcome<()> {
     }
     let came = bytes[..bytes.len().min(8)].escape_ascii();
     Err(format!("expected {expected}, which this is not: it starts with `{came}`"))
-}
-
-/// The whole of a regular file of a sensible size.
-pub(super) fn read_file(path: &Path) -> Result<Vec<u8>> {
-    let fault = |source| Error::Io { path: path.into(), action: "read", source };
-    let metadata = fs::metadata(path).map_err(fault)?;
-    if !metadata.is_file() {
-        return Err(Error::file(path, "is not a regular file"));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        let bytes = metadata.len();
-        return Err(Error::file(
-            path,
-            format!("expected a file of at most {MAX_FILE_BYTES} bytes, got {bytes}"),
-        ));
-    }
-    fs::read(path).map_err(fault)
 }
 
 #[cfg(test)]

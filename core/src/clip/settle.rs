@@ -34,7 +34,7 @@ pub(super) fn settle(mut raw: Raw, options: &ReadOptions) -> Result<Motion> {
     raw.rest = rest.pose().locals.clone();
     let body = Proportions::of(&raw);
     let height = body.stature(&raw);
-    let (unit, unit_found) = unit(&mut raw, height, options);
+    let (unit, unit_found) = unit(&mut raw, &body, height, options);
     let (up, up_found) = up(&mut raw, &body, options);
     let mut warnings = std::mem::take(&mut raw.warnings);
     let stature = height * unit.metres();
@@ -64,7 +64,7 @@ pub(super) fn settle(mut raw: Raw, options: &ReadOptions) -> Result<Motion> {
     Ok(Motion { clips, report })
 }
 
-fn unit(raw: &mut Raw, height: f64, options: &ReadOptions) -> (Unit, Found) {
+fn unit(raw: &mut Raw, body: &Proportions, height: f64, options: &ReadOptions) -> (Unit, Found) {
     if let Some(unit) = options.unit {
         return (unit, Found::Asked);
     }
@@ -73,9 +73,15 @@ fn unit(raw: &mut Raw, height: f64, options: &ReadOptions) -> (Unit, Found) {
         return (unit, if raw.unit.is_some() { Found::File } else { Found::Assumed });
     }
     let off = |unit: &Unit| libm::log(height * unit.metres() / TYPICAL).abs();
-    let likely = Unit::NAMED.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
+    // Beside units, mistakes in the file's own: scaled by a hundred once too often, mostly.
+    let powers =
+        raw.unit.into_iter().flat_map(|said| [1e-4, 1e-3, 1e-2, 1e2, 1e3, 1e4].map(|p| said.metres() * p));
+    let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::of_metres));
+    let likely = candidates.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
     match raw.unit {
-        Some(said) if PLAUSIBLE.contains(&(height * said.metres())) => (said, Found::File),
+        Some(said) if !body.is_figure() || PLAUSIBLE.contains(&(height * said.metres())) => {
+            (said, Found::File)
+        }
         Some(said) => {
             let (was, is) = (height * said.metres(), height * likely.metres());
             raw.warnings.push(format!(
@@ -92,7 +98,7 @@ fn up(raw: &mut Raw, body: &Proportions, options: &ReadOptions) -> (Axis, Found)
         return (up, Found::Asked);
     }
     match (raw.up, body.upright(raw)) {
-        (Some(said), Some(seen)) if said != seen => {
+        (Some(said), Some(seen)) if said != seen && body.is_figure() => {
             raw.warnings.push(format!(
                 "the file says that {said} points up, but the body stands along {seen}: taken as {seen} up"
             ));
@@ -138,3 +144,6 @@ fn convert(raw: &mut Raw, unit: Unit, up: Axis) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@
 //! [`solve()`] on the given measures → [`Report`].
 
 mod chi_squared;
-mod cholesky;
+pub(crate) mod cholesky;
 mod feasibility;
 pub mod fourier;
 mod prepare;

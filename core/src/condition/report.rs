@@ -115,7 +115,7 @@ impl Report {
                 }
             })
             .collect();
-        let height = MeasureId::from_name("height").map_or(f64::NAN, |id| outcome.obtained[id.index()]);
+        let height = outcome.obtained[MeasureId::HEIGHT.index()];
         let mut warnings = prepared.warnings.clone();
         if !outcome.converged {
             warnings.push(format!(

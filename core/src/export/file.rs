@@ -192,9 +192,9 @@ mod tests {
         for (name, expected) in [
             ("missing/a.glb", "cannot create: entity not found"),
             ("dir.glb", "is a folder"),
-            ("a.stl", "expected one of .glb .gltf .vrm .usda"),
-            ("a", "expected one of .glb .gltf .vrm .usda"),
-            ("glb", "expected one of .glb .gltf .vrm .usda"),
+            ("a.stl", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("a", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+            ("glb", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
         ] {
             let message = write_scene(&scene, folder.path().join(name)).unwrap_err().to_string();
             assert!(message.contains(name) && message.contains(expected), "{message}");
@@ -255,19 +255,29 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_read_only_folder_is_named() {
-        use std::os::unix::fs::PermissionsExt;
+    fn a_folder_that_takes_no_files_is_named() {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt};
         let folder = tempfile::tempdir().unwrap();
-        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
-        let path = folder.path().join("a.glb");
-        let result = write_atomic(&path, b"bytes");
-        let left = names(folder.path());
-        fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o755)).unwrap();
-        // Root may write anywhere.
-        if let Err(error) = result {
-            let message = error.to_string();
-            assert!(message.contains("a.glb: cannot create"), "{message}");
-            assert!(left.is_empty());
+        fs::write(folder.path().join("file"), b"a file, not a folder").unwrap();
+        let read_only = folder.path().join("read-only");
+        fs::create_dir(&read_only).unwrap();
+        fs::set_permissions(&read_only, PermissionsExt::from_mode(0o555)).unwrap();
+
+        let mut refused = vec![folder.path().join("file"), folder.path().join("missing")];
+        if cfg!(target_os = "linux") {
+            // A file system that takes no files, whoever asks.
+            refused.push("/proc".into());
         }
+        // Root may write in any other folder; the command's tests drop root's rights for this one.
+        if fs::metadata(&read_only).unwrap().uid() != 0 {
+            refused.push(read_only.clone());
+        }
+        for place in refused {
+            let path = place.join("a.glb");
+            let message = write_atomic(&path, b"bytes").unwrap_err().to_string();
+            assert!(message.starts_with(&format!("{}: cannot create", path.display())), "{message}");
+        }
+        assert_eq!(names(folder.path()), ["file", "read-only"]);
+        assert!(names(&read_only).is_empty());
     }
 }

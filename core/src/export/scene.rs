@@ -9,6 +9,8 @@ use std::collections::BTreeSet;
 use glam::{Affine3A, Vec3};
 
 use crate::clip::Clip;
+use crate::pose::RestPose;
+use crate::rig::Joint;
 use crate::{Error, Result, export::SkinTone};
 
 /// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
@@ -17,6 +19,8 @@ const WEIGHT_SUM_TOLERANCE: f32 = 1e-5;
 const NORMAL_LENGTH_TOLERANCE: f32 = 1e-3;
 /// How far a joint's rotation may be from orthonormal.
 const ROTATION_TOLERANCE: f32 = 1e-4;
+/// How far off its parent's axis, in distances along it, a joint stands that the parent's bone ends at.
+const AXIS_TOLERANCE: f32 = 1e-3;
 /// How far a number of a clip's rest pose may be from the bind pose: the rounding of a chain of joints.
 const REST_TOLERANCE: f32 = 1e-4;
 
@@ -227,6 +231,35 @@ impl Scene {
             ));
         }
         unique("joint", self.joints.iter().map(|j| j.name.as_str()))
+    }
+
+    /// The joints at rest, under the names that `name` makes of theirs: what clips for this scene rest in.
+    ///
+    /// # Errors
+    /// As [`RestPose::new`].
+    pub fn rest_pose(&self, name: impl Fn(&str) -> String) -> Result<RestPose> {
+        let joints: Vec<Joint> = self
+            .joints
+            .iter()
+            .map(|joint| Joint {
+                name: name(&joint.name),
+                parent: joint.parent,
+                model_from_joint: joint.model_from_joint,
+                length: 0.0,
+            })
+            .collect();
+        let rest = RestPose::of_joints(&joints)?;
+        // A scene does not say where a bone ends: at the farthest of the joints that stand on its axis, if there are any.
+        let mut ends = vec![None; rest.len()];
+        for (parent, local) in rest.parents().iter().zip(&rest.pose().locals) {
+            let at = local.translation;
+            let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
+            if let (Some(parent), true) = (*parent, on_axis) {
+                let end: &mut Option<Vec3> = &mut ends[parent as usize];
+                *end = Some(Vec3::Y * end.map_or(at.y, |e| e.y.max(at.y)));
+            }
+        }
+        RestPose::new(rest.names().to_vec(), rest.parents().to_vec(), rest.pose().locals.clone(), ends)
     }
 
     fn validate_clips(&self) -> Result<()> {

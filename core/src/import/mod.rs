@@ -19,8 +19,6 @@ use crate::{Error, Result};
 const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Most vertices, and most triangles, of all meshes of one file together.
 const MAX_ELEMENTS: usize = 4 << 20;
-/// The endings that [`open`] knows.
-const ENDINGS: &str = ".glb .gltf .vrm .usda .usdc .usdz .obj";
 /// Most meshes of one file.
 const MAX_MESHES: usize = 1 << 16;
 
@@ -55,8 +53,8 @@ pub struct ImportedMesh {
     pub skinned: bool,
 }
 
-/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usda`, `.usdc`,
-/// `.usdz` or `.obj`.
+/// Reads a file in the format of its ending: `.glb`, `.gltf` with the buffers beside it, `.vrm`,
+/// `.usda`, `.usdc`, `.usdz` or `.obj`.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
@@ -67,7 +65,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<ImportedScene> {
         Some("glb" | "gltf" | "vrm") => gltf::from_bytes(&read(path)?, path),
         Some("obj") => obj::from_bytes(&read(path)?, path),
         Some("usda" | "usdc" | "usdz") => usd::from_bytes(&read(path)?, path),
-        _ => Err(Error::file(path, format!("unknown ending, expected one of {ENDINGS}"))),
+        _ => Err(Error::file(path, "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj")),
     }
 }
 

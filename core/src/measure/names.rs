@@ -55,6 +55,11 @@ const NAMES: [&str; MEASURE_COUNT] = [
 pub struct MeasureId(u8);
 
 impl MeasureId {
+    /// The stature, `height`.
+    pub const HEIGHT: Self = Self(3);
+    /// `waist_circumference`.
+    pub const WAIST: Self = Self(0);
+
     /// All measures, in order.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
         (0..MEASURE_COUNT as u8).map(Self)
@@ -176,5 +181,7 @@ mod tests {
             assert_eq!(id.mirrored().mirrored(), id);
         }
         assert_eq!(MeasureId::from_index(MEASURE_COUNT), None);
+        assert_eq!(MeasureId::HEIGHT.name(), "height");
+        assert_eq!(MeasureId::WAIST.name(), "waist_circumference");
     }
 }

@@ -158,9 +158,14 @@ impl Subdivision {
             .collect())
     }
 
+    /// Number of the cage's vertices.
+    pub fn cage_len(&self) -> usize {
+        // One vertex point per cage vertex, one edge point per edge, one face point per face, which gave four quads.
+        self.refined.vertex_count - self.edges.len() - self.refined.quads.len() / 4
+    }
+
     fn check(&self, points: usize) -> Result<()> {
-        // The first vertex points are one per cage vertex.
-        let cage = self.refined.vertex_count - self.edges.len() - self.refined.quads.len() / 4;
+        let cage = self.cage_len();
         if points == cage {
             Ok(())
         } else {

@@ -1,8 +1,10 @@
 //! Measures as a function of coefficients, with derivatives: what the exact solve turns.
 //!
 //! Only the places that some measure reads are kept: each is a row of the shape space pushed through the
-//! subdivision's stencil. A slice reads hundreds of vertices but is cut at few, so of the others only the height
-//! over the plane is computed.
+//! subdivision's stencil. Reading those rows is what a solve spends its time on, so that as few as possible are read,
+//! and those of a measure's derivative while they are still in the cache: along an axis that a measure does not see no
+//! coordinate is computed, and a slice, which has many vertices but cuts few, looks at most of them only far enough to
+//! know on which side of the plane they are.
 
 use glam::DVec3;
 
@@ -15,23 +17,40 @@ use crate::mesh::Subdivision;
 #[derive(Clone, Debug)]
 pub struct MeasuredSpace {
     components: usize,
-    // Definitions over the places instead of vertices.
-    definitions: Vec<Definition>,
+    measures: Vec<Measure>,
     mean: Vec<DVec3>,
     // Three rows of `components` per place.
     rows: Vec<f32>,
-    // Per definition, whether its places are computed only where it is cut.
-    lazy: Vec<Option<Lazy>>,
-    // Places that are always computed.
-    eager: Vec<u32>,
 }
 
-/// A slice's places, of which the coordinate along its normal comes first.
+/// A measure over places instead of vertices.
 #[derive(Clone, Debug)]
-struct Lazy {
-    axis: usize,
-    places: Vec<u32>,
+struct Measure {
+    definition: Definition,
+    // Place and axis of the coordinates that are always computed.
+    coordinates: Vec<(u32, usize)>,
+    slice: Option<Slice>,
 }
+
+/// The vertices of a slice whose plane is square to an axis.
+#[derive(Clone, Debug)]
+struct Slice {
+    axis: usize,
+    vertices: Vec<SliceVertex>,
+}
+
+#[derive(Clone, Debug)]
+struct SliceVertex {
+    place: u32,
+    // Length of the row along the axis from each of `STAGES` on.
+    rest: [f64; STAGES.len()],
+}
+
+/// Numbers of components after which a vertex of a slice may be far enough from the plane to be left there.
+const STAGES: [usize; 2] = [64, 128];
+
+/// Added to the distance that the other components can move such a vertex, metres: far above rounding.
+const MARGIN: f64 = 1e-9;
 
 impl MeasuredSpace {
     /// Collects the places that the definitions read.
@@ -47,35 +66,18 @@ impl MeasuredSpace {
             places.push(over_cage.into_iter().collect());
             (places.len() - 1) as u32
         };
-        let mut local = Vec::new();
-        let mut lazy = Vec::new();
-        let mut eager = Vec::new();
-        for (_, definition) in definitions.iter() {
-            let mut own = definition.clone();
-            own.points = definition
-                .points
-                .iter()
-                .map(|p| {
-                    let place = add(&p.0);
-                    eager.push(place);
-                    Point(vec![(place, 1.0)])
-                })
-                .collect();
-            let mut of_vertex = std::collections::BTreeMap::new();
-            for end in own.edges.iter_mut().flatten() {
-                *end = *of_vertex.entry(*end).or_insert_with_key(|v| add(&[(*v, 1.0)]));
-            }
-            let of_slice: Vec<u32> = of_vertex.into_values().collect();
-            let along = [DVec3::X, DVec3::Y, DVec3::Z].iter().position(|axis| own.normal == *axis);
-            match along.filter(|_| own.kind == Kind::Slice) {
-                Some(axis) => lazy.push(Some(Lazy { axis, places: of_slice })),
-                None => {
-                    eager.extend(of_slice);
-                    lazy.push(None);
+        let mut measures: Vec<Measure> = definitions
+            .iter()
+            .map(|(_, definition)| {
+                let mut own = definition.clone();
+                own.points = definition.points.iter().map(|p| Point(vec![(add(&p.0), 1.0)])).collect();
+                let mut of_vertex = std::collections::BTreeMap::new();
+                for end in own.edges.iter_mut().flatten() {
+                    *end = *of_vertex.entry(*end).or_insert_with_key(|v| add(&[(*v, 1.0)]));
                 }
-            }
-            local.push(own);
-        }
+                Measure::new(own, of_vertex.into_values().collect())
+            })
+            .collect();
 
         let k = space.components();
         let mut rows = vec![0.0_f32; places.len() * 3 * k];
@@ -93,11 +95,17 @@ impl MeasuredSpace {
                 }
             }
         }
+        for slice in measures.iter_mut().filter_map(|m| m.slice.as_mut()) {
+            for vertex in &mut slice.vertices {
+                let row = &rows[(3 * vertex.place as usize + slice.axis) * k..][..k];
+                vertex.rest = STAGES.map(|stage| norm(row.iter().skip(stage).map(|x| f64::from(*x))));
+            }
+        }
         let mean = places
             .iter()
             .map(|terms| terms.iter().map(|&(p, w)| space.mean_point(p as usize).as_dvec3() * w).sum())
             .collect();
-        Self { components: k, definitions: local, mean, rows, lazy, eager }
+        Self { components: k, measures, mean, rows }
     }
 
     fn row(&self, place: u32, axis: usize) -> &[f32] {
@@ -108,36 +116,68 @@ impl MeasuredSpace {
         self.mean[place as usize][axis] + dot(self.row(place, axis), c)
     }
 
-    /// Where every place is that the measures of this body read.
-    fn places(&self, c: &[f64]) -> Vec<DVec3> {
-        let mut at = vec![DVec3::ZERO; self.mean.len()];
-        for &place in &self.eager {
+    /// Computes where the places are that a measure of this body reads; coordinates that it does not see stay as they
+    /// are.
+    fn place(&self, measure: &Measure, c: &[f64], at: &mut [DVec3]) {
+        for &(place, axis) in &measure.coordinates {
+            at[place as usize][axis] = self.coordinate(place, axis, c);
+        }
+        let Some(Slice { axis, vertices }) = &measure.slice else { return };
+        let axis = *axis;
+        let points = &measure.definition.points;
+        let share = 1.0 / points.len() as f64;
+        let level: f64 = points.iter().map(|p| p.place(|v| at[v as usize])[axis] * share).sum();
+        let rest = STAGES.map(|stage| norm(c.iter().skip(stage).copied()));
+        for SliceVertex { place, rest: of_row } in vertices {
+            let row = self.row(*place, axis);
+            // What the other components add is at most the product of the lengths (Cauchy-Schwarz).
+            let near = STAGES.iter().zip(of_row).zip(&rest).find_map(|((&stage, a), b)| {
+                let height = self.mean[*place as usize][axis] + dot(row.get(..stage)?, c.get(..stage)?);
+                ((height - level).abs() > a * b + MARGIN).then_some(height)
+            });
+            at[*place as usize][axis] = near.unwrap_or_else(|| self.coordinate(*place, axis, c));
+        }
+        let mut cut: Vec<u32> = measure
+            .definition
+            .edges
+            .iter()
+            .filter(|e| (at[e[0] as usize][axis] < level) != (at[e[1] as usize][axis] < level))
+            .flatten()
+            .copied()
+            .collect();
+        cut.sort_unstable();
+        cut.dedup();
+        for place in cut {
             at[place as usize] = DVec3::from_array([0, 1, 2].map(|axis| self.coordinate(place, axis, c)));
         }
-        for (definition, lazy) in self.definitions.iter().zip(&self.lazy) {
-            let Some(Lazy { axis, places }) = lazy else { continue };
-            for &place in places {
-                at[place as usize][*axis] = self.coordinate(place, *axis, c);
+    }
+}
+
+impl Measure {
+    /// `vertices` are the places of the ends of a slice's edges.
+    fn new(definition: Definition, vertices: Vec<u32>) -> Self {
+        // The axis that the direction lies along, if any: the others are then not seen, or it alone is.
+        let along = |v: DVec3| [DVec3::X, DVec3::Y, DVec3::Z].iter().position(|axis| v.abs() == *axis);
+        let normal = along(definition.normal);
+        let seen = |axis: &usize| match definition.kind {
+            Kind::Tape => normal != Some(*axis),
+            Kind::Slice => normal.is_none_or(|normal| normal == *axis),
+            Kind::Length => definition.axis.and_then(along).is_none_or(|along| along == *axis),
+        };
+        let points = definition.points.iter().flat_map(|p| p.0.iter().map(|term| term.0));
+        let mut coordinates: Vec<(u32, usize)> =
+            points.flat_map(|place| (0..3).filter(seen).map(move |axis| (place, axis))).collect();
+        let slice = match normal.filter(|_| definition.kind == Kind::Slice) {
+            Some(axis) => {
+                let vertex = |place| SliceVertex { place, rest: [0.0; STAGES.len()] };
+                Some(Slice { axis, vertices: vertices.into_iter().map(vertex).collect() })
             }
-            let share = 1.0 / definition.points.len() as f64;
-            let level: f64 =
-                definition.points.iter().map(|p| p.place(|v| at[v as usize])[*axis] * share).sum();
-            let mut cut: Vec<u32> = definition
-                .edges
-                .iter()
-                .filter(|e| (at[e[0] as usize][*axis] < level) != (at[e[1] as usize][*axis] < level))
-                .flatten()
-                .copied()
-                .collect();
-            cut.sort_unstable();
-            cut.dedup();
-            for place in cut {
-                for other in (0..3).filter(|other| other != axis) {
-                    at[place as usize][other] = self.coordinate(place, other, c);
-                }
+            None => {
+                coordinates.extend(vertices.iter().flat_map(|place| (0..3).map(move |axis| (*place, axis))));
+                None
             }
-        }
-        at
+        };
+        Self { definition, coordinates, slice }
     }
 }
 
@@ -146,22 +186,20 @@ impl MeasuredShape for MeasuredSpace {
         self.components
     }
 
-    fn measure(&self, c: &[f64], jacobian: Option<&mut [f64]>) -> Measurements {
-        let at = self.places(c);
+    fn measure(&self, c: &[f64], mut jacobian: Option<&mut [f64]>) -> Measurements {
+        let mut at = vec![DVec3::ZERO; self.mean.len()];
         let mut out = [0.0; MEASURE_COUNT];
-        let Some(jacobian) = jacobian else {
-            for (value, definition) in out.iter_mut().zip(&self.definitions) {
-                *value = definition.read(|v| at[v as usize]);
-            }
-            return out;
-        };
-        jacobian.fill(0.0);
         let mut gradient = Gradient::new();
-        for ((value, definition), row) in
-            out.iter_mut().zip(&self.definitions).zip(jacobian.chunks_exact_mut(self.components))
-        {
+        for (i, (value, measure)) in out.iter_mut().zip(&self.measures).enumerate() {
+            self.place(measure, c, &mut at);
+            let Some(jacobian) = jacobian.as_deref_mut() else {
+                *value = measure.definition.read(|v| at[v as usize]);
+                continue;
+            };
             gradient.clear();
-            *value = definition.read_with_gradient(|v| at[v as usize], &mut gradient);
+            *value = measure.definition.read_with_gradient(|v| at[v as usize], &mut gradient);
+            let row = &mut jacobian[i * self.components..][..self.components];
+            row.fill(0.0);
             for &(place, g) in &gradient {
                 let [x, y, z] = [0, 1, 2].map(|axis| self.row(place, axis));
                 for (((sum, &x), &y), &z) in row.iter_mut().zip(x).zip(y).zip(z) {
@@ -171,6 +209,10 @@ impl MeasuredShape for MeasuredSpace {
         }
         out
     }
+}
+
+fn norm(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Sum of products in eight lanes: fast without fused operations, and in one order on every machine.

@@ -4,6 +4,7 @@ mod character;
 pub mod config;
 mod file;
 mod generator;
+mod measured_mesh;
 mod measured_space;
 pub mod network;
 #[cfg(test)]
@@ -13,5 +14,6 @@ mod shape_space;
 pub use character::{Accessory, Character, ReducedMesh};
 pub use file::{FORMAT_VERSION, ModelParts, Provenance, topology_hash};
 pub use generator::{MODEL_VARIABLE, Model, Solved};
+pub use measured_mesh::MeasuredMesh;
 pub use measured_space::MeasuredSpace;
 pub use shape_space::ShapeSpace;

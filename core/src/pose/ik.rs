@@ -114,8 +114,8 @@ impl Limb {
         let natural = across(front).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
         let offset = across(first);
         let right_side = offset - natural * offset.dot(natural).min(0.0);
-        // Bent by less than about 5° it is as good as straight.
-        (right_side + natural * (0.02 * first.length())).try_normalize().unwrap_or(natural)
+        // Bent by less than about 5° it is nearly straight.
+        (right_side + natural * (0.04 * first.length())).try_normalize().unwrap_or(natural)
     }
 }
 

@@ -215,6 +215,15 @@ pub fn renamed(native: &str, names: JointNames) -> Cow<'_, str> {
     }
 }
 
+/// The joint of the rig that any vocabulary calls this; a name of none stays as it is.
+pub fn native_name(name: &str) -> Cow<'_, str> {
+    if TABLE.names.contains_key(name) {
+        return Cow::Borrowed(name);
+    }
+    let known = TABLE.names.iter().find(|(_, names)| names.iter().any(|other| other == name));
+    known.map_or(Cow::Borrowed(name), |(native, _)| Cow::Borrowed(native.as_str()))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;

@@ -23,7 +23,7 @@ pub struct StridedMut<'a> {
 /// Where positions and normals go.
 #[derive(Debug)]
 pub enum SurfaceMut<'a> {
-    /// Two buffers; without normals none are computed.
+    /// Two buffers, or positions alone.
     Separate {
         /// Metres.
         positions: StridedMut<'a>,

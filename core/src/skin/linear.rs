@@ -36,6 +36,8 @@ pub(super) fn deform(palette: &[Rows], block: &Block<'_>) -> (Lanes, Lanes) {
         positions[row] = dot([x, y, z], block.positions) + translation;
         normals[row] = dot([x, y, z], block.normals);
     }
-    let length = dot(normals, normals).max(Vec4::splat(f32::MIN_POSITIVE)).sqrt();
+    let squared = dot(normals, normals).max(Vec4::splat(f32::MIN_POSITIVE));
+    // `Vec4::sqrt` takes the roots one by one; these become one instruction. IEEE 754 leaves no choice of result.
+    let length = Vec4::from_array(squared.to_array().map(f32::sqrt));
     (positions, scaled(normals, length.recip()))
 }

@@ -3,6 +3,7 @@
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
 //! `skipped NAME: why`; all its other lines are for the reader.
 
+mod skin;
 mod tally;
 
 use crate::environment::{self, Environment};
@@ -27,6 +28,7 @@ pub(crate) fn run() -> Outcome {
     same_bytes(&anthronet, &folder, &mut tally)?;
     let files = files(&anthronet, &folder, &mut tally);
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
+    skin::run(&environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
@@ -105,6 +107,27 @@ fn files(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Vec<PathBuf> {
     files
 }
 
+/// A script of `tests/` in Python.
+fn python_script(program: &Path, script: &str) -> Command {
+    let mut command = Command::new(program);
+    command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
+    command
+}
+
+/// A script of `tests/` in Node, or why there is none.
+fn node_script(environment: &Environment, script: &str) -> Outcome<Result<Command, String>> {
+    let (home, program) = match &environment.node {
+        Ok(found) => found,
+        Err(reason) => return Ok(Err(reason.clone())),
+    };
+    // Node looks for packages from the script's own folder upwards.
+    let copy = home.join(script);
+    tools::write(&copy, &tools::read(&tools::root().join("tests").join(script))?)?;
+    let mut command = Command::new(program);
+    command.arg(copy);
+    Ok(Ok(command))
+}
+
 /// The Khronos validator, numpy and scipy, three.js, Blender.
 fn in_other_programs(
     anthronet: &Path,
@@ -113,26 +136,7 @@ fn in_other_programs(
     files: &[PathBuf],
     tally: &mut Tally,
 ) -> Outcome {
-    let tests = tools::root().join("tests");
-    let python = |program: &Path, script: &str| {
-        let mut command = Command::new(program);
-        command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tests.join(script));
-        command
-    };
-    let node = |script: &str| -> Outcome<Result<Command, String>> {
-        let (home, program) = match &environment.node {
-            Ok(found) => found,
-            Err(reason) => return Ok(Err(reason.clone())),
-        };
-        // Node looks for packages from the script's own folder upwards.
-        let copy = home.join(script);
-        tools::write(&copy, &tools::read(&tests.join(script))?)?;
-        let mut command = Command::new(program);
-        command.arg(copy);
-        Ok(Ok(command))
-    };
-
-    match node("validate.mjs")? {
+    match node_script(environment, "validate.mjs")? {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),
     }
@@ -143,7 +147,10 @@ fn in_other_programs(
         }
         return Ok(());
     };
-    tally.script("measures by numpy and scipy", python(program, "measure_glb.py").arg(anthronet).arg(folder));
+    tally.script(
+        "measures by numpy and scipy",
+        python_script(program, "measure_glb.py").arg(anthronet).arg(folder),
+    );
 
     // What the two programs below have to agree with, once per file.
     for (stem, arguments) in [
@@ -157,11 +164,11 @@ fn in_other_programs(
         }
         tally.script(
             &format!("reference skinning of {stem}.glb"),
-            python(program, "pose_reference.py").arg(&file),
+            python_script(program, "pose_reference.py").arg(&file),
         );
         // three.js reads no more than four influences.
         if stem == "posed_4" {
-            match node("threejs.mjs")? {
+            match node_script(environment, "threejs.mjs")? {
                 Ok(mut command) => tally.script("three.js", command.arg(&file)),
                 Err(reason) => tally.skip("three.js", &reason),
             }
@@ -170,7 +177,7 @@ fn in_other_programs(
         match &environment.blender {
             Ok(()) => {
                 let picture = (stem == "posed_4").then(|| folder.join("blender.png"));
-                tally.script(&name, python(program, "blender_import.py").arg(&file).args(picture));
+                tally.script(&name, python_script(program, "blender_import.py").arg(&file).args(picture));
             }
             Err(reason) => tally.skip(&name, reason),
         }

@@ -62,6 +62,8 @@ pub(super) struct Stance {
     pub(super) root: Vec3,
     /// Pelvis from rest, metres.
     pub(super) pelvis: Vec3,
+    /// How far thighs are turned so that knees point outwards.
+    pub(super) knees_out: f32,
     /// Pelvis about X (forward), Y (to the left), Z (to the right) in model space.
     pub(super) pelvis_turn: Vec3,
     /// The same for the spine, shared by its joints.
@@ -203,6 +205,10 @@ impl Figure {
         for (f, leg) in self.legs.iter().enumerate() {
             let mut target = self.foot_goal(f, &stance.feet[f]);
             target.translation += stance.root;
+            // Bent on its own hinge, so that it is the knee that says where the knee goes.
+            let outwards = -SIDES[f].1 * stance.knees_out.to_radians();
+            pose.locals[leg.limb.upper].rotation *= Quat::from_rotation_y(outwards);
+            pose.locals[leg.limb.lower].rotation *= Quat::from_rotation_x(-0.5);
             leg.limb.reach(&mut pose, leg.above(&model), &Reach { target, softness: 0.0 });
             let toes = Quat::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
             pose.locals[leg.ball].rotation *= toes;

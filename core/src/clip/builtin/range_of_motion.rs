@@ -61,21 +61,26 @@ const UPPER_BODY: &[Exercise] = &[
     exercise(FINGERS, &[[0., 0., -75.], [0., 0., 10.]]),
 ];
 
-/// Of one leg: hip X, hip Y (twist), hip Z, knee flexion, ankle, toes. The foot first goes straight up, and comes down
-/// the same way: knees bend twice as far as hips.
+/// Of one leg: hip X, hip Y (twist), hip Z, knee flexion, ankle, toes. Before and after comes [`lifted`].
 const LEG: &[[f32; 6]] = &[
-    [0., 0., 0., 0., 0., 0.],
-    [50., 0., 0., 100., 0., 0.],
     [100., 0., 0., 130., 0., 0.],
     [70., 0., 55., 90., 0., 0.],
     [80., 35., 0., 90., 30., 0.],
     [80., -35., 0., 90., -40., 0.],
     [75., 0., 0., 5., 20., 0.],
     [60., 0., 0., 90., -40., 50.],
-    [-20., 0., 0., 100., 0., -25.],
-    [50., 0., 0., 100., 0., 0.],
-    [0., 0., 0., 0., 0., 0.],
+    [-15., 0., 0., 100., 0., -25.],
 ];
+/// Knee flexion, degrees, at which the foot is high enough to move freely.
+const LIFTED: f32 = 75.0;
+
+/// The leg with its foot straight above its place, level, for a knee flexion: feet do not slide as they leave the floor.
+fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
+    let [thigh, shin] = figure.leg_bones;
+    let flexion = knee.to_radians();
+    let hip = libm::atan2f(shin * libm::sinf(flexion), thigh + shin * libm::cosf(flexion)).to_degrees();
+    [hip, 0.0, 0.0, knee, knee - hip, 0.0]
+}
 
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let frames = (STEP * RATE as f32) as usize;
@@ -100,11 +105,14 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
         }
     }
     for side in ["l", "r"] {
-        for pair in LEG.windows(2) {
+        let up = lifted(figure, LIFTED);
+        let stops = [&[lifted(figure, 0.0), up][..], LEG, &[up, lifted(figure, 0.0)]].concat();
+        for (i, pair) in stops.windows(2).enumerate() {
             poses.extend((1..=frames).map(|frame| {
                 let mut pose = figure.rest.pose().clone();
-                let at: [f32; 6] =
-                    std::array::from_fn(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * share(frame));
+                let mix = |j: usize| pair[0][j] + (pair[1][j] - pair[0][j]) * share(frame);
+                let on_floor = i == 0 || i + 2 == stops.len();
+                let at = if on_floor { lifted(figure, mix(3)) } else { std::array::from_fn(mix) };
                 let [hip_x, hip_y, hip_z, knee, ankle, toes] = at;
                 figure.turn(&mut pose, &format!("thigh_{side}"), hip_x, hip_y, hip_z);
                 figure.turn(&mut pose, &format!("calf_{side}"), -knee, 0.0, 0.0);

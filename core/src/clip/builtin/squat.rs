@@ -47,6 +47,7 @@ fn stance(figure: &Figure, depth: f32) -> Stance {
     Stance {
         pelvis: Vec3::new(0.0, moved.y - 0.004 * figure.leg_length, moved.x),
         pelvis_turn: Vec3::X * mix(0.0, 28.0),
+        knees_out: 24.0 * depth,
         spine: Vec3::X * mix(0.0, 14.0),
         head: Vec3::X * mix(0.0, -30.0),
         arms: [arm; 2],

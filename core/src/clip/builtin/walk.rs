@@ -2,7 +2,7 @@
 //!
 //! Length and pace of a comfortable walk grow with the leg (Alexander, "Stride length and speed for adults, children,
 //! and fossil hominids", 1984); the phases of the foot are those of gait analysis (Perry, *Gait Analysis*, 1992): heel
-//! strike, foot flat at 8 % of the stride, heel off at 38 %, toe off at 62 %.
+//! strike, foot flat at 8 % of the stride, heel off at 37 %, toe off at 62 %.
 
 use std::f32::consts::TAU;
 
@@ -13,16 +13,18 @@ use super::{RATE, keyed, smooth};
 use crate::pose::Pose;
 
 /// Stride over leg length.
-const STRIDE: f32 = 1.5;
+const STRIDE: f32 = 1.38;
 /// Speed over √(g · leg length).
-const SPEED: f32 = 0.42;
+const SPEED: f32 = 0.41;
 const GRAVITY: f32 = 9.81;
 const TOE_OFF: f32 = 0.62;
-/// When the pelvis is over the standing foot's ankle.
-const MID_STANCE: f32 = 0.31;
+/// When the pelvis is over the standing foot's ankle: early, as the heel that rises carries the ankle forward.
+const OVER_ANKLE: f32 = 0.25;
+/// When the pelvis is highest: about half-way through the time that the other foot is in the air.
+const MID_STANCE: f32 = 0.33;
 /// The foot's roll over a stride, degrees.
 const ROLL: [(f32, f32); 7] =
-    [(0.0, -20.0), (0.08, 0.0), (0.38, 0.0), (TOE_OFF, 55.0), (0.70, 50.0), (0.87, -8.0), (1.0, -20.0)];
+    [(0.0, -20.0), (0.08, 0.0), (0.37, 0.0), (TOE_OFF, 55.0), (0.70, 48.0), (0.87, -8.0), (1.0, -20.0)];
 
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let leg = figure.leg_length;
@@ -55,7 +57,7 @@ fn stance(figure: &Figure, phase: f32, stride: f32) -> Stance {
     let foot = |side: usize| {
         let own = if side == 0 { phase } else { (phase + 0.5) % 1.0 };
         let swing = ((own - TOE_OFF) / (1.0 - TOE_OFF)).max(0.0);
-        let along = stride * (MID_STANCE - own + smooth(swing));
+        let along = stride * (OVER_ANKLE - own + smooth(swing));
         let lift = 0.045 * figure.leg_length * libm::powf(libm::sinf(0.5 * TAU * swing), 2.0);
         let shift = standing[side].shift + Vec3::new(0.0, if swing > 0.0 { lift } else { 0.0 }, along);
         Foot { shift, roll: keyed(&ROLL, own), toe_out: 3.0 }
@@ -68,7 +70,7 @@ fn stance(figure: &Figure, phase: f32, stride: f32) -> Stance {
     let bob = libm::cosf(2.0 * TAU * (phase - MID_STANCE));
     let sway = libm::sinf(TAU * (phase - 0.04));
     Stance {
-        pelvis: figure.leg_length * Vec3::new(0.022 * sway, 0.018 * bob, 0.0),
+        pelvis: figure.leg_length * Vec3::new(0.022 * sway, 0.02 * bob, 0.0),
         pelvis_turn: Vec3::new(2.0, -5.0 * wave(0.0), 3.0 * sway),
         spine: Vec3::new(1.0, 10.0 * wave(-0.02), -4.0 * sway),
         head: Vec3::new(0.0, -5.0 * wave(-0.02), 1.0 * sway),

@@ -20,8 +20,9 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     (0..=frames)
         .map(|f| {
             let at = f as f32 / RATE as f32;
-            // Half a cycle of idling: a shift of weight to the left, away from the arm, and back.
-            let mut stance = idle::stance(figure, 0.5 * at / SECONDS);
+            // A quarter of a cycle of idling and back: a shift of weight to the left, away from the arm.
+            let shifted = 0.5 - 0.5 * libm::cosf(TAU * at / SECONDS);
+            let mut stance = idle::stance(figure, 0.25 * shifted);
             let raised = keyed(&[(0.0, 0.0), (UP, 1.0), (DOWN, 1.0), (SECONDS, 0.0)], at);
             // The elbow folds a little before the arm is up.
             let folded = keyed(&[(0.0, 0.0), (0.8 * UP, 1.0), (DOWN, 1.0), (0.95 * SECONDS, 0.0)], at);

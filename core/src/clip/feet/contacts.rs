@@ -101,11 +101,11 @@ fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) 
         let (before, after) = (frame.saturating_sub(1), (frame + 1).min(places.len() - 1));
         let seconds = (after - before).max(1) as f32 / rate;
         let speed = places[before].distance(places[after]) / seconds;
-        let slack = if on { 1.5 } else { 1.0 };
+        let slack = if on { 1.25 } else { 1.0 };
         on = places[frame].y < options.height * slack && speed < options.speed * slack;
         touching.push(on);
     }
-    let shortest = libm::roundf(options.shortest * rate).max(1.0) as usize;
+    let shortest = (libm::roundf(options.shortest * rate) as usize).clamp(1, track.len().max(1));
     fill_gaps(&mut touching, shortest);
     let mut found = Vec::new();
     for (start, end) in runs(&touching) {

@@ -24,9 +24,9 @@ pub use plant::plant;
 /// How contacts are found and feet are held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeetOptions {
-    /// A point touches the floor below this height, metres; until it is half as high again.
+    /// A point touches the floor below this height, metres; until it is a quarter higher.
     pub height: f32,
-    /// A point stands still below this speed, metres a second; until it is half as fast again.
+    /// A point stands still below this speed, metres a second; until it is a quarter faster.
     pub speed: f32,
     /// Contacts that are shorter are none, and shorter gaps between contacts neither, seconds.
     pub shortest: f32,
@@ -45,8 +45,8 @@ pub struct FeetOptions {
 impl Default for FeetOptions {
     fn default() -> Self {
         Self {
-            height: 0.05,
-            speed: 0.4,
+            height: 0.03,
+            speed: 0.25,
             shortest: 0.1,
             stray: 0.08,
             blend: 0.2,
@@ -120,7 +120,7 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
         let slides: Vec<f32> = contacts.feet[foot].iter().map(|c| c.slide(track)).collect();
         out.contacts[foot] = slides.len();
         out.worst_slide[foot] = slides.iter().copied().fold(0.0, f32::max);
-        out.mean_slide[foot] = slides.iter().sum::<f32>() / slides.len().max(1) as f32;
+        out.mean_slide[foot] = slides.iter().fold(0.0, |sum, s| sum + s) / slides.len().max(1) as f32;
         let lowest = track.iter().map(|sole| sole.lowest()).fold(f32::INFINITY, f32::min);
         out.deepest[foot] = (-lowest).max(0.0);
     }

@@ -118,6 +118,9 @@ fn one_frame_is_enough() {
     let tracks = vec![TranslationTrack { joint: 0, values: vec![Vec3::Y * -0.3] }];
     let clip = Clip::new("c".into(), rest.clone(), 30.0, rotations, tracks).unwrap();
     let (planted, report) = plant(&clip, &FeetOptions::default()).unwrap();
-    assert!((report.floor + 0.3).abs() < 1e-4 && report.after.deepest == [0.0; 2], "{report:?}");
+    assert!(
+        (report.floor + 0.3).abs() < 1e-4 && report.after.deepest.iter().all(|d| *d < 1e-4),
+        "{report:?}"
+    );
     assert_eq!(planted.frame_count(), 1);
 }

@@ -43,7 +43,7 @@ const WRITTEN: [Written; 12] = [
     Written {
         name: "MotionBuilder",
         sides: ["left", "right"],
-        central: "pelvis=hips spine_01=spine neck_01=neck head=head jaw=jaw",
+        central: "pelvis=hips spine_01=spine spine_02=spine1 spine_03=spine2 neck_01=neck head=head jaw=jaw",
         sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
                 lowerarm=*forearm hand=*hand hand_tip=*handend eye=*eye \
                 thumb_01=*handthumb1 thumb_02=*handthumb2 thumb_03=*handthumb3 \
@@ -55,9 +55,9 @@ const WRITTEN: [Written; 12] = [
     Written {
         name: "cgspeed",
         sides: ["left", "right"],
-        central: "pelvis=hips spine_01=lowerback neck_01=neck head=head",
+        central: "pelvis=hips spine_01=lowerback spine_02=spine spine_03=spine1 neck_01=neck head=head",
         sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
-                lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1",
+                lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1 thumb_01=*thumb",
     },
     Written {
         name: "Biovision",

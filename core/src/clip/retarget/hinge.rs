@@ -64,11 +64,16 @@ impl Limb {
     }
 
     /// How far the fold is from the hinge, about the upper bone, and how far the limb is bent.
+    ///
+    /// The hinge is the lower joint's X axis. With both in the upper joint's space, this is the turn about Y after which
+    /// the lower bone is at a right angle to the hinge, on the side to which it folds.
     pub(super) fn fold(&self, model: &[Quat]) -> (f32, f32) {
         let lower = model[self.upper.target].conjugate() * (model[self.lower.target] * self.lower_along);
-        let (aside, front) = (lower.x * self.flexion, lower.z * self.flexion);
-        let across = Vec2::new(aside, front).length();
-        (libm::atan2f(aside, front), libm::atan2f(across, lower.y))
+        let hinge = self.rest * Vec3::X;
+        let [across, of_hinge] = [lower, hinge].map(|v| Vec2::new(v.x, v.z).length());
+        let [fold, at_hinge] = [lower, hinge].map(|v| libm::atan2f(v.x, v.z));
+        let cos = (-hinge.y * lower.y / (of_hinge * across).max(1e-6)).clamp(-1.0, 1.0);
+        (wrapped(fold - at_hinge + self.flexion * libm::acosf(cos)), libm::atan2f(across, lower.y))
     }
 
     /// Rolls the upper bone by the clip's `mean` and by what remains in this frame; the lower bone only swings.

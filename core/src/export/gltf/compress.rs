@@ -2,9 +2,8 @@
 //!
 //! Every buffer view is encoded by itself. Floating-point numbers of geometry and motion go through the EXPONENTIAL
 //! filter: integers times one power of two per component, still `f32` for who reads them, so that no other extension is
-//! needed. Key times and inverse bind matrices, joint indices and triangle corners stay exact; the corners are stored as a sequence, as
-//! the denser codec for triangles may turn a triangle's corners round. The views' places are those in a buffer that
-//! does not exist: a reader needs the extension.
+//! needed. Key times, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the codec may
+//! turn the corners of a triangle round. The views lie in a buffer that does not exist: a reader needs the extension.
 
 use gltf_json::{
     Buffer, Index, Value,
@@ -52,7 +51,7 @@ pub(super) fn compress(builder: &mut DocumentBuilder) -> Result<()> {
                     .map(|b| b.iter().rev().fold(0u32, |word, byte| word << 8 | u32::from(*byte)));
                 let wide: Vec<u32> = wide.collect();
                 let vertices = wide.iter().max().map_or(0, |v| *v as usize + 1);
-                meshopt::encode_index_sequence(&wide, vertices).map_err(fault)?
+                meshopt::encode_index_buffer(&wide, vertices).map_err(fault)?
             }
             (_, 8, Some(bits)) => filtered::<2>(bytes, bits, &mut bounds)?,
             (_, 12, Some(bits)) => filtered::<3>(bytes, bits, &mut bounds)?,
@@ -72,7 +71,7 @@ pub(super) fn compress(builder: &mut DocumentBuilder) -> Result<()> {
             "byteLength": encoded.len(),
             "byteStride": stride,
             "count": count,
-            "mode": if indices { "INDICES" } else { "ATTRIBUTES" },
+            "mode": if indices { "TRIANGLES" } else { "ATTRIBUTES" },
         });
         if bits.is_some() {
             extension["filter"] = "EXPONENTIAL".into();

@@ -33,9 +33,10 @@ pub use vrm::{VrmMeta, to_vrm};
 /// How a scene is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Whether to use EXT_meshopt_compression, which a reader must know to open the file. Numbers of geometry and motion are
-    /// rounded: positions and translations by less than a micrometre, rotations by less than a microradian, weights by less than a
-    /// millionth, normals by less than a ten-thousandth, texture coordinates by less than a sixty-thousandth of the picture.
+    /// Whether to use EXT_meshopt_compression, which a reader must know to open the file. It rounds: positions and
+    /// translations by less than a micrometre, components of rotations and weights by less than a millionth, of
+    /// normals by less than a ten-thousandth, texture coordinates by less than a sixty-thousandth of the picture. The
+    /// corners of a triangle may start at another one, so that the diagonals of quads are not marked any more.
     pub compress: bool,
 }
 

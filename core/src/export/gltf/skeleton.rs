@@ -6,6 +6,8 @@ use gltf_json::{Index, Node, Skin, scene::UnitQuaternion};
 use super::super::accessor::{DocumentBuilder, Usage};
 use super::super::scene::{Scene, SceneJoint};
 
+/// Finest step of metres and of components of quaternions, 2⁻²⁶: a quarter of the rounding of `f32` near 1.
+const GRID: f64 = 1.0 / 67_108_864.0;
 /// Roundings after which a transform stops being rounded further; nearly all settle in two or three.
 const MAX_ROUNDINGS: usize = 64;
 
@@ -77,8 +79,8 @@ impl NodeTransform {
         let rotation = DQuat::from_mat3(&parent_from_joint.matrix3).normalize();
         let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
         Self {
-            translation: parent_from_joint.translation.to_array().map(plain),
-            rotation: rotation.to_array().map(plain),
+            translation: parent_from_joint.translation.to_array().map(on_grid),
+            rotation: rotation.to_array().map(on_grid),
         }
     }
 
@@ -146,6 +148,12 @@ fn widened(transform: Affine3A) -> DAffine3 {
         matrix3: DMat3::from_cols(m.x_axis.as_dvec3(), m.y_axis.as_dvec3(), m.z_axis.as_dvec3()),
         translation: transform.translation.as_dvec3(),
     }
+}
+
+/// To `f32`, without the digits of small numbers that a bind pose, whose numbers are near 1, knows nothing of: they would
+/// be others each time.
+fn on_grid(value: f64) -> f32 {
+    plain((value / GRID).round() * GRID)
 }
 
 /// To `f32`, without a negative zero.

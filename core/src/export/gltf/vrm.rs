@@ -1,8 +1,8 @@
-//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which says who made the figure and which of its nodes are the
-//! bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
+//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which says who made the figure and which of its nodes are
+//! the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
 //!
-//! Our bind pose is the T-pose facing +Z that the specification wants. It wants no motion in the file: a scene with clips is refused, as
-//! motion for VRM goes into a `.vrma` or a `.glb` of its own.
+//! Our bind pose is the T-pose facing +Z that the specification wants. It wants no motion in the file: a scene with
+//! clips is refused, as motion goes into a `.glb` of its own.
 
 use gltf_json::{Value, extensions};
 use serde_json::{Map, json};

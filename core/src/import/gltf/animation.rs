@@ -28,7 +28,7 @@ const FALLBACK_RATE: f64 = 60.0;
 const FRAME_TOLERANCE: f64 = 5e-3;
 /// How far scale may be from 1.
 const SCALE_TOLERANCE: f32 = 1e-4;
-/// Most keys of one animation, and most rotations of all clips of a document.
+/// Most keys and rotations of all clips of a document together.
 const MAX_KEYS: usize = 1 << 25;
 
 /// All animations that move a joint.
@@ -43,14 +43,24 @@ pub(super) fn clips(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Cli
         vec![None; skeleton.joints.len()],
     );
     let rest = Arc::new(rest.map_err(|e| e.to_string())?);
-    let mut names = super::character::Names::default();
+    let mut motions = Vec::new();
     let mut left = MAX_KEYS;
-    let mut clips = Vec::new();
     for (i, animation) in document.root.animations.iter().enumerate() {
         let fault = |m: String| format!("animations[{i}]: {m}");
-        let Some(motion) = Motion::read(document, skeleton, animation).map_err(fault)? else { continue };
+        let Some(motion) = Motion::read(document, skeleton, animation, &mut left).map_err(fault)? else {
+            continue;
+        };
+        let (frames, joints) = (motion.frames, skeleton.joints.len());
+        let rotations = frames.checked_mul(joints).and_then(|rotations| left.checked_sub(rotations));
+        left = rotations.ok_or_else(|| fault(format!("{frames} frames of {joints} joints are too many")))?;
+        motions.push((i, animation, motion));
+    }
+    let mut names = super::character::Names::default();
+    let mut clips = Vec::new();
+    for (i, animation, motion) in motions {
         let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));
-        clips.push(motion.clip(document, skeleton, &rest, name, &mut left).map_err(fault)?);
+        let clip = motion.clip(document, skeleton, &rest, name);
+        clips.push(clip.map_err(|m| format!("animations[{i}]: {m}"))?);
     }
     Ok(clips)
 }
@@ -78,12 +88,17 @@ struct Motion {
 
 impl Motion {
     /// `None` if no joint moves.
-    fn read(document: &Document, skeleton: &Skeleton, animation: &Animation) -> Outcome<Option<Self>> {
+    fn read(
+        document: &Document,
+        skeleton: &Skeleton,
+        animation: &Animation,
+        left: &mut usize,
+    ) -> Outcome<Option<Self>> {
         let mut nodes: BTreeMap<usize, NodeTracks> = BTreeMap::new();
         for node in skeleton.chains.iter().flatten() {
             nodes.entry(*node).or_default();
         }
-        let mut keys = Keys { document, times: BTreeMap::new(), left: MAX_KEYS };
+        let mut keys = Keys { document, times: BTreeMap::new(), left };
         for (c, channel) in animation.channels.iter().enumerate() {
             let fault = |m: String| format!("channels[{c}]: {m}");
             let node = channel.target.node.value();
@@ -151,14 +166,9 @@ impl Motion {
         skeleton: &Skeleton,
         rest: &Arc<RestPose>,
         name: String,
-        left: &mut usize,
     ) -> Outcome<Clip> {
         let joints = skeleton.joints.len();
-        let wanted = self.frames.checked_mul(joints).filter(|wanted| wanted <= left);
-        let wanted =
-            wanted.ok_or_else(|| format!("{} frames of {joints} joints are too many", self.frames))?;
-        *left -= wanted;
-        let mut rotations = vec![Quat::IDENTITY; wanted];
+        let mut rotations = vec![Quat::IDENTITY; self.frames * joints];
         let mut translations = Vec::new();
         for (j, (chain, at_rest)) in skeleton.chains.iter().zip(&skeleton.locals).enumerate() {
             let still = chain.iter().all(|n| self.nodes.get(n).is_none_or(|t| t.is_still()));
@@ -225,7 +235,8 @@ fn stated(animation: &Animation) -> Option<(f64, f64)> {
 struct Keys<'a> {
     document: &'a Document,
     times: BTreeMap<usize, Arc<Vec<f64>>>,
-    left: usize,
+    /// How many more there may be.
+    left: &'a mut usize,
 }
 
 impl Keys<'_> {
@@ -252,7 +263,7 @@ impl Keys<'_> {
         if values.len() != expected {
             return Err(format!("output: expected {expected} values, got {}", values.len()));
         }
-        self.left = self.left.checked_sub(expected).ok_or_else(|| format!("more than {MAX_KEYS} keys"))?;
+        *self.left = self.left.checked_sub(expected).ok_or_else(|| format!("more than {MAX_KEYS} keys"))?;
         Ok(Track { times, values, interpolation })
     }
 }

@@ -1,0 +1,41 @@
+//! Bodies to glTF and back.
+
+use std::{path::Path, sync::Arc};
+
+use anthronet::clip::Clip;
+use anthronet::condition::Request;
+use anthronet::export::gltf::to_glb;
+use anthronet::export::{Scene, SceneOptions};
+use anthronet::import::scene::scene_from_bytes;
+use anthronet::mesh::Lod;
+use anthronet::model::Model;
+use anthronet::pose::RestPose;
+use glam::Quat;
+
+#[test]
+fn a_body_in_motion_written_again_is_the_same_file() {
+    let model = Model::from_environment().unwrap();
+    for (seed, lod) in [(1, Lod::Lod1), (2, Lod::Lod2), (3, Lod::Lod2), (4, Lod::Lod3), (5, Lod::Lod3)] {
+        let sex = if seed % 2 == 0 { "male" } else { "female" };
+        let request = Request::from_json(&format!(r#"{{"sex":"{sex}","seed":{seed}}}"#)).unwrap();
+        let body = model.generate(&request).unwrap();
+        let mut scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() }).unwrap();
+        let rest = Arc::new(RestPose::of_joints(body.joints()).unwrap());
+        let turns = (0..4).flat_map(|frame| {
+            let angle = |j: usize| if j % 3 == 0 { 0.0 } else { 0.01 * (frame * j) as f32 };
+            rest.rotations()
+                .enumerate()
+                .map(move |(j, q)| q * Quat::from_rotation_x(angle(j)))
+                .collect::<Vec<_>>()
+        });
+        let turns = turns.collect();
+        scene.clips.push(Clip::new("turn".into(), rest, 30.0, turns, vec![]).unwrap());
+        let first = to_glb(&scene).unwrap();
+        let read = scene_from_bytes(&first, Path::new("a.glb")).unwrap();
+        assert!(to_glb(&read).unwrap() == first, "seed {seed}");
+        for (read, written) in read.meshes.iter().zip(&scene.meshes) {
+            assert_eq!(read.positions, written.positions, "{}", written.name);
+            assert_eq!(read.joint_weights.len(), written.joint_weights.len());
+        }
+    }
+}

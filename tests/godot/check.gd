@@ -1,0 +1,63 @@
+# Godot 3 has imported figure.glb: skeleton, meshes, clips, as expected.json says.
+#
+#     godot3-server --path FOLDER --script check.gd
+
+extends SceneTree
+
+var failed = 0
+
+
+func case(name, good, why = ""):
+	if good:
+		print("ok Godot: ", name)
+	else:
+		failed += 1
+		print("FAILED Godot: ", name, ": ", why)
+
+
+func find_all(node, kind, found):
+	if node.is_class(kind):
+		found.append(node)
+	for child in node.get_children():
+		find_all(child, kind, found)
+	return found
+
+
+func _init():
+	var file = File.new()
+	file.open("res://expected.json", File.READ)
+	var expected = JSON.parse(file.get_as_text()).result
+	file.close()
+	var packed = load("res://figure.glb")
+	case("imports the file", packed != null, "not imported")
+	if packed == null:
+		quit(1)
+		return
+	var scene = packed.instance()
+	var skeletons = find_all(scene, "Skeleton", [])
+	case("one skeleton", skeletons.size() == 1, str(skeletons.size()))
+	if skeletons.size() == 1:
+		var bones = skeletons[0].get_bone_count()
+		case("%d bones" % bones, bones == int(expected.joints), "expected %d" % expected.joints)
+	var meshes = find_all(scene, "MeshInstance", [])
+	case("%d meshes" % meshes.size(), meshes.size() == int(expected.meshes), "expected %d" % expected.meshes)
+	var skinned = 0
+	for mesh in meshes:
+		if mesh.skin != null:
+			skinned += 1
+	case("all meshes have a skin", skinned == meshes.size(), "%d of %d" % [skinned, meshes.size()])
+	var players = find_all(scene, "AnimationPlayer", [])
+	case("one animation player", players.size() == 1, str(players.size()))
+	if players.size() == 1:
+		for clip in expected.clips:
+			var found = players[0].has_animation(clip.name)
+			case("has the clip %s" % clip.name, found, str(players[0].get_animation_list()))
+			if not found:
+				continue
+			var animation = players[0].get_animation(clip.name)
+			var length = animation.length
+			case("%s lasts %.4f s" % [clip.name, length], abs(length - clip.length) < 1e-3, "expected %f" % clip.length)
+			var tracks = animation.get_track_count()
+			case("%s has %d tracks" % [clip.name, tracks], tracks == int(clip.tracks), "expected %d" % clip.tracks)
+	scene.free()
+	quit(1 if failed > 0 else 0)
