@@ -5,6 +5,7 @@
 
 mod skin;
 mod tally;
+mod usd;
 
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
@@ -29,6 +30,7 @@ pub(crate) fn run() -> Outcome {
     let files = files(&anthronet, &folder, &mut tally);
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
     skin::run(&environment, &folder, &mut tally)?;
+    usd::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
