@@ -6,6 +6,7 @@
 mod animation;
 mod skin;
 mod tally;
+mod usd;
 
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
@@ -31,6 +32,7 @@ pub(crate) fn run() -> Outcome {
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
+    usd::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {

@@ -20,7 +20,7 @@ use crate::clip::usd::xform::Xforms;
 use crate::clip::{Clip, ReadOptions, TranslationTrack, from_bytes as clips_from_bytes};
 use crate::export::usd::EXTRAS;
 use crate::export::{Scene, SceneJoint};
-use crate::pose::{Local, RestPose};
+use crate::pose::Local;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
@@ -162,17 +162,7 @@ fn scene_joints(joints: &Joints, bind: &[Local]) -> Vec<SceneJoint> {
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
 fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
-    let joints: Vec<crate::rig::Joint> = scene
-        .joints
-        .iter()
-        .map(|joint| crate::rig::Joint {
-            name: joint.name.clone(),
-            parent: joint.parent,
-            model_from_joint: joint.model_from_joint,
-            length: 0.0,
-        })
-        .collect();
-    let rest = Arc::new(RestPose::of_joints(&joints)?);
+    let rest = Arc::new(scene.rest_pose(str::to_owned)?);
     let mut out: Vec<Clip> = Vec::with_capacity(clips.len());
     for clip in clips {
         let frames = clip.frame_count();
