@@ -14,6 +14,8 @@ from glb import Cases, Glb, rotation
 
 TOLERANCE = 1e-5  # metres; both files hold single precision
 FRAMES = 5
+# Blender's importer leaves smaller weights out.
+BLENDER_LEAST_WEIGHT = 1e-5
 # Blender's axes: +Z up, the character looks along -Y. The file's: +Y up, it looks along +Z.
 BLENDER_FROM_FILE = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 
@@ -61,14 +63,19 @@ class Reference:
 
         return np.array([at(i) for i in range(len(self.glb.nodes))])
 
-    def skinned(self, time):
-        """By mesh: positions (vertices, 3), with the copies at texture seams after the model's own vertices."""
+    def skinned(self, time, least=0.0):
+        """By mesh: positions (vertices, 3), with the copies at texture seams after the model's own vertices.
+
+        Weights below `least` are left out.
+        """
         world, meshes = self.world(time), {}
         for node in self.glb.skinned_nodes():
             joints, joint_from_bind = self.glb.skin(node)
             matrices, parts = world[joints] @ joint_from_bind, []
             for primitive in self.glb.primitives(node):
                 slots, weights = self.glb.influences(primitive)
+                weights = np.where(weights < least, 0, weights)
+                weights /= weights.sum(1, keepdims=True)
                 points = np.c_[self.glb.positions(primitive), np.ones(len(slots))]
                 parts.append(np.einsum("vk,vkij,vj->vi", weights, matrices[slots], points)[:, :3])
             meshes[self.glb.nodes[node]["name"]] = np.vstack(parts)
@@ -187,7 +194,7 @@ def blender(cases, path, reference, rate):
     worst = {name: 0.0 for name in meshes}
     for time, frame in pick(reference.times, rate):
         scene.frame_set(frame)
-        graph, goal = bpy.context.evaluated_depsgraph_get(), reference.skinned(time)
+        graph, goal = bpy.context.evaluated_depsgraph_get(), reference.skinned(time, BLENDER_LEAST_WEIGHT)
         for name, thing in meshes.items():
             owner = thing.evaluated_get(graph)
             mesh = owner.to_mesh()
