@@ -1,4 +1,4 @@
-"""Blender imports a .glb, plays its clips as actions and agrees with FILE.animated.f64 on every vertex at every frame there.
+"""Blender imports a .glb, plays its clips as actions and agrees with FILE.animated.f64 on every vertex at its frames.
 
     python animation_blender.py FILE.glb
 
@@ -59,7 +59,8 @@ def play(cases, path, glb, clip, expected):
     # Blender keeps frames in single precision.
     cases.case(f"Blender: {name} has its keys on whole frames", off <= 1e-3, f"off by {off} frames")
     first, last = keys.min().round(), keys.max().round()
-    cases.case(f"Blender: {name} lasts {clip['frames']} frames", last - first + 1 == clip["frames"], f"{first} to {last}")
+    frames = clip["frames"]
+    cases.case(f"Blender: {name} lasts {frames} frames", last - first + 1 == frames, f"{first} to {last}")
 
     meshes = {o.name: o for o in bpy.data.objects if any(m.type == "ARMATURE" for m in o.modifiers)}
     worst = 0.0

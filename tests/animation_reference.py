@@ -2,9 +2,9 @@
 
     python animation_reference.py FILE.glb
 
-Checks the tracks and writes what viewers have to agree with: FILE.animated.json, a list of clips with the frames that were
-taken and their times, and FILE.animated.f64, the positions of all skinned vertices, clip after clip, frame after frame, node after node,
-little endian.
+Checks the tracks and writes what viewers have to agree with: FILE.animated.json, a list of clips with the frames that
+were taken and their times; FILE.animated.f64, the positions of all skinned vertices, clip after clip, frame after
+frame, node after node, little endian; FILE.expected.json, numbers of joints, meshes and tracks.
 """
 
 import json
@@ -43,7 +43,8 @@ def check_tracks(cases, glb, animation):
             flips += int((np.einsum("ki,ki->k", values[1:], values[:-1]) < 0).sum())
     cases.case(f"{name}: keys on frames, quaternions of unit length", off <= 0, f"off by {off}")
     cases.case(f"{name}: quaternions keep their sign", flips == 0, f"{flips} flips")
-    cases.case(f"{name}: one key or all", lengths <= {1, frames} and frames in lengths, f"{lengths} keys, {frames} frames")
+    whole = lengths <= {1, frames} and frames in lengths
+    cases.case(f"{name}: one key or all", whole, f"{lengths} keys, {frames} frames")
     cases.case(f"{name}: one accessor of times for each", len(inputs) == len(lengths), f"{len(inputs)} accessors")
     return rate, frames
 
@@ -64,9 +65,16 @@ def main(path):
             positions.append(np.vstack([skinned(glb, node, world) for node in nodes]))
         moved = float(np.abs(positions[-1] - positions[-len(taken)]).max())
         far = float(np.abs(positions[-2] - positions[-len(taken)]).max()) if len(taken) > 1 else 0.0
-        cases.case(f"{animation['name']}: the body moves ({max(moved, far):.3f} m)", max(moved, far) > 1e-3, "stands still")
+        far = max(moved, far)
+        cases.case(f"{animation['name']}: the body moves ({far:.3f} m)", far > 1e-3, "stands still")
     with open(f"{path}.animated.json", "w", encoding="utf-8") as file:
         json.dump(clips, file)
+    joints, _ = glb.skin(nodes[0])
+    expected = [{"name": a["name"], "length": (c["frames"] - 1) / c["rate"],
+                 "tracks": len({channel["target"]["node"] for channel in a["channels"]})}
+                for a, c in zip(animations, clips)]
+    with open(f"{path}.expected.json", "w", encoding="utf-8") as file:
+        json.dump({"joints": len(joints), "meshes": len(nodes), "clips": expected}, file)
     np.vstack(positions).astype("<f8").tofile(f"{path}.animated.f64")
     cases.exit()
 

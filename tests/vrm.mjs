@@ -31,7 +31,8 @@ const bones = Object.keys(vrm.humanoid.humanBones);
 const missing = Object.values(VRMRequiredHumanBoneName).filter((bone) => !bones.includes(bone));
 report(`all required bones, ${bones.length} in all`, missing.length === 0, missing.join(', '));
 const nodes = bones.map((bone) => vrm.humanoid.getRawBoneNode(bone));
-report('every bone is a node of its own', new Set(nodes).size === bones.length && nodes.every((n) => n?.isBone), 'shared or none');
+report('every bone is a node of its own',
+  new Set(nodes).size === bones.length && nodes.every((n) => n?.isBone), 'shared or none');
 const astray = bones.filter((bone) => {
   let parent = VRMHumanBoneParentMap[bone];
   while (parent && !bones.includes(parent)) parent = VRMHumanBoneParentMap[parent];

@@ -13,13 +13,13 @@ use crate::request::{FillChoice, RequestArguments, SexChoice, check_ending};
 /// Directions that the light is gathered from; fewer than for a single picture, as figures are small.
 const QUALITY: usize = 128;
 /// Pixels per metre: the same for everyone, so that heights compare.
-const SCALE: f32 = 140.0;
+const SCALE: f32 = 76.0;
 /// Cell of one person, pixels; the tallest and widest of people fit.
-const CELL: [usize; 2] = [690, 350];
+const CELL: [usize; 2] = [384, 200];
 /// Widths of the three views within a cell.
-const VIEWS: [(View, usize); 3] = [(View::Front, 300), (View::Side, 90), (View::Back, 300)];
+const VIEWS: [(View, usize); 3] = [(View::Front, 166), (View::Side, 52), (View::Back, 166)];
 /// Height of the caption below the figures, pixels.
-const CAPTION: usize = 30;
+const CAPTION: usize = 26;
 /// How far from the mean the shortest, tallest, thinnest and heaviest are asked for, in standard deviations.
 const REACH: f64 = 1.8;
 
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         let (x0, y0) = (i % columns * CELL[0], i / columns * CELL[1]);
         let mut x = x0;
         for (view, width) in VIEWS {
-            let tile = Tile::at_scale(width, CELL[1] - CAPTION, view, SCALE, 22.0, 0.0);
+            let tile = Tile::at_scale(width, CELL[1] - CAPTION, view, SCALE, 15.0, 0.0);
             sheet.paste(&Picture::SHEET.draw(&figure, &tile), x, y0);
             x += width;
         }

@@ -16,9 +16,11 @@ fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
     [("small woman", Sex::Female, 1.49), ("tall man", Sex::Male, 1.99)]
         .map(|(name, sex, height)| {
             let mut request = Request { sex: Some(sex), ..Request::default() };
-            request.measures[MeasureId::from_name("height").unwrap().index()] = Some(height);
-            let body = model.generate(&request).unwrap();
-            (name, Arc::new(RestPose::of_joints(body.joints()).unwrap()))
+            let id = MeasureId::from_name("height").unwrap_or_else(|| panic!("no height"));
+            request.measures[id.index()] = Some(height);
+            let body = model.generate(&request).unwrap_or_else(|e| panic!("{e}"));
+            let rest = RestPose::of_joints(body.joints()).unwrap_or_else(|e| panic!("{e}"));
+            (name, Arc::new(rest))
         })
         .to_vec()
 }

@@ -22,7 +22,7 @@ fn a_body_in_motion_written_again_is_the_same_file() {
         let mut scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() }).unwrap();
         let rest = Arc::new(RestPose::of_joints(body.joints()).unwrap());
         let turns = (0..4).flat_map(|frame| {
-            let angle = |j: usize| if j % 3 == 0 { 0.0 } else { 0.01 * (frame * j) as f32 };
+            let angle = |j: usize| if j.is_multiple_of(3) { 0.0 } else { 0.01 * (frame * j) as f32 };
             rest.rotations()
                 .enumerate()
                 .map(move |(j, q)| q * Quat::from_rotation_x(angle(j)))

@@ -1,7 +1,9 @@
 //! What the cross-boundary tests need, installed into `target/test-env` with pinned versions.
 //!
 //! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module)
-//! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js)
+//! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
+//!
+//! Godot comes from the system's packages.
 //!
 //! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
 
@@ -32,6 +34,33 @@ pub(crate) struct Environment {
     pub(crate) blender: Result<(), String>,
     /// Folder with `node_modules`, in which scripts have to lie, and the node program.
     pub(crate) node: Result<(PathBuf, PathBuf), String>,
+    /// The headless Godot 3.
+    pub(crate) godot: Result<PathBuf, String>,
+}
+
+impl Environment {
+    /// Python with a script of `tests`, ready for its arguments.
+    pub(crate) fn python_script(&self, script: &str) -> Result<Command, String> {
+        let program = self.python.as_ref().map_err(String::clone)?;
+        let mut command = Command::new(program);
+        command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
+        Ok(command)
+    }
+
+    /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to
+    /// skip.
+    pub(crate) fn node_script(&self, script: &str) -> Outcome<Result<Command, String>> {
+        let (home, program) = match &self.node {
+            Ok(found) => found,
+            Err(reason) => return Ok(Err(reason.clone())),
+        };
+        // Node looks for packages from the script's own folder upwards.
+        let copy = home.join(script);
+        tools::write(&copy, &tools::read(&tools::root().join("tests").join(script))?)?;
+        let mut command = Command::new(program);
+        command.arg(copy);
+        Ok(Ok(command))
+    }
 }
 
 /// Installs whatever is not there yet.
@@ -47,6 +76,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
                 python: Err(reason.clone()),
                 blender: Err(reason.clone()),
                 node: Err(reason),
+                godot: godot(),
             });
         }
     };
@@ -56,7 +86,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
         (major, minor) => Err(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}")),
     };
     let node = node_packages(&home.join("node"), &python)?;
-    Ok(Environment { python: Ok(python), blender, node: Ok(node) })
+    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot() })
 }
 
 /// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
@@ -120,6 +150,18 @@ fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
         Ok(()) => import().map(|_| Ok(())),
         Err(reason) => Ok(Err(format!("{message}; {reason}"))),
     }
+}
+
+/// Debian's Godot 3 without a window, installed where that is needed and allowed.
+fn godot() -> Result<PathBuf, String> {
+    let program = "godot3-server";
+    // It has no argument at which it would end well and quickly: that it starts is enough.
+    let starts = || Command::new(program).arg("--version").output().map_err(|e| format!("{program}: {e}"));
+    if starts().is_err() {
+        apt_install(&[program])?;
+        starts()?;
+    }
+    Ok(program.into())
 }
 
 /// Installs system packages where that is possible without asking anybody.

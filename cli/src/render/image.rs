@@ -46,7 +46,7 @@ impl Image {
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Balanced);
+        encoder.set_compression(png::Compression::High);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let failed = |e: png::EncodingError| Failure::failed(format!("cannot encode the PNG: {e}"));
         let mut writer = encoder.write_header().map_err(failed)?;

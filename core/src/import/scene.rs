@@ -2,10 +2,10 @@
 //! materials, extras, clips.
 //!
 //! What a scene has no place for is not read: pictures, morph targets, cameras, lights, motion of anything but the
-//! skeleton. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model order, with texture seams merged; those of
-//! others as they are. A skeleton must have one root and no scale; nodes above and between its joints are folded into the joints.
-//! Where the rest pose is not the bind pose, the scene is in the bind pose. Meshes of a character without a skin have to
-//! hang on a joint and are bound to it.
+//! skeleton. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model order,
+//! with texture seams merged; those of others as they are. A skeleton must have one root and no scale; nodes above and
+//! between its joints are folded into the joints. Where the rest pose is not the bind pose, the scene is in the bind
+//! pose. Meshes of a character without a skin have to hang on a joint and are bound to it.
 
 use std::{ffi::OsStr, path::Path};
 
@@ -16,7 +16,8 @@ use crate::{Error, Result};
 /// The endings that [`open_scene`] knows.
 pub const ENDINGS: [&str; 6] = [".glb", ".gltf", ".vrm", ".usda", ".usdc", ".usdz"];
 
-/// Reads a file in the format of its ending: one of [`ENDINGS`], in any case. The buffers of a `.gltf` are looked for beside it.
+/// Reads a file in the format of its ending: one of [`ENDINGS`], in any case. The buffers of a `.gltf` are looked for
+/// beside it.
 ///
 /// # Errors
 /// [`Error::File`] says what is wrong and where: another ending, damage, several roots, scale in the skeleton, a mesh

@@ -6,11 +6,12 @@ use super::definition::{Definition, Definitions, Kind, Point};
 use super::hull::hull_perimeter;
 use super::names::{MEASURE_COUNT, MeasureId, Measurements};
 
-/// Derivative of a measure by the vertices it depends on; a vertex may appear more than once.
+/// Derivative of a measure by the places of the vertices it depends on, metre per metre; a vertex may appear more than
+/// once, and its derivatives then add.
 pub type Gradient = Vec<(u32, DVec3)>;
 
 impl Point {
-    /// The place on a body whose vertices `at` gives.
+    /// The place, metres, on a body whose vertices `at` gives.
     pub fn place(&self, at: impl Fn(u32) -> DVec3) -> DVec3 {
         self.0.iter().map(|&(v, w)| at(v) * w).sum()
     }
@@ -21,7 +22,8 @@ impl Point {
 }
 
 impl Definitions {
-    /// Reads all 36 measures of a body, metres. `at` gives the place of a vertex of the finest level of detail.
+    /// Reads all 36 measures of a body, metres, in the order of [`MeasureId`]. `at` gives the place, metres, of a vertex
+    /// of level 0.
     pub fn read_all(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Measurements {
         let mut out = [0.0; MEASURE_COUNT];
         for (id, definition) in self.iter() {
@@ -30,19 +32,19 @@ impl Definitions {
         out
     }
 
-    /// Reads one measure, metres.
+    /// Reads one measure, metres; `at` as for [`Definitions::read_all`].
     pub fn read(&self, id: MeasureId, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
         self.get(id).read(at)
     }
 }
 
 impl Definition {
-    /// Reads the measure, metres.
+    /// Reads the measure, metres; `at` gives the places of the vertices that the definition names.
     pub fn read(&self, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
         self.evaluate(at, None)
     }
 
-    /// Reads the measure and appends its derivative.
+    /// As [`Definition::read`]; appends the derivative to `gradient`.
     pub fn read_with_gradient(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: &mut Gradient) -> f64 {
         self.evaluate(at, Some(gradient))
     }

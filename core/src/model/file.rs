@@ -49,9 +49,9 @@ pub struct ModelParts {
     pub accessories: Vec<Accessory>,
     /// Mean body, three numbers a point, metres.
     pub mean: Vec<f32>,
-    /// First components, row by row, as half floats.
+    /// First components, `(components, coordinates)`, as half floats; metre per metre, as all components.
     pub fine: Vec<f16>,
-    /// Remaining components, row by row, as bytes.
+    /// Remaining components, `(components, coordinates)`, as bytes.
     pub coarse: Vec<i8>,
     /// What a byte is worth, per remaining component.
     pub scales: Vec<f32>,
@@ -59,19 +59,20 @@ pub struct ModelParts {
     pub deviations: Vec<f64>,
     /// Joint names, parents first.
     pub joint_names: Vec<String>,
-    /// Joint parents.
+    /// Joint parents; only the first joint has none.
     pub joint_parents: Vec<Option<u32>>,
-    /// Mean heads, then mean tails of the joints, metres.
+    /// Mean heads, then mean tails of the joints, `(2, joints, 3)`, metres.
     pub joint_mean: Vec<f32>,
-    /// One row of coefficients' weights per number of `joint_mean`.
+    /// How the coefficients move them, `(2 * 3 * joints, components)`, metre per metre.
     pub joint_rows: Vec<f32>,
-    /// Skin weights of cage and accessories: rows, joints, weights.
+    /// Skin weights of cage and accessories as [`crate::rig::SkinWeights::new`] takes them: offsets of the rows, joints,
+    /// weights.
     pub skin: (Vec<u32>, Vec<u16>, Vec<f32>),
-    /// Per sex 36 means, 36×36 covariances, 36×101 quantiles.
+    /// Per sex, female first: means `(2, 36)` in m, covariances `(2, 36, 36)` in m², quantiles `(2, 36, 101)` in m.
     pub prior: [Vec<f64>; 3],
-    /// Per measure the smallest and largest value that a request may give, metres.
+    /// Per measure the smallest and largest value that a request may give, `(36, 2)`, metres.
     pub ranges: Vec<f64>,
-    /// Mean and deviation that measures are standardised with, metres.
+    /// Mean and deviation that measures are standardised with, 36 each, metres.
     pub standardisation: [Vec<f64>; 2],
     /// Decoder and encoder.
     pub networks: Tensors,

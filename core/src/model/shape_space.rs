@@ -77,7 +77,7 @@ impl ShapeSpace {
         &self.std
     }
 
-    /// The mean body's points.
+    /// A point of the mean body, metres, pelvis at the origin. Panics for a point that is not there.
     pub fn mean_point(&self, point: usize) -> Vec3 {
         Vec3::new(self.mean[3 * point], self.mean[3 * point + 1], self.mean[3 * point + 2])
     }
@@ -101,7 +101,8 @@ impl ShapeSpace {
         out.chunks_exact(3).map(Vec3::from_slice).collect()
     }
 
-    /// One component of one point, exactly as [`body`](Self::body) uses it.
+    /// How far a coefficient of one moves a point along x, y and z, exactly as [`body`](Self::body) uses it: metre per
+    /// metre. Panics for a component or a point that is not there.
     pub fn component(&self, component: usize, point: usize) -> [f64; 3] {
         let n = self.mean.len();
         let fine = self.fine.len() / n;
@@ -118,7 +119,7 @@ impl ShapeSpace {
     }
 
     /// Coefficients of the body nearest to the given points (the first points of the space, such as the cage):
-    /// exact for orthonormal components.
+    /// metres, one per component; exact for orthonormal components.
     pub fn project(&self, points: &[Vec3]) -> Vec<f64> {
         let n = self.mean.len();
         let fine = self.fine.len() / n;

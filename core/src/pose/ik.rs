@@ -12,7 +12,7 @@ use crate::{Error, Result};
 /// Which way the middle joint of a limb points when the limb bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bend {
-    /// To where the upper bone's +Z axis leans: knees.
+    /// To where the upper bone's +Z axis leans, about its X axis: knees.
     Forwards,
     /// Away from it: elbows.
     Backwards,
@@ -107,11 +107,12 @@ impl Limb {
     /// bends, which decides when it is on the line or on its wrong side.
     fn pole(&self, upper: Quat, line: Vec3, first: Vec3) -> Vec3 {
         let across = |v: Vec3| v - line * v.dot(line);
-        let front = match self.bend {
-            Bend::Forwards => upper * Vec3::Z,
-            Bend::Backwards => upper * Vec3::NEG_Z,
+        // By the hinge and not by where the front is: a folded leg's line runs along its front, or past it.
+        let hinge = match self.bend {
+            Bend::Forwards => upper * Vec3::X,
+            Bend::Backwards => upper * Vec3::NEG_X,
         };
-        let natural = across(front).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
+        let natural = hinge.cross(line).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
         let offset = across(first);
         let right_side = offset - natural * offset.dot(natural).min(0.0);
         // Bent by less than about 5° it is nearly straight.

@@ -160,6 +160,17 @@ impl JointLimits {
         Self { limits: rest.names().iter().map(|name| JointLimit::named(name)).collect() }
     }
 
+    /// The same limits, each `by` radians wider in every direction.
+    pub fn widened(mut self, by: f32) -> Self {
+        for limit in self.limits.iter_mut().flatten() {
+            for range in [&mut limit.swing_x, &mut limit.swing_z, &mut limit.twist] {
+                *range = [range[0] - by, range[1] + by];
+            }
+            limit.cone += by;
+        }
+        self
+    }
+
     /// The limit of a joint; `None` when it turns freely.
     pub fn get(&self, joint: usize) -> Option<&JointLimit> {
         self.limits.get(joint)?.as_ref()

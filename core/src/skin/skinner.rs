@@ -12,6 +12,9 @@ use crate::pose::Local;
 use crate::rig::Influences;
 use crate::{Error, Result};
 
+/// The most influences that a vertex may have; files carry 4 or 8.
+const MAX_INFLUENCES: usize = 64;
+
 /// How joints move vertices; the formulas stand in the documentation of the [module](crate::skin).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkinMethod {
@@ -70,8 +73,10 @@ impl Skinner {
             }
         };
         expect("normals", count, normals.len())?;
-        if influences.per_vertex == 0 {
-            return Err(Error::invalid("skin weights", "expected at least 1 influence per vertex, got 0"));
+        if !(1..=MAX_INFLUENCES).contains(&influences.per_vertex) {
+            let got = influences.per_vertex;
+            let message = format!("expected 1 to {MAX_INFLUENCES} influences per vertex, got {got}");
+            return Err(Error::invalid("skin weights", message));
         }
         let slots = count.saturating_mul(influences.per_vertex);
         expect("skin joints", slots, influences.joints.len())?;
@@ -100,7 +105,9 @@ impl Skinner {
     /// # Errors
     /// As [`skin_many`].
     pub fn skin(&self, method: SkinMethod, model_from_joints: &[Local], out: SurfaceMut<'_>) -> Result<()> {
-        skin(SkinJob { skinner: self, method, model_from_joints, offsets: None, out })
+        let job = SkinJob { skinner: self, method, model_from_joints, offsets: None, out };
+        run(vec![Prepared::new(job)?]);
+        Ok(())
     }
 
     /// How each joint moves what follows it: posed `model_from_joint` · bind `joint_from_model`.
@@ -123,13 +130,6 @@ impl Skinner {
             ),
         })
     }
-}
-
-/// Poses one character.
-fn skin(job: SkinJob<'_>) -> Result<()> {
-    let prepared = Prepared::new(job)?;
-    run([prepared].into());
-    Ok(())
 }
 
 /// Poses many characters, each vertex of each on whatever thread is free. Nothing is written unless all are in order.

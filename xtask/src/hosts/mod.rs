@@ -3,8 +3,10 @@
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
 //! `skipped NAME: why`; all its other lines are for the reader.
 
+mod animation;
 mod skin;
 mod tally;
+mod usd;
 
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
@@ -29,6 +31,8 @@ pub(crate) fn run() -> Outcome {
     let files = files(&anthronet, &folder, &mut tally);
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
     skin::run(&environment, &folder, &mut tally)?;
+    animation::run(&anthronet, &environment, &folder, &mut tally)?;
+    usd::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
@@ -107,27 +111,6 @@ fn files(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Vec<PathBuf> {
     files
 }
 
-/// A script of `tests/` in Python.
-fn python_script(program: &Path, script: &str) -> Command {
-    let mut command = Command::new(program);
-    command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
-    command
-}
-
-/// A script of `tests/` in Node, or why there is none.
-fn node_script(environment: &Environment, script: &str) -> Outcome<Result<Command, String>> {
-    let (home, program) = match &environment.node {
-        Ok(found) => found,
-        Err(reason) => return Ok(Err(reason.clone())),
-    };
-    // Node looks for packages from the script's own folder upwards.
-    let copy = home.join(script);
-    tools::write(&copy, &tools::read(&tools::root().join("tests").join(script))?)?;
-    let mut command = Command::new(program);
-    command.arg(copy);
-    Ok(Ok(command))
-}
-
 /// The Khronos validator, numpy and scipy, three.js, Blender.
 fn in_other_programs(
     anthronet: &Path,
@@ -136,21 +119,18 @@ fn in_other_programs(
     files: &[PathBuf],
     tally: &mut Tally,
 ) -> Outcome {
-    match node_script(environment, "validate.mjs")? {
+    match environment.node_script("validate.mjs")? {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),
     }
-    let Ok(program) = &environment.python else {
-        let reason = environment.python.as_ref().err().map_or("", String::as_str);
+    if let Err(reason) = &environment.python {
         for name in ["measures by numpy and scipy", "three.js", "Blender"] {
             tally.skip(name, reason);
         }
         return Ok(());
-    };
-    tally.script(
-        "measures by numpy and scipy",
-        python_script(program, "measure_glb.py").arg(anthronet).arg(folder),
-    );
+    }
+    let python = |script| environment.python_script(script);
+    tally.script("measures by numpy and scipy", python("measure_glb.py")?.arg(anthronet).arg(folder));
 
     // What the two programs below have to agree with, once per file.
     for (stem, arguments) in [
@@ -162,13 +142,10 @@ fn in_other_programs(
             tally.case(&format!("generate {stem}.glb"), Err(why));
             continue;
         }
-        tally.script(
-            &format!("reference skinning of {stem}.glb"),
-            python_script(program, "pose_reference.py").arg(&file),
-        );
+        tally.script(&format!("reference skinning of {stem}.glb"), python("pose_reference.py")?.arg(&file));
         // three.js reads no more than four influences.
         if stem == "posed_4" {
-            match node_script(environment, "threejs.mjs")? {
+            match environment.node_script("threejs.mjs")? {
                 Ok(mut command) => tally.script("three.js", command.arg(&file)),
                 Err(reason) => tally.skip("three.js", &reason),
             }
@@ -177,7 +154,7 @@ fn in_other_programs(
         match &environment.blender {
             Ok(()) => {
                 let picture = (stem == "posed_4").then(|| folder.join("blender.png"));
-                tally.script(&name, python_script(program, "blender_import.py").arg(&file).args(picture));
+                tally.script(&name, python("blender_import.py")?.arg(&file).args(picture));
             }
             Err(reason) => tally.skip(&name, reason),
         }

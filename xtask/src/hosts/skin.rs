@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use super::tally::Tally;
-use super::{node_script, python_script};
 use crate::environment::Environment;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{Outcome, cargo};
 
 pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let folder = folder.join("skin");
@@ -16,23 +15,19 @@ pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -
         tally.case("skinned arrays", Err("the example skin_dump failed".to_owned()));
         return Ok(());
     }
-    match &environment.python {
-        Ok(program) => {
-            let mut compare = |name: &str, with: &str| {
-                tally.script(name, python_script(program, "skin_reference.py").arg(&folder).arg(with));
-            };
-            compare("skinning by numpy", "numpy");
-            compare("skinning by UsdSkel", "usd");
-            if environment.blender.is_ok() {
-                compare("skinning by Blender", "blender");
-            }
+    for (name, with) in
+        [("skinning by numpy", "numpy"), ("skinning by UsdSkel", "usd"), ("skinning by Blender", "blender")]
+    {
+        match environment.python_script("skin_reference.py") {
+            Ok(_) if with == "blender" && environment.blender.is_err() => {}
+            Ok(mut command) => tally.script(name, command.arg(&folder).arg(with)),
+            Err(reason) => tally.skip(name, &reason),
         }
-        Err(reason) => tally.skip("skinning by numpy, UsdSkel", reason),
     }
     if let Err(reason) = &environment.blender {
         tally.skip("skinning by Blender", reason);
     }
-    match node_script(environment, "skin_threejs.mjs")? {
+    match environment.node_script("skin_threejs.mjs")? {
         Ok(mut command) => tally.script("skinning by three.js", command.arg(&folder)),
         Err(reason) => tally.skip("skinning by three.js", &reason),
     }

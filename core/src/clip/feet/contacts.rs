@@ -25,6 +25,9 @@ impl FootPoint {
     }
 }
 
+/// How many times faster than a standing point one is that jumps from one frame to the next.
+const JUMP: f32 = 6.0;
+
 /// A point stands on the floor in the frames `start..end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
@@ -107,6 +110,12 @@ fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) 
     }
     let shortest = (libm::roundf(options.shortest * rate) as usize).clamp(1, track.len().max(1));
     fill_gaps(&mut touching, shortest);
+    // What the averages hide: a fault of the capture throws the point away and back.
+    for (frame, pair) in track.windows(2).enumerate() {
+        if point.of(&pair[0]).distance(point.of(&pair[1])) * rate > JUMP * options.speed {
+            touching[frame..frame + 2].fill(false);
+        }
+    }
     let mut found = Vec::new();
     for (start, end) in runs(&touching) {
         split(&places, start, end, options.stray, shortest, |start, end| {

@@ -5,11 +5,13 @@ use glam::{Quat, Vec3};
 use super::contacts::{Contact, FootPoint, runs};
 use super::leg::Sole;
 
-/// A rigid motion of a foot: turned by `turn` (axis times angle) about its ball, then moved by `shift`.
+/// A rigid motion of a foot: turned by `turn` (axis times angle) about its ball joint, then moved by `shift`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Correction {
     pub(super) turn: Vec3,
     pub(super) shift: Vec3,
+    /// Whether the heel alone is held.
+    pub(super) on_heel: bool,
 }
 
 impl Correction {
@@ -18,23 +20,23 @@ impl Correction {
         Quat::from_scaled_axis(self.turn)
     }
 
-    /// Where a point of the foot goes.
-    pub(super) fn apply(&self, point: Vec3, ball: Vec3) -> Vec3 {
-        ball + self.shift + self.rotation() * (point - ball)
+    /// Where a point of the foot goes whose ball joint is at `joint`.
+    pub(super) fn apply(&self, point: Vec3, joint: Vec3) -> Vec3 {
+        joint + self.shift + self.rotation() * (point - joint)
     }
 }
 
 /// One correction per frame. `blend` is in frames.
 ///
-/// Frames in which heel and ball touch fix turn and place of the foot; those in which one touches fix its place; the
-/// others are blended from their neighbours, so that a foot is on its way before it lands and long after it left.
+/// Frames in which heel and ball touch lay the foot flat and fix where it points and stands; those in which one touches
+/// fix its place; the others are blended from their neighbours, so that a foot is on its way before it lands and long after it left.
 pub(super) fn corrections(
     track: &[Sole],
     contacts: &[Contact],
-    sole_length: f32,
+    at_rest: Vec3,
     blend: usize,
 ) -> Vec<Correction> {
-    let places = places(track, contacts, sole_length);
+    let places = places(track, contacts, at_rest.length());
     let mut held: [Vec<Option<Vec3>>; 2] = [vec![None; track.len()], vec![None; track.len()]];
     for (contact, place) in contacts.iter().zip(&places) {
         held[contact.point as usize][contact.start..contact.end].fill(Some(*place));
@@ -42,13 +44,13 @@ pub(super) fn corrections(
     let [heel, ball] = held;
 
     let turns = track.iter().zip(heel.iter().zip(&ball)).map(|(sole, held)| match held {
-        (Some(heel), Some(ball)) => turn_between(sole.ball - sole.heel, *ball - *heel),
+        (Some(heel), Some(ball)) => flat_turn(sole.turn, at_rest, *ball - *heel),
         _ => None,
     });
     let turns = bridged(&turns.collect::<Vec<_>>(), blend);
     let shifts = track.iter().zip(&turns).zip(heel.iter().zip(&ball)).map(|((sole, turn), held)| {
         let of_heel =
-            |place: Vec3| place + Quat::from_scaled_axis(*turn) * (sole.ball - sole.heel) - sole.ball;
+            |place: Vec3| place + Quat::from_scaled_axis(*turn) * (sole.joint - sole.heel) - sole.joint;
         match held {
             (Some(heel), Some(ball)) => Some(0.5 * (of_heel(*heel) + (*ball - sole.ball))),
             (Some(heel), None) => Some(of_heel(*heel)),
@@ -57,7 +59,9 @@ pub(super) fn corrections(
         }
     });
     let shifts = bridged(&shifts.collect::<Vec<_>>(), blend);
-    turns.into_iter().zip(shifts).map(|(turn, shift)| Correction { turn, shift }).collect()
+    let on_heel = heel.iter().zip(&ball).map(|(heel, ball)| heel.is_some() && ball.is_none());
+    let moves = turns.into_iter().zip(shifts).zip(on_heel);
+    moves.map(|((turn, shift), on_heel)| Correction { turn, shift, on_heel }).collect()
 }
 
 /// Where on the floor each contact is held: the longest where the point is on average; one that overlaps a held one of
@@ -100,9 +104,12 @@ fn overlap(a: &Contact, b: &Contact) -> (usize, usize) {
     (a.start.max(b.start), a.end.min(b.end))
 }
 
-/// The shortest turn from one direction to another, axis times angle; none when one of them has no length.
-fn turn_between(from: Vec3, to: Vec3) -> Option<Vec3> {
-    Some(Quat::from_rotation_arc(from.try_normalize()?, to.try_normalize()?).to_scaled_axis())
+/// What turns a foot from `turn` to flat on the floor and pointing along `sole`, axis times angle; none when a
+/// direction has no length.
+fn flat_turn(turn: Quat, at_rest: Vec3, sole: Vec3) -> Option<Vec3> {
+    let ahead = Quat::from_rotation_arc(at_rest.try_normalize()?, sole.try_normalize()?);
+    let by = ahead * turn.conjugate();
+    Some((if by.w < 0.0 { -by } else { by }).to_scaled_axis())
 }
 
 /// Fills the frames without a value: values of the neighbouring runs fade out over `blend` frames, or over the gap

@@ -1,6 +1,6 @@
 //! A leg of our rig and the points on its sole.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::for_each_pose;
 use crate::Result;
@@ -29,7 +29,9 @@ pub(crate) struct Leg {
     /// Heights of ball joint and tip over the sole at rest. The sole is round there, so they keep them as they roll.
     pub(crate) clearance: [f32; 2],
     /// From heel to ball along the floor at rest.
-    pub(crate) sole_length: f32,
+    pub(crate) sole: Vec3,
+    /// The foot's rotation at rest, in model space.
+    pub(crate) flat: Quat,
 }
 
 /// The sole's points in model space, metres over the floor.
@@ -38,6 +40,10 @@ pub(crate) struct Sole {
     pub(crate) heel: Vec3,
     pub(crate) ball: Vec3,
     pub(crate) tip: Vec3,
+    /// The ball joint, over the ball.
+    pub(crate) joint: Vec3,
+    /// How the foot is turned from how it rests, flat and ahead.
+    pub(crate) turn: Quat,
 }
 
 impl Sole {
@@ -73,16 +79,19 @@ impl Leg {
             heel: ankle.rotation.conjugate() * (heel - ankle.translation),
             tip,
             clearance: [joint.translation.y, (joint.translation + joint.rotation * tip).y],
-            sole_length: forward.length() * (1.0 + HEEL),
+            sole: forward * (1.0 + HEEL),
+            flat: ankle.rotation,
         })
     }
 
     /// The points of the sole from `model_from_joint` of foot and ball.
-    pub(crate) fn sole(&self, foot: Local, ball: Local) -> Sole {
+    pub(crate) fn points(&self, foot: Local, ball: Local) -> Sole {
         Sole {
             heel: foot.translation + foot.rotation * self.heel,
             ball: ball.translation - Vec3::Y * self.clearance[0],
             tip: ball.translation + ball.rotation * self.tip - Vec3::Y * self.clearance[1],
+            joint: ball.translation,
+            turn: (foot.rotation * self.flat.conjugate()).normalize(),
         }
     }
 
@@ -99,8 +108,8 @@ pub(crate) fn tracks(clip: &Clip, legs: &[Leg; 2], floor: f32) -> [Vec<Sole>; 2]
     for_each_pose(clip, |_, pose: &Pose| {
         model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
         for (leg, track) in legs.iter().zip(&mut tracks) {
-            let mut sole = leg.sole(model[leg.limb.end], model[leg.ball]);
-            for point in [&mut sole.heel, &mut sole.ball, &mut sole.tip] {
+            let mut sole = leg.points(model[leg.limb.end], model[leg.ball]);
+            for point in [&mut sole.heel, &mut sole.ball, &mut sole.tip, &mut sole.joint] {
                 point.y -= floor;
             }
             track.push(sole);

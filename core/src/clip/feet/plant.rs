@@ -14,6 +14,8 @@ use crate::pose::{Local, Pose, RestPose, model_from_joints};
 
 /// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
 const SOFTNESS: f32 = 0.004;
+/// How far an ankle or the toes may go beyond their limits so that a foot can stay where it is: 4°.
+const GIVE: f32 = 0.07;
 
 /// Holds the feet of a clip of our rig: points in contact stay where they are, nothing sinks deeper than
 /// `options.depth`, toes bend instead of going through the floor. A foot keeps the rotation it has, but for the turn
@@ -31,8 +33,9 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
 
     let soles = leg::tracks(clip, &legs, found.floor);
     let feet: [Vec<Correction>; 2] =
-        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole_length, blend));
-    let mut planter = Planter { legs, rest, limits: JointLimits::of_rig(rest), floor: found.floor, options };
+        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole, blend));
+    let mut planter =
+        Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor: found.floor, options };
     let drops = planter.pelvis_drops(clip, &feet, blend);
 
     let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
@@ -67,12 +70,12 @@ impl Planter<'_> {
     /// Where a foot goes, `model_from_foot`, before the pelvis is lowered: corrected, and lifted out of the floor.
     fn goal(&self, leg: &Leg, model: &[Local], correction: &Correction) -> Local {
         let (foot, ball) = (self.over_floor(model[leg.limb.end]), self.over_floor(model[leg.ball]));
-        let sole = leg.sole(foot, ball);
-        let lowest = correction.apply(sole.heel, sole.ball).y.min(sole.ball.y + correction.shift.y);
+        let sole = leg.points(foot, ball);
+        let lowest = correction.apply(sole.heel, sole.joint).y.min(sole.ball.y + correction.shift.y);
         let lift = (-self.options.depth - lowest).max(0.0);
         Local {
             rotation: (correction.rotation() * foot.rotation).normalize(),
-            translation: correction.apply(foot.translation, sole.ball) + Vec3::Y * lift,
+            translation: correction.apply(foot.translation, sole.joint) + Vec3::Y * lift,
         }
     }
 
@@ -118,24 +121,24 @@ impl Planter<'_> {
         let above = parents[pelvis].map_or(Quat::IDENTITY, |p| model[p as usize].rotation);
         pose.locals[pelvis].translation -= above.conjugate() * (Vec3::Y * (drop + self.floor));
         model_from_joints(parents, &pose.locals, model);
-        for (leg, goal) in self.legs.iter().zip(goals) {
-            self.reach(leg, pose, leg.above(model), goal);
+        for ((leg, goal), correction) in self.legs.iter().zip(goals).zip(corrections) {
+            let pivot = if correction.on_heel { leg.heel } else { pose.locals[leg.ball].translation };
+            self.reach(leg, pose, leg.above(model), goal, pivot);
             self.bend_toes(leg, pose, leg.above(model));
         }
     }
 
-    /// Bends the leg to its goal. Where the ankle is past its limit the foot turns back about its ball, and the leg is
-    /// bent again.
-    fn reach(&self, leg: &Leg, pose: &mut Pose, above: Local, mut goal: Local) {
-        let to_ball = pose.locals[leg.ball].translation;
-        let ball = goal.translation + goal.rotation * to_ball;
+    /// Bends the leg to its goal. Where the ankle is past its limit the foot turns back about `pivot`, a point in its
+    /// space, and the leg is bent again.
+    fn reach(&self, leg: &Leg, pose: &mut Pose, above: Local, mut goal: Local, pivot: Vec3) {
+        let place = goal.translation + goal.rotation * pivot;
         for _ in 0..4 {
             leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
             if !self.limits.clamp_joint(self.rest, pose, leg.limb.end) {
                 return;
             }
             goal.rotation = leg.limb.model_from_joints(pose, above)[2].rotation;
-            goal.translation = ball - goal.rotation * to_ball;
+            goal.translation = place - goal.rotation * pivot;
         }
         leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
     }

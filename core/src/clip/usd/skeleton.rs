@@ -160,7 +160,10 @@ impl Joints {
         let matrices = places.iter().map(|&i| DAffine3::from_mat4(DMat4::from_cols_array(&rows[i])));
         let matrices: Vec<DAffine3> = matrices.collect();
         match matrices.iter().position(|m| !m.is_finite() || m.matrix3.determinant() == 0.0) {
-            Some(joint) => Err(format!("{prim}.{attribute}: matrix {joint} is not finite or flattens space")),
+            Some(joint) => {
+                let place = places[joint];
+                Err(format!("{prim}.{attribute}: matrix {place} is not finite or flattens space"))
+            }
             None => Ok(Some(matrices)),
         }
     }

@@ -19,8 +19,8 @@ use super::skeleton::{NodeTransform, WrittenTransform};
 use crate::Result;
 use crate::clip::Clip;
 
-/// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count as
-/// resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
+/// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
+/// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
 const REST_TOLERANCE: f32 = 5e-7;
 
 /// Appends a clip whose joints are nodes `0..joints`.

@@ -192,4 +192,6 @@ fn percent_encoded(name: &str) -> String {
 }
 
 #[cfg(test)]
+mod motion_tests;
+#[cfg(test)]
 mod tests;

@@ -112,9 +112,9 @@ pub(super) fn written_transforms(joints: &[SceneJoint]) -> Vec<WrittenTransform>
     written
 }
 
-/// The node transform that writing and reading by turns ends up with. A bind pose is a matrix of `f32` and a node is not,
-/// so either step rounds; written is what reading and writing again gives back, that a file survives it bit for bit.
-/// Where the two steps take turns between several transforms, the first in the order of their bits is taken.
+/// The node transform that writing and reading by turns ends up with. A bind pose is a matrix of `f32` and a node is
+/// not, so either step rounds; written is what reading and writing again gives back, that a file survives it bit for
+/// bit. Where the two steps take turns between several transforms, the first in the order of their bits is taken.
 fn settled(parent: &DAffine3, model_from_joint: Affine3A) -> NodeTransform {
     let joint_from_model = parent.inverse();
     let mut wanted = model_from_joint;
@@ -150,8 +150,8 @@ fn widened(transform: Affine3A) -> DAffine3 {
     }
 }
 
-/// To `f32`, without the digits of small numbers that a bind pose, whose numbers are near 1, knows nothing of: they would
-/// be others each time.
+/// To `f32`, without the digits of small numbers that a bind pose, whose numbers are near 1, knows nothing of: they
+/// would be others each time.
 fn on_grid(value: f64) -> f32 {
     plain((value / GRID).round() * GRID)
 }

@@ -7,13 +7,13 @@ use super::*;
 use crate::export::SceneJoint;
 use crate::export::synthetic::{arm, sleeve};
 
-struct Parsed {
-    json: Value,
+pub(super) struct Parsed {
+    pub(super) json: Value,
     bin: Vec<u8>,
 }
 
 impl Parsed {
-    fn glb(bytes: &[u8]) -> Self {
+    pub(super) fn glb(bytes: &[u8]) -> Self {
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
         assert_eq!(&bytes[..4], b"glTF");
         assert_eq!((word(4), word(8)), (2, bytes.len()));
@@ -26,12 +26,12 @@ impl Parsed {
         Self { json, bin: bytes[json_end + 8..].to_vec() }
     }
 
-    fn size(&self, at: &str) -> usize {
+    pub(super) fn size(&self, at: &str) -> usize {
         self.json.pointer(at).and_then(Value::as_u64).unwrap_or_else(|| panic!("no {at}")) as usize
     }
 
     /// All components of an accessor as numbers.
-    fn accessor(&self, index: usize) -> Vec<f64> {
+    pub(super) fn accessor(&self, index: usize) -> Vec<f64> {
         let accessor = format!("/accessors/{index}");
         let width = match self.json.pointer(&format!("{accessor}/type")).unwrap().as_str().unwrap() {
             "SCALAR" => 1,

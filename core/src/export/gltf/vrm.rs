@@ -43,7 +43,8 @@ impl Default for VrmMeta {
     }
 }
 
-/// The scene as a VRM 1.0 model. Joints may be named in any vocabulary of [`JointNames`](crate::rig::humanoid::JointNames).
+/// The scene as a VRM 1.0 model. Joints may be named in any vocabulary of
+/// [`JointNames`](crate::rig::humanoid::JointNames).
 ///
 /// # Errors
 /// [`Error::Invalid`] as for [`to_glb`](super::to_glb); for a scene with clips, without one of the bones that VRM

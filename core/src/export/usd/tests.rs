@@ -58,7 +58,7 @@ fn the_layout() {
             "faceVertexCounts = [3]",
             "primvars:st:indices = [0, 1, 7, 6",
             "rel material:binding = </Arm/mtl/Nail>",
-            "inputs:opacity = 0.9",
+            "inputs:opacity = 0.8999999",
             &format!("elementSize = {influences}"),
         ] {
             assert!(text.contains(expected), "{expected}");

@@ -111,7 +111,7 @@ fn mesh(
     let mut out = SceneMesh { uvs, ..SceneMesh::default() };
     match (skeleton, document.root.nodes[node].skin) {
         (Some((skeleton, _)), Some(skin)) => {
-            weights(document, skeleton, skin.value(), &sets(&attribute), &mut out)?
+            weights(document, skeleton, skin.value(), &sets(&attribute), &mut out)?;
         }
         (Some((skeleton, tree)), None) => {
             let (joint, model_from_node) = hung_on(document, tree, skeleton, node)?;

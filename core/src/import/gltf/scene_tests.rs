@@ -123,7 +123,8 @@ fn others_lie_out_their_skeleton_in_other_ways() {
     // Joints in another order, a turned node above the root and one between two joints, of which neither is a joint.
     let strange = changed(|json| {
         let nodes = json["nodes"].as_array_mut().unwrap();
-        nodes.push(json!({"name": "Armature", "rotation": [0, 0.6, 0, 0.8], "translation": [1, 0, 0], "children": [0]}));
+        let turn = [0.0, 0.6, 0.0, 0.8];
+        nodes.push(json!({"name": "Armature", "rotation": turn, "translation": [1, 0, 0], "children": [0]}));
         nodes.push(json!({"translation": [0, 0.25, 0], "children": [2]}));
         nodes[1]["children"] = json!([6]);
         json["skins"][0]["joints"] = json!([0, 2, 1]);
@@ -253,7 +254,7 @@ fn names_what_is_wrong_with_compression() {
     type Case = (&'static str, fn(&mut Value));
     let cases: &[Case] = &[
         ("bufferViews[0].extensions.EXT_meshopt_compression: buffer does not exist", |e| {
-            e["buffer"] = json!(7)
+            e["buffer"] = json!(7);
         }),
         ("reaches beyond its buffer", |e| e["byteLength"] = json!(u64::MAX)),
         ("are too many", |e| e["count"] = json!(u64::MAX)),
@@ -287,7 +288,10 @@ proptest! {
 
     /// No panic, no endless loop, no huge allocation, whatever bytes are wrong; and what is read can be written.
     #[test]
-    fn flipped_bytes_do_no_harm(flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8), compressed: bool) {
+    fn flipped_bytes_do_no_harm(
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        compressed: bool,
+    ) {
         let mut bytes = if compressed { COMPRESSED.clone() } else { GLB.clone() };
         for (at, value) in flips {
             *at.get_mut(&mut bytes) = value;

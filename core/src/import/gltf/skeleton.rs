@@ -176,7 +176,9 @@ pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Outcome<D
         };
         let fault = || {
             let scale = local.matrix3.x_axis.length() as f32;
-            format!("{}: expected a rotation and a translation, got scale ({scale}) or shear; apply it to the mesh first", named(document, i))
+            let node = named(document, i);
+            let expected = "expected a rotation and a translation, got scale";
+            format!("{node}: {expected} ({scale}) or shear; apply it to the mesh first")
         };
         rigid(&local).map(|_| above * local).ok_or_else(fault)
     })

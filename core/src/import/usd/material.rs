@@ -2,7 +2,7 @@
 
 use openusd::sdf::{FieldKey, Path, Value};
 
-use super::{Outcome, title, unused};
+use super::{Outcome, Titles, title};
 use crate::clip::usd::layer::Layer;
 use crate::clip::usd::values;
 use crate::export::usd::SPECULAR;
@@ -10,7 +10,10 @@ use crate::export::{AlphaMode, SceneMaterial};
 
 /// The materials of all meshes so far, one for each material and side.
 #[derive(Default)]
-pub(super) struct Materials(Vec<(Option<Path>, SceneMaterial)>);
+pub(super) struct Materials {
+    list: Vec<(Option<Path>, SceneMaterial)>,
+    titles: Titles,
+}
 
 impl Materials {
     /// Place of the material that this mesh is bound to.
@@ -25,7 +28,7 @@ impl Materials {
         let same = |(path, material): &(Option<Path>, SceneMaterial)| {
             *path == bound && material.double_sided == double_sided
         };
-        if let Some(place) = self.0.iter().position(same) {
+        if let Some(place) = self.list.iter().position(same) {
             return Ok(place as u32);
         }
         let mut material = match &bound {
@@ -33,13 +36,13 @@ impl Materials {
             None => SceneMaterial::dielectric("Grey", [0.18, 0.18, 0.18, 1.0], 0.5),
         };
         material.double_sided = double_sided;
-        material.name = unused(material.name, self.0.iter().map(|(_, m)| &m.name));
-        self.0.push((bound, material));
-        Ok((self.0.len() - 1) as u32)
+        material.name = self.titles.unique(&material.name);
+        self.list.push((bound, material));
+        Ok((self.list.len() - 1) as u32)
     }
 
     pub(super) fn into_list(self) -> Vec<SceneMaterial> {
-        self.0.into_iter().map(|(_, material)| material).collect()
+        self.list.into_iter().map(|(_, material)| material).collect()
     }
 }
 

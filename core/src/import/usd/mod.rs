@@ -7,6 +7,7 @@
 mod material;
 mod mesh;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ use crate::clip::usd::xform::Xforms;
 use crate::clip::{Clip, ReadOptions, TranslationTrack, from_bytes as clips_from_bytes};
 use crate::export::usd::EXTRAS;
 use crate::export::{Scene, SceneJoint};
-use crate::pose::{Local, RestPose};
+use crate::pose::Local;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
@@ -137,10 +138,10 @@ fn character(bytes: &[u8]) -> Outcome<(Scene, Space)> {
             Some(mesh::Skeleton { prim: prim.clone(), above, joints })
         }
     };
-    let mut materials = material::Materials::default();
+    let (mut materials, mut titles) = (material::Materials::default(), Titles::default());
     for prim in meshes {
         let mut read = mesh::read(&layer, prim, skeleton.as_ref(), &ours_from_file)?;
-        read.mesh.name = unused(title(&layer, prim)?, scene.meshes.iter().map(|m| &m.name));
+        read.mesh.name = titles.unique(&title(&layer, prim)?);
         read.mesh.material = materials.of(&layer, prim, read.double_sided)?;
         scene.meshes.push(read.mesh);
     }
@@ -162,17 +163,8 @@ fn scene_joints(joints: &Joints, bind: &[Local]) -> Vec<SceneJoint> {
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
 fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
-    let joints: Vec<crate::rig::Joint> = scene
-        .joints
-        .iter()
-        .map(|joint| crate::rig::Joint {
-            name: joint.name.clone(),
-            parent: joint.parent,
-            model_from_joint: joint.model_from_joint,
-            length: 0.0,
-        })
-        .collect();
-    let rest = Arc::new(RestPose::of_joints(&joints)?);
+    let rest = Arc::new(scene.rest_pose(str::to_owned)?);
+    let mut titles = Titles::default();
     let mut out: Vec<Clip> = Vec::with_capacity(clips.len());
     for clip in clips {
         let frames = clip.frame_count();
@@ -185,7 +177,7 @@ fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
                 tracks.push(TranslationTrack { joint: joint as u32, values: vec![own.translation; frames] });
             }
         }
-        let name = unused(clip.name().to_owned(), out.iter().map(Clip::name));
+        let name = titles.unique(clip.name());
         out.push(Clip::new(name, rest.clone(), clip.frames_per_second(), rotations, tracks)?);
     }
     Ok(out)
@@ -197,11 +189,23 @@ fn title(layer: &Layer, prim: &PrimPath) -> Outcome<String> {
     Ok(shown.unwrap_or_else(|| prim.name().unwrap_or("prim").to_owned()))
 }
 
-/// The name, with a number behind it where it is taken.
-fn unused<T: AsRef<str>>(name: String, taken: impl Iterator<Item = T> + Clone) -> String {
-    let free = |candidate: &String| !taken.clone().any(|name| name.as_ref() == candidate);
-    let numbered = (2..=u32::MAX).map(|n| format!("{name} {n}"));
-    std::iter::once(name.clone()).chain(numbered).find(free).unwrap_or(name)
+/// Names given out so far, each with the last number behind it.
+#[derive(Default)]
+struct Titles(BTreeMap<String, u32>);
+
+impl Titles {
+    /// The name, with a number behind it where it is taken.
+    fn unique(&mut self, name: &str) -> String {
+        let mut count = self.0.get(name).copied().unwrap_or(0);
+        let mut title = name.to_owned();
+        while self.0.contains_key(&title) {
+            count += 1;
+            title = format!("{name} {}", count + 1);
+        }
+        self.0.insert(title.clone(), 0);
+        self.0.insert(name.to_owned(), count);
+        title
+    }
 }
 
 #[cfg(test)]

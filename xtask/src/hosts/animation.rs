@@ -1,0 +1,129 @@
+//! Animated glTF, plain and compressed, and VRM in programs that are not ours.
+
+use super::Tally;
+use crate::environment::Environment;
+use crate::requests;
+use crate::tools::{self, Outcome};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How long Godot may take to import one figure.
+const GODOT_LIMIT: Duration = Duration::from_secs(120);
+
+/// The Khronos validator, numpy, three.js, three-vrm, Blender and Godot over files of `anthronet`.
+pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+    let mut made = Vec::new();
+    for (name, arguments) in [
+        ("animated.glb", &["--clip", "walk"][..]),
+        ("animated_meshopt.glb", &["--clip", "walk", "--compress"]),
+        ("figure.vrm", &[]),
+    ] {
+        let file = folder.join(name);
+        let arguments = [requests::README, arguments].concat();
+        match super::generate(anthronet, &arguments, &file, None) {
+            Ok(()) => made.push(file),
+            Err(why) => tally.case(&format!("generate {name}"), Err(why)),
+        }
+    }
+    let [plain, compressed, figure] = made.as_slice() else { return Ok(()) };
+    same_again(anthronet, plain, tally);
+
+    match environment.node_script("validate.mjs")? {
+        Ok(mut command) => {
+            tally.script("Khronos glTF validator, animations", command.args([plain, compressed, figure]));
+        }
+        Err(reason) => tally.skip("Khronos glTF validator, animations", &reason),
+    }
+    match environment.node_script("vrm.mjs")? {
+        Ok(mut command) => tally.script("three-vrm", command.arg(figure)),
+        Err(reason) => tally.skip("three-vrm", &reason),
+    }
+    match environment.python_script("animation_reference.py") {
+        Ok(mut command) => {
+            tally.script("reference of the animations", command.arg(plain));
+            in_viewers(environment, plain, compressed, tally)?;
+        }
+        Err(reason) => tally.skip("animations in three.js and Blender", &reason),
+    }
+    match &environment.godot {
+        Ok(godot) => in_godot(godot, plain, folder, tally)?,
+        Err(reason) => tally.skip("Godot", reason),
+    }
+    Ok(())
+}
+
+/// Converted to its own format, a file stays the same.
+fn same_again(anthronet: &Path, file: &Path, tally: &mut Tally) {
+    let again = file.with_extension("again.glb");
+    let mut command = Command::new(anthronet);
+    let converted = tools::output(command.arg("convert").arg(file).arg(&again));
+    let compared = converted.and_then(|_| {
+        let [a, b] = [file, &again].map(|f| std::fs::read(f).map_err(|e| format!("{}: {e}", f.display())));
+        if a? == b? { Ok(()) } else { Err("other bytes".to_owned()) }
+    });
+    tally.case("convert to the same format gives the same bytes", compared);
+}
+
+fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally: &mut Tally) -> Outcome {
+    for file in [plain, compressed] {
+        let name = format!("three.js plays {}", file.file_name().unwrap_or_default().display());
+        match environment.node_script("animation_threejs.mjs")? {
+            Ok(mut command) => tally.script(&name, command.arg(file).arg(plain)),
+            Err(reason) => tally.skip(&name, &reason),
+        }
+    }
+    let blender = environment.blender.clone();
+    match blender.and_then(|()| environment.python_script("animation_blender.py")) {
+        Ok(mut command) => tally.script("Blender plays", command.arg(plain)),
+        Err(reason) => tally.skip("Blender plays", &reason),
+    }
+    Ok(())
+}
+
+/// Godot imports the file as a resource of a project, in which a script then looks at it.
+fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
+    let project = folder.join("godot");
+    let fault = |e: std::io::Error| format!("{}: {e}", project.display());
+    std::fs::create_dir_all(&project).map_err(fault)?;
+    for name in ["project.godot", "check.gd"] {
+        let text = tools::read(&tools::root().join("tests/godot").join(name))?;
+        tools::write(&project.join(name), &text)?;
+    }
+    std::fs::copy(file, project.join("figure.glb")).map_err(fault)?;
+    std::fs::copy(format!("{}.expected.json", file.display()), project.join("expected.json"))
+        .map_err(fault)?;
+    tally.case("Godot imports", import(godot, &project));
+    tally.script("Godot", Command::new(godot).arg("--path").arg(&project).args(["--script", "check.gd"]));
+    Ok(())
+}
+
+/// Opens the project in the editor until the figure is imported. Debian's build of the editor never ends by itself: it
+/// repeats an error for ever when it quits.
+fn import(godot: &Path, project: &Path) -> Outcome {
+    let mut command = Command::new(godot);
+    command.arg("--path").arg(project).args(["--editor", "--quit"]);
+    let mut editor = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(|e| format!("did not start: {e}"))?;
+    let start = Instant::now();
+    // Written last.
+    let imported = || -> Option<PathBuf> {
+        let mut files = std::fs::read_dir(project.join(".import")).ok()?.flatten().map(|entry| entry.path());
+        files.find(|path| path.extension().is_some_and(|ending| ending == "md5"))
+    };
+    let done = loop {
+        let ended = editor.try_wait().map_err(|e| e.to_string())?.is_some();
+        if imported().is_some() || ended || start.elapsed() > GODOT_LIMIT {
+            break imported();
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    };
+    // It may have ended in the meantime.
+    let _ = editor.kill();
+    editor.wait().map_err(|e| e.to_string())?;
+    done.map(drop).ok_or_else(|| format!("not imported after {:.0} s", start.elapsed().as_secs_f64()))
+}

@@ -1,0 +1,48 @@
+//! USD in Pixar's own library and in Blender, against the .glb of the same person and motion.
+
+use std::path::Path;
+
+use super::generate;
+use super::tally::Tally;
+use crate::environment::Environment;
+use crate::requests::README;
+use crate::tools::Outcome;
+
+/// One file of every ending; quads and triangles, both numbers of influences, several clips.
+const FILES: [(&str, &str, &[&str]); 3] = [
+    ("quads", "usdc", &["--clip", "walk", "--clip", "wave"]),
+    ("8_influences", "usda", &["--influences", "8", "--lod", "1", "--clip", "squat"]),
+    ("triangles", "usdz", &["--lod", "2", "--clip", "range_of_motion"]),
+];
+
+pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+    for (name, ending, arguments) in FILES {
+        let arguments = [README, arguments].concat();
+        let file = folder.join(format!("usd_{name}.{ending}"));
+        let again = folder.join(format!("usd_{name}_1_thread.{ending}"));
+        let reference = folder.join(format!("usd_{name}.glb"));
+        let made = generate(anthronet, &arguments, &file, None)
+            .and_then(|()| generate(anthronet, &arguments, &again, Some(1)))
+            .and_then(|()| generate(anthronet, &arguments, &reference, None));
+        if let Err(why) = made {
+            tally.case(&format!("generate usd_{name}.{ending}"), Err(why));
+            continue;
+        }
+        let read = |path: &Path| std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()));
+        let same = read(&file)? == read(&again)?;
+        let differ = || "differ from those of one thread".to_owned();
+        tally.case(&format!("bytes of usd_{name}.{ending}"), same.then_some(()).ok_or_else(differ));
+
+        let title = format!("Pixar's USD, {name}.{ending}");
+        match environment.python_script("usd_check.py") {
+            Ok(mut command) => tally.script(&title, command.arg(&file).arg(&reference)),
+            Err(reason) => tally.skip(&title, &reason),
+        }
+        let title = format!("Blender, {name}.{ending}");
+        match environment.blender.clone().and_then(|()| environment.python_script("usd_check.py")) {
+            Ok(mut command) => tally.script(&title, command.arg(&file).arg(&reference).arg("--blender")),
+            Err(reason) => tally.skip(&title, &reason),
+        }
+    }
+    Ok(())
+}
