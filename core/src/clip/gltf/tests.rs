@@ -100,7 +100,7 @@ fn the_rate_is_that_of_the_keys() {
     };
     assert_eq!(rate(&[0.0, 1.0 / 60.0, 2.0 / 60.0, 7.0 / 60.0]), (60.0, Found::Detected, 0));
     assert_eq!(rate(&[0.0, 1.0, 1.0 + 1.0 / 5.0]), (25.0, Found::Detected, 0));
-    assert_eq!(rate(&[0.0, 1.0, 2.73]), (30.0, Found::Assumed, 1));
+    assert_eq!(rate(&[0.0, 1.0, 2.7187]), (30.0, Found::Assumed, 1));
 
     let mut ours = small(&[0.0, 1.0]);
     ours.0["animations"][0]["extras"] = json!({"anthronet": {"frames_per_second": 48.0, "frames": 97}});
