@@ -114,28 +114,30 @@ fn write<T: Copy, const N: usize>(file: &Path, numbers: &[T], bytes: impl Fn(T) 
 
 /// Answers each line with the times, in nanoseconds, of one linear skinning and of one copy that moves as many bytes.
 ///
-/// The copies go through memory that no cache holds, each time the next part of it, as a crowd's skinning would.
+/// Both take the next of many characters each time, so that neither finds its memory in a cache.
 fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[Local]) -> Outcome {
-    let count = skinner.vertex_count();
-    let (mut positions, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-    let part = bytes_moved(influences) / 2;
-    let from = vec![1_u8; 64 * part];
+    const CROWD: usize = 64;
+    let skinners = vec![skinner.clone(); CROWD];
+    let mut vectors =
+        vec![(vec![[1.0; 3]; skinner.vertex_count()], vec![[1.0; 3]; skinner.vertex_count()]); CROWD];
+    // A copy reads and writes: half of the bytes each.
+    let from = vec![vec![1_u8; bytes_moved(influences) / 2]; CROWD];
     let mut to = from.clone();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut out = std::io::stdout();
     for (turn, line) in std::io::stdin().lock().lines().enumerate() {
         line?;
+        let turn = turn % CROWD;
+        let (skinner, (positions, normals)) = (&skinners[turn], &mut vectors[turn]);
         let skinned = pool.install(|| {
             let start = Instant::now();
-            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(&mut positions, &mut normals))?;
+            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(positions, normals))?;
             anthronet::Result::Ok(start.elapsed())
         })?;
-        std::hint::black_box((&positions, &normals));
-        let range = (turn % 64) * part..(turn % 64 + 1) * part;
         let start = Instant::now();
-        to[range.clone()].copy_from_slice(std::hint::black_box(&from[range]));
+        to[turn].copy_from_slice(&from[turn]);
         let copied = start.elapsed();
-        std::hint::black_box(&to);
+        std::hint::black_box((&vectors, &to));
         writeln!(out, "{} {}", skinned.as_nanos(), copied.as_nanos())?;
         out.flush()?;
     }

@@ -194,8 +194,7 @@ pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<
     if compress && !matches!(ending.as_str(), "glb" | "gltf") {
         return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
     }
-    let options =
-        WriteOptions { gltf: GltfOptions { compress, ..GltfOptions::default() }, ..Default::default() };
+    let options = WriteOptions { gltf: GltfOptions { compress }, ..Default::default() };
     Ok(anthronet::export::write_scene_with(scene, path, &options)?)
 }
 

@@ -148,14 +148,16 @@ impl RestPose {
 mod tests {
     use super::*;
 
-    fn joints() -> (Vec<String>, Vec<Option<u32>>, Vec<Local>, Vec<Option<Vec3>>) {
+    type Parts = (Vec<String>, Vec<Option<u32>>, Vec<Local>, Vec<Option<Vec3>>);
+
+    fn joints() -> Parts {
         let names = ["hips", "leg"].map(String::from).to_vec();
         (names, vec![None, Some(0)], vec![Local::IDENTITY; 2], vec![None; 2])
     }
 
     #[test]
     fn names_what_is_wrong() {
-        type Case = (&'static str, fn(&mut (Vec<String>, Vec<Option<u32>>, Vec<Local>, Vec<Option<Vec3>>)));
+        type Case = (&'static str, fn(&mut Parts));
         let cases: &[Case] = &[
             ("expected 1 to", |j| j.0.clear()),
             ("2 names with", |j| j.2.truncate(1)),

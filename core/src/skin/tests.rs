@@ -96,8 +96,8 @@ impl Case {
                 certain = certain.min(agreement.abs());
             }
             let weight = if agreement < 0.0 { -weight } else { weight };
-            real = real + turn * weight;
-            dual = dual + DQuat::from_vec4(shift.extend(0.0)) * turn * (0.5 * weight);
+            real += turn * weight;
+            dual += DQuat::from_vec4(shift.extend(0.0)) * turn * (0.5 * weight);
         }
         let length = real.length();
         let (real, dual) = (real * (1.0 / length), dual * (1.0 / length));
@@ -236,8 +236,8 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
     };
     skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
     assert_eq!(packed, normals);
-    for v in 0..2050 {
-        assert_eq!(read(&wide, 5 + 16 * v), positions[v]);
+    for (v, position) in positions.iter().enumerate() {
+        assert_eq!(read(&wide, 5 + 16 * v), *position);
         let between = if v == 0 { 0..5 } else { 16 * v + 1..16 * v + 5 };
         assert!(wide[between].iter().all(|b| *b == 0xA5));
     }
@@ -298,7 +298,8 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn a_surface_that_contradicts_itself_is_refused() {
-    let cases: &[(&str, fn(&mut Case))] = &[
+    type Spoiled = (&'static str, fn(&mut Case));
+    let cases: &[Spoiled] = &[
         ("normals: expected 5 for 5 vertices, got 4", |c| c.normals.truncate(4)),
         ("skin joints: expected 20 for 5 vertices, got 19", |c| c.influences.joints.truncate(19)),
         ("skin weights: expected 20 for 5 vertices, got 0", |c| c.influences.weights.clear()),
@@ -331,9 +332,10 @@ fn a_pose_or_offsets_that_do_not_fit_are_refused_and_nothing_is_written() {
     let mut nan = case.posed.clone();
     nan[1].translation.x = f32::NAN;
     let mut long = case.posed.clone();
-    long[2].rotation = long[2].rotation * 2.0;
+    long[2].rotation *= 2.0;
     let five = [Vec3::ZERO; 5];
-    let cases: [(&str, &[Local], Option<&[Vec3]>); 5] = [
+    type Wrong<'a> = (&'a str, &'a [Local], Option<&'a [Vec3]>);
+    let cases: [Wrong<'_>; 5] = [
         ("pose: character 1: expected 3 joints, got 2", &case.posed[..2], None),
         ("pose: character 1: joint 1: expected a unit quaternion and finite", &nan, None),
         ("pose: character 1: joint 2: expected a unit", &long, None),

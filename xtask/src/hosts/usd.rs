@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::generate;
 use super::tally::Tally;
-use super::{generate, python_script};
 use crate::environment::Environment;
 use crate::requests::README;
 use crate::tools::Outcome;
@@ -34,20 +34,14 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         tally.case(&format!("bytes of usd_{name}.{ending}"), same.then_some(()).ok_or_else(differ));
 
         let title = format!("Pixar's USD, {name}.{ending}");
-        match &environment.python {
-            Ok(program) => {
-                let mut command = python_script(program, "usd_check.py");
-                tally.script(&title, command.arg(&file).arg(&reference));
-            }
-            Err(reason) => tally.skip(&title, reason),
+        match environment.python_script("usd_check.py") {
+            Ok(mut command) => tally.script(&title, command.arg(&file).arg(&reference)),
+            Err(reason) => tally.skip(&title, &reason),
         }
         let title = format!("Blender, {name}.{ending}");
-        match (&environment.python, &environment.blender) {
-            (Ok(program), Ok(())) => {
-                let mut command = python_script(program, "usd_check.py");
-                tally.script(&title, command.arg(&file).arg(&reference).arg("--blender"));
-            }
-            (Err(reason), _) | (_, Err(reason)) => tally.skip(&title, reason),
+        match environment.blender.clone().and_then(|()| environment.python_script("usd_check.py")) {
+            Ok(mut command) => tally.script(&title, command.arg(&file).arg(&reference).arg("--blender")),
+            Err(reason) => tally.skip(&title, &reason),
         }
     }
     Ok(())

@@ -13,7 +13,9 @@ use crate::pose::limits::JointLimits;
 use crate::pose::{Local, Pose, RestPose, model_from_joints};
 
 /// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
-const SOFTNESS: f32 = 0.004;
+const SOFTNESS: f32 = 0.001;
+/// How far off the floor a foot may stay, metres: a leg that is almost straight folds by 10° for 4 mm.
+const SPARED: f32 = 0.004;
 /// How far an ankle or the toes may go beyond their limits so that a foot can stay where it is: 4°.
 const GIVE: f32 = 0.07;
 
@@ -31,11 +33,15 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
     let pelvis = rest.require("pelvis")?;
     let blend = libm::roundf(options.blend * clip.frames_per_second() as f32) as usize;
 
-    let soles = leg::tracks(clip, &legs, found.floor);
-    let feet: [Vec<Correction>; 2] =
-        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole, blend));
-    let mut planter =
-        Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor: found.floor, options };
+    let corrected = |floor: f32| -> [Vec<Correction>; 2] {
+        let soles = leg::tracks(clip, &legs, floor);
+        std::array::from_fn(|f| corrections(&soles[f], &found.feet[f], legs[f].sole, blend))
+    };
+    // Feet that are laid flat have their ankles at another height than the motion had them. What all have in common
+    // moves the whole body, so that legs keep their bend.
+    let floor = found.floor - common_rise(clip, &legs, &found, &corrected(found.floor));
+    let feet = corrected(floor);
+    let mut planter = Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor, options };
     let drops = planter.pelvis_drops(clip, &feet, blend);
 
     let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
@@ -55,7 +61,27 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
     let planted = Clip::new(name, rest.clone(), clip.frames_per_second(), rotations, tracks)?;
     let after = measure(&planted, &Contacts { floor: 0.0, ..found.clone() })?;
     let pelvis_drop = drops.iter().copied().fold(0.0, f32::max);
-    Ok((planted, FeetReport { floor: found.floor, before, after, pelvis_drop }))
+    Ok((planted, FeetReport { floor, before, after, pelvis_drop }))
+}
+
+/// How far standing ankles are lifted by their corrections, metres: the median over frames and feet in which heel or
+/// ball touch; 0 when none does.
+fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Correction>; 2]) -> f32 {
+    let standing = |foot: usize, frame: usize| {
+        found.feet[foot].iter().any(|contact| (contact.start..contact.end).contains(&frame))
+    };
+    let mut rises = Vec::new();
+    let mut model = Vec::new();
+    for_each_pose(clip, |frame, pose| {
+        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+        for (foot, leg) in legs.iter().enumerate().filter(|(foot, _)| standing(*foot, frame)) {
+            let (ankle, ball) = (model[leg.limb.end], model[leg.ball]);
+            let moved = feet[foot][frame].apply(ankle.translation, leg.points(ankle, ball).joint);
+            rises.push(moved.y - ankle.translation.y);
+        }
+    });
+    let middle = rises.len() / 2;
+    if rises.is_empty() { 0.0 } else { *rises.select_nth_unstable_by(middle, f32::total_cmp).1 }
 }
 
 struct Planter<'a> {
@@ -71,11 +97,14 @@ impl Planter<'_> {
     fn goal(&self, leg: &Leg, model: &[Local], correction: &Correction) -> Local {
         let (foot, ball) = (self.over_floor(model[leg.limb.end]), self.over_floor(model[leg.ball]));
         let sole = leg.points(foot, ball);
-        let lowest = correction.apply(sole.heel, sole.joint).y.min(sole.ball.y + correction.shift.y);
+        let moved = correction.apply(foot.translation, sole.joint);
+        let rise = moved.y - foot.translation.y;
+        let spared = rise.clamp(-SPARED, SPARED);
+        let lowest = correction.apply(sole.heel, sole.joint).y.min(sole.ball.y + correction.shift.y) - spared;
         let lift = (-self.options.depth - lowest).max(0.0);
         Local {
             rotation: (correction.rotation() * foot.rotation).normalize(),
-            translation: correction.apply(foot.translation, sole.joint) + Vec3::Y * lift,
+            translation: moved + Vec3::Y * (lift - spared),
         }
     }
 
@@ -141,6 +170,7 @@ impl Planter<'_> {
             goal.translation = place - goal.rotation * pivot;
         }
         leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
+        self.limits.clamp_joint(self.rest, pose, leg.limb.end);
     }
 
     /// Lifts the toes about the ball until their tip is out of the floor.

@@ -100,7 +100,7 @@ fn the_rate_is_that_of_the_keys() {
     };
     assert_eq!(rate(&[0.0, 1.0 / 60.0, 2.0 / 60.0, 7.0 / 60.0]), (60.0, Found::Detected, 0));
     assert_eq!(rate(&[0.0, 1.0, 1.0 + 1.0 / 5.0]), (25.0, Found::Detected, 0));
-    assert_eq!(rate(&[0.0, 1.0, 2.7183]), (30.0, Found::Assumed, 1));
+    assert_eq!(rate(&[0.0, 1.0, 2.73]), (30.0, Found::Assumed, 1));
 
     let mut ours = small(&[0.0, 1.0]);
     ours.0["animations"][0]["extras"] = json!({"anthronet": {"frames_per_second": 48.0, "frames": 97}});
@@ -162,26 +162,26 @@ fn says_what_is_wrong_and_where() {
     let cases: &[Case] = &[
         ("expected an animation of nodes, got none", |j| j["animations"] = json!([])),
         ("animations[0]: channels[0]: target.node: 9 of 3", |j| {
-            j["animations"][0]["channels"][0]["target"]["node"] = json!(9)
+            j["animations"][0]["channels"][0]["target"]["node"] = json!(9);
         }),
         ("channels[0]: sampler 7 of 2", |j| j["animations"][0]["channels"][0]["sampler"] = json!(7)),
         ("input: expected times of keys that rise", |j| {
-            j["animations"][0]["samplers"][0]["input"] = json!(3)
+            j["animations"][0]["samplers"][0]["input"] = json!(3);
         }),
         ("output: accessor 0 is not of rows of 4", |j| {
-            j["animations"][0]["samplers"][0]["output"] = json!(0)
+            j["animations"][0]["samplers"][0]["output"] = json!(0);
         }),
         ("output: expected 6 values for 2 keys, got 2", |j| {
-            j["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE")
+            j["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE");
         }),
         ("expected LINEAR, STEP or CUBICSPLINE", |j| {
-            j["animations"][0]["samplers"][0]["interpolation"] = json!("WAVY")
+            j["animations"][0]["samplers"][0]["interpolation"] = json!("WAVY");
         }),
         ("reaches beyond", |j| j["accessors"][1]["count"] = json!(1_000_000)),
         ("skins[0].joints: 8 of 3", |j| j["skins"][0]["joints"][0] = json!(8)),
         ("is its own ancestor", |j| j["nodes"][1]["children"] = json!([0])),
         ("too many frames", |j| {
-            j["animations"][0]["extras"] = json!({"anthronet": {"frames_per_second": 30, "frames": 1e18}})
+            j["animations"][0]["extras"] = json!({"anthronet": {"frames_per_second": 30, "frames": 1e18}});
         }),
         ("a file beside or below the document", |j| j["buffers"][0]["uri"] = json!("../secret.bin")),
     ];

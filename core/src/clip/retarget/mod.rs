@@ -219,12 +219,15 @@ impl Retargeter {
             }
             let place = self.root.place(&source, model[self.root.pelvis]);
             self.locals(&mut model, &mut locals);
-            twist::apply(&self.twists, &mut locals, &mut rolls);
             for (local, rotation) in finished.locals.iter_mut().zip(&locals) {
                 local.rotation = *rotation;
             }
             finish(frame, &mut finished);
-            rotations.extend(finished.locals.iter().map(|local| local.rotation));
+            // The twist joints share what limits have left of the roll.
+            locals.clear();
+            locals.extend(finished.locals.iter().map(|local| local.rotation));
+            twist::apply(&self.twists, &mut locals, &mut rolls);
+            rotations.extend_from_slice(&locals);
             places.push(place);
         }
         if self.options.floor == Floor::Fit {

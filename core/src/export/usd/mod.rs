@@ -13,7 +13,7 @@
 //!
 //! Names that are no USD identifiers are narrowed to such, and the original is kept: of prims in `displayName`, of
 //! joints in the skeleton's `jointNames`. The scene's extras are a JSON text in the root's `customData`, under
-//! [`EXTRAS`]. A character without joints is an `Xform` with meshes alone.
+//! `anthronetExtras`. A character without joints is an `Xform` with meshes alone.
 //!
 //! Time codes are frames of the first clip; a further clip of another rate keeps its seconds. Bytes depend on the
 //! scene alone: nothing in a file tells when it was made.
