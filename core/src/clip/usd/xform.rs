@@ -91,8 +91,10 @@ impl Op {
     fn at(&self, time: f64) -> Outcome<DAffine3> {
         let fault = || format!("{}: is no xformOp that is known, or has too few numbers", self.path);
         let matrix = self.matrix(&self.numbers(time)).ok_or_else(fault)?;
-        let matrix = if self.inverted { matrix.inverse() } else { matrix };
-        if matrix.is_finite() { Ok(matrix) } else { Err(format!("{}: flattens space", self.path)) }
+        if !matrix.is_finite() || matrix.matrix3.determinant() == 0.0 {
+            return Err(format!("{}: flattens space at time code {time}", self.path));
+        }
+        Ok(if self.inverted { matrix.inverse() } else { matrix })
     }
 
     /// Linear between samples.
