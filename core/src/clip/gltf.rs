@@ -4,7 +4,7 @@
 //! stands between and above them is folded in. They rest in the pose of the nodes, which is the one that the format
 //! calls initial. Every animation is sampled at the rate of its keys.
 
-mod track;
+pub(crate) mod track;
 
 #[cfg(test)]
 mod tests;
@@ -39,12 +39,15 @@ fn motion(document: &Document, options: &ReadOptions) -> Outcome<Raw> {
         return Err(format!("expected at most {MAX_NODES} nodes, got {}", nodes.len()));
     }
     let tree = document.tree()?;
+    let mut left = track::MAX_NUMBERS;
     let animations = document
         .root
         .animations
         .iter()
         .enumerate()
-        .map(|(i, animation)| track::read(document, animation).map_err(|e| format!("animations[{i}]: {e}")))
+        .map(|(i, animation)| {
+            track::read(document, animation, &mut left).map_err(|e| format!("animations[{i}]: {e}"))
+        })
         .collect::<Outcome<Vec<Vec<Track>>>>()?;
     if animations.iter().all(Vec::is_empty) {
         return Err("expected an animation of nodes, got none".to_owned());
@@ -148,7 +151,7 @@ fn motion(document: &Document, options: &ReadOptions) -> Outcome<Raw> {
 }
 
 /// Rate and number of frames, which our own files say: keys that change nothing are left out of them.
-fn told(animation: &gltf_json::Animation) -> Option<(f64, f64)> {
+pub(crate) fn told(animation: &gltf_json::Animation) -> Option<(f64, f64)> {
     let extras: Value = gltf_json::deserialize::from_str(animation.extras.as_ref()?.get()).ok()?;
     let number = |key: &str| extras.get("anthronet")?.get(key)?.as_f64();
     let (rate, frames) = (number("frames_per_second")?, number("frames")?);

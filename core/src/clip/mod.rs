@@ -8,7 +8,7 @@ mod clip;
 mod edit;
 mod fbx;
 pub mod feet;
-mod gltf;
+pub(crate) mod gltf;
 mod joint_map;
 mod npz;
 mod onto;

@@ -11,18 +11,18 @@ use crate::clip::raw::{Outcome, snapped_rate};
 use crate::input::gltf::Document;
 
 /// The rate for keys that lie on the frames of no usual rate.
-pub(super) const FALLBACK_RATE: f64 = 30.0;
+pub(crate) const FALLBACK_RATE: f64 = 30.0;
 /// Rates to look for, the lowest first.
 const USUAL_RATES: [f64; 9] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0];
 /// How far from a frame a key may be to count as on it, in frames: what rounding of times leaves.
-pub(super) const ON_FRAME: f64 = 5e-3;
-/// Most numbers of all keys of an animation.
-const MAX_NUMBERS: usize = 1 << 26;
+pub(crate) const ON_FRAME: f64 = 5e-3;
+/// Most numbers of all keys of a document.
+pub(crate) const MAX_NUMBERS: usize = 1 << 26;
 
 /// Keys of one property of one node.
-pub(super) struct Track {
-    pub(super) node: usize,
-    pub(super) property: Property,
+pub(crate) struct Track {
+    pub(crate) node: usize,
+    pub(crate) property: Property,
     interpolation: Interpolation,
     /// Seconds, rising.
     times: Vec<f64>,
@@ -30,9 +30,10 @@ pub(super) struct Track {
     values: Vec<[f32; 4]>,
 }
 
-/// The tracks of an animation that move nodes; weights of blend shapes are passed over.
-pub(super) fn read(document: &Document, animation: &Animation) -> Outcome<Vec<Track>> {
-    let (mut tracks, mut numbers) = (Vec::<Track>::new(), 0usize);
+/// The tracks of an animation that move nodes; weights of blend shapes are passed over. `left` is how many numbers the
+/// document may still have.
+pub(crate) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Outcome<Vec<Track>> {
+    let mut tracks = Vec::<Track>::new();
     for (i, channel) in animation.channels.iter().enumerate() {
         let Checked::Valid(property) = channel.target.path else { continue };
         if property == Property::MorphTargetWeights {
@@ -40,10 +41,9 @@ pub(super) fn read(document: &Document, animation: &Animation) -> Outcome<Vec<Tr
         }
         let track =
             read_channel(document, animation, i, property).map_err(|e| format!("channels[{i}]: {e}"))?;
-        numbers = numbers.saturating_add(4 * track.values.len());
-        if numbers > MAX_NUMBERS {
-            return Err(format!("more than {MAX_NUMBERS} numbers of keys"));
-        }
+        *left = left
+            .checked_sub(4 * track.values.len())
+            .ok_or_else(|| format!("more than {MAX_NUMBERS} numbers of keys"))?;
         tracks.push(track);
     }
     Ok(tracks)
@@ -86,10 +86,24 @@ fn read_channel(document: &Document, animation: &Animation, i: usize, property: 
 }
 
 impl Track {
+    /// The value of every key; the fourth number is of rotations alone.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        (0..self.times.len()).map(|i| self.key(i))
+    }
+
+    fn key(&self, i: usize) -> [f32; 4] {
+        self.values[if self.interpolation == Interpolation::CubicSpline { 3 * i + 1 } else { i }]
+    }
+
+    /// Whether it has a single key.
+    pub(crate) fn is_still(&self) -> bool {
+        self.times.len() == 1
+    }
+
     /// Sets the node's property to what it is at a time; before the first key and after the last it is held. A key
-    /// that is up to `early` seconds later counts as reached.
-    pub(super) fn sample(&self, time: f64, early: f64, transform: &mut Transform) {
-        let value = self.value(time, early);
+    /// that is up to `near` seconds away counts as reached.
+    pub(super) fn sample(&self, time: f64, near: f64, transform: &mut Transform) {
+        let value = self.value(time, near);
         match self.property {
             Property::Translation => transform.translation = vector(value),
             Property::Scale => transform.scale = vector(value),
@@ -98,16 +112,17 @@ impl Track {
         }
     }
 
-    fn value(&self, time: f64, early: f64) -> [f64; 4] {
-        let cubic = self.interpolation == Interpolation::CubicSpline;
-        let key = |i: usize| self.values[if cubic { 3 * i + 1 } else { i }].map(f64::from);
-        let next = self.times.partition_point(|t| *t <= time + early);
-        if next == 0 || next == self.times.len() {
+    /// What the property is at a time, as [`sample`](Self::sample) sets it; on a key, the file's own numbers.
+    pub(crate) fn value(&self, time: f64, near: f64) -> [f64; 4] {
+        let key = |i: usize| self.key(i).map(f64::from);
+        let next = self.times.partition_point(|t| *t <= time + near);
+        let on_key = next > 0 && time - self.times[next - 1] <= near;
+        if next == 0 || next == self.times.len() || on_key {
             return key(next.saturating_sub(1));
         }
         let (from, to) = (key(next - 1), key(next));
         let span = self.times[next] - self.times[next - 1];
-        let t = ((time - self.times[next - 1]) / span).max(0.0);
+        let t = (time - self.times[next - 1]) / span;
         match self.interpolation {
             Interpolation::Step => from,
             Interpolation::Linear if self.property == Property::Rotation => {
@@ -134,14 +149,14 @@ fn vector([x, y, z, _]: [f64; 4]) -> DVec3 {
 }
 
 /// From the first to the last key of all.
-pub(super) fn span(tracks: &[Track]) -> (f64, f64) {
+pub(crate) fn span(tracks: &[Track]) -> (f64, f64) {
     let firsts = tracks.iter().filter_map(|track| track.times.first());
     let lasts = tracks.iter().filter_map(|track| track.times.last());
     (firsts.copied().fold(f64::INFINITY, f64::min), lasts.copied().fold(f64::NEG_INFINITY, f64::max))
 }
 
 /// The rate on whose frames all keys lie: that of evenly spaced keys, else the lowest usual one.
-pub(super) fn rate(tracks: &[Track]) -> Option<f64> {
+pub(crate) fn rate(tracks: &[Track]) -> Option<f64> {
     let (start, _) = span(tracks);
     let steps = tracks.iter().flat_map(|track| track.times.windows(2).map(|pair| pair[1] - pair[0]));
     let shortest = steps.fold(f64::INFINITY, f64::min);

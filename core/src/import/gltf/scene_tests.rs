@@ -204,21 +204,21 @@ fn says_what_is_wrong_and_where() {
         ("nodes[4] `Nail`: its mesh has no skin and hangs on no joint", |j| {
             j["nodes"][4].as_object_mut().unwrap().remove("skin");
         }),
-        ("animations[0]: channels[1]: a second track of nodes[0] `upper`", |j| {
+        ("animations[0]: a second track of nodes[0] `upper`", |j| {
             let first = j["animations"][0]["channels"][0].clone();
             j["animations"][0]["channels"].as_array_mut().unwrap().insert(0, first);
         }),
-        ("animations[0]: channels[0]: input: time 1 does not come after time 0", |j| {
+        ("animations[0]: channels[0]: input: expected times of keys that rise", |j| {
             let time = j["animations"][0]["samplers"][0]["input"].as_u64().unwrap() as usize;
             let view = j["accessors"][time]["bufferView"].as_u64().unwrap() as usize;
             j["bufferViews"][view]["byteOffset"] = json!(0);
         }),
         ("output: accessor", |j| j["animations"][0]["samplers"][0]["output"] = json!(0)),
-        ("output: expected 3 values, got 1", |j| {
+        ("output: expected 3 values for 3 keys, got 1", |j| {
             let output = j["animations"][0]["samplers"][0]["output"].as_u64().unwrap() as usize;
             j["accessors"][output]["count"] = json!(1);
         }),
-        ("sampler does not exist", |j| j["animations"][0]["channels"][0]["sampler"] = json!(99)),
+        ("sampler 99 of 4", |j| j["animations"][0]["channels"][0]["sampler"] = json!(99)),
         ("expected 1 to 1048576 frames", |j| {
             j["animations"][0]["extras"]["anthronet"]["frames"] = json!(1e9);
         }),
@@ -228,9 +228,6 @@ fn says_what_is_wrong_and_where() {
             }
             let again = vec![j["animations"][0].clone(); 20];
             j["animations"].as_array_mut().unwrap().extend(again);
-        }),
-        ("frames a second, got 0", |j| {
-            j["animations"][0]["extras"]["anthronet"]["frames_per_second"] = json!(0);
         }),
         ("has a skin, but no JOINTS_0", |j| {
             let attributes = j["meshes"][1]["primitives"][0]["attributes"].as_object_mut().unwrap();

@@ -1,4 +1,5 @@
-//! Undoes EXT_meshopt_compression, by the reference implementation's decoder, which is made for input that is not trusted.
+//! Undoes EXT_meshopt_compression, by the reference implementation's decoder, which is made for input that is not
+//! trusted.
 
 use gltf_json::{Buffer, Root, validation::USize64};
 use serde::Deserialize;
