@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::backend::{self, Model, Usual};
+use crate::backend::{self, Model, Random, Usual};
 use crate::failure::{Failure, Result};
 use crate::progress::bar;
 use crate::render::{Image, LitFigure, Picture, Tile, View, draw_text, text_width};
@@ -22,6 +22,8 @@ const VIEWS: [(View, usize); 3] = [(View::Front, 166), (View::Side, 52), (View::
 const CAPTION: usize = 26;
 /// How far from the mean the shortest, tallest, thinnest and heaviest are asked for, in standard deviations.
 const REACH: f64 = 1.8;
+/// The stream of [`Random`] that the sheet is shuffled from.
+const STREAM: u64 = 4;
 
 /// Draw random people, both sexes, thin to heavy, short to tall, three views each, all at one scale.
 #[derive(Args)]
@@ -80,13 +82,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 /// A Latin hypercube over height and waist for each sex: every stratum of either occurs once. The waist is drawn
 /// around what is usual for the height.
 fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<RequestArguments> {
-    let mut random = SplitMix(seed);
+    let mut random = Random::new(seed, STREAM);
     let mut targets: [Vec<(f64, f64)>; 2] = [count.div_ceil(2), count / 2].map(|n| {
         let mut columns = [(); 2].map(|()| {
             let mut strata: Vec<f64> =
-                (0..n).map(|i| REACH * (2.0 * (i as f64 + random.unit()) / n as f64 - 1.0)).collect();
+                (0..n).map(|i| REACH * (2.0 * (i as f64 + random.uniform()) / n as f64 - 1.0)).collect();
             for i in (1..n).rev() {
-                strata.swap(i, (random.unit() * (i + 1) as f64) as usize);
+                strata.swap(i, (random.uniform() * (i + 1) as f64) as usize);
             }
             strata
         });
@@ -113,20 +115,6 @@ fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<Re
             }
         })
         .collect()
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014): enough for shuffling a sheet.
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// Uniform in 0..1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 #[cfg(test)]

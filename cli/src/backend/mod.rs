@@ -11,6 +11,7 @@ use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptio
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::pose::RestPose;
+pub(crate) use anthronet::random::Random;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
 use serde_json::json;
