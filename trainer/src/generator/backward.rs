@@ -190,7 +190,7 @@ mod tests {
             let frame = Frame::fit(&set, &config).unwrap();
             let losses = Losses::new(&config, &frame.scale, 30, Some(&form)).unwrap();
             let batch = frame.prepare(&set, true).batch(&(0..90).collect::<Vec<_>>()).unwrap();
-            let mut network = Network::new(&config, &frame, 3).unwrap();
+            let mut network = Network::new(&config, &frame, 5).unwrap();
             let noise = random_normals(&mut epoch_random(1, 1), 90 * config.latent);
             let noise = Tensor::from_vec(noise, (90, config.latent), &Device::Cpu).unwrap();
             if norm == Norm::Running {
@@ -211,7 +211,7 @@ mod tests {
                 assert_eq!(got.len(), expected.len(), "{name}");
                 let largest = expected.iter().fold(1e-6_f32, |m, v| m.max(v.abs()));
                 for (a, b) in got.iter().zip(&expected) {
-                    // f32 rounding of sums over 90 rows and 10 layers.
+                    // f32 rounding of sums over 90 rows and 10 layers; of a bias before batch norm they almost cancel.
                     assert!((a - b).abs() < 1e-3 * largest, "{name}: {a} {b}, largest {largest}");
                 }
             }
