@@ -37,6 +37,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    arguments.motion.check(&arguments.output)?;
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one motion, got none"));
     }

@@ -7,6 +7,7 @@ use clap::Args;
 use crate::backend;
 use crate::failure::Result;
 use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
+use crate::motion::STILL_ENDINGS;
 use crate::request::{check_ending, ending};
 
 /// Write a character file in another format, with its skin, joints, materials and motions.
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(names) = arguments.joint_names {
         backend::motion::rename_joints(&mut scene, names);
     }
-    if matches!(ending(&arguments.output).as_str(), "vrm" | "obj") && !scene.clips.is_empty() {
+    if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
         eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
         scene.clips.clear();
     }

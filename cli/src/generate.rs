@@ -95,6 +95,7 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected another file than that of -o"));
     }

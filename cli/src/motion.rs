@@ -1,8 +1,11 @@
 //! Options that say how a character moves, shared by the commands that write motion.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+
+use crate::failure::Failure;
+use crate::request::ending;
 
 /// Length of one unit of a motion file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -87,6 +90,25 @@ pub(crate) struct MotionArguments {
     /// Write how the motion was read and brought onto the body as JSON, to a file or with `-` to standard output.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion_report: Option<PathBuf>,
+}
+
+/// Endings of character files that hold no motion.
+pub(crate) const STILL_ENDINGS: [&str; 2] = ["vrm", "obj"];
+
+impl MotionArguments {
+    /// Refuses, before any work is done, what cannot be written.
+    pub(crate) fn check(&self, output: &Path) -> crate::failure::Result<()> {
+        let ending = ending(output);
+        if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
+            let message =
+                format!("--clip: a .{ending} holds no motion, expected .glb .gltf .usda .usdc or .usdz");
+            return Err(Failure::usage(message));
+        }
+        if self.clips.is_empty() && self.motion_report.is_some() {
+            return Err(Failure::usage("--motion-report: expected together with --clip"));
+        }
+        Ok(())
+    }
 }
 
 fn parse_rate(text: &str) -> Result<f64, String> {

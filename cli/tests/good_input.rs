@@ -9,7 +9,9 @@ use serde_json::Value;
 
 #[test]
 fn help_is_for_people() {
-    for command in ["generate", "measure", "info", "preview", "contact-sheet", "evaluate", "train"] {
+    for command in
+        ["generate", "animate", "convert", "measure", "info", "preview", "contact-sheet", "evaluate", "train"]
+    {
         let run = anthronet(&[command, "--help"], &[]).succeeds();
         assert!(run.out.contains("Example"), "{command}: {}", run.out);
     }

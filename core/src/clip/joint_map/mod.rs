@@ -13,7 +13,7 @@ use serde::Serialize;
 pub use overrides::{Overrides, read_overrides};
 
 use crate::pose::RestPose;
-use crate::rig::humanoid::humanoid_bones;
+use crate::rig::humanoid::{humanoid_bones, native_name, native_names};
 use crate::{Error, Result};
 
 /// What a source must have.
@@ -61,7 +61,8 @@ pub struct JointMapReport {
     pub vocabulary: Option<String>,
     /// The pairs, in the order of the source.
     pub matched: Vec<JointMatch>,
-    /// Source joints above or between matched ones: their motion arrives in the next matched joint below.
+    /// Source joints above or between matched ones: their motion arrives in the next matched joint below; and twist
+    /// joints of our rig, which are set anew.
     pub passed_on: Vec<String>,
     /// Source joints whose motion is lost.
     pub unmatched: Vec<String>,
@@ -234,7 +235,7 @@ impl Builder<'_> {
             } else if let Some(ours) = chain_slot(joint, &spine, &neck) {
                 let (target, by) = (ours.to_owned(), MatchedBy::Chain);
                 report.matched.push(JointMatch { source: name.clone(), target, by });
-            } else if matched_or_above.contains(&joint) {
+            } else if matched_or_above.contains(&joint) || is_twist(&native_name(name)) {
                 report.passed_on.push(name.clone());
             } else {
                 report.unmatched.push(name.clone());
@@ -251,6 +252,11 @@ fn chain_slot(joint: usize, spine: &[usize], neck: &[usize]) -> Option<&'static 
     let place = |chain: &[usize]| chain.iter().position(|j| *j == joint);
     let spine_slot = |at: usize| ["spine_01", "spine_02", "spine_03"][at * 3 / spine.len()];
     place(spine).map(spine_slot).or_else(|| place(neck).map(|_| "neck_01"))
+}
+
+/// Whether a joint of our rig only shares the roll of others.
+fn is_twist(ours: &str) -> bool {
+    ours.contains("_twist_") && native_names().any(|native| native == ours)
 }
 
 fn is_sided(ours: &str) -> bool {
