@@ -1,18 +1,21 @@
 //! Skinning against Blender's Armature modifier, UsdSkel, three.js, and its definition in double precision.
 
 use std::path::Path;
+use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::tools::{Outcome, cargo};
+use crate::tools::{self, Outcome, cargo};
 
 pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let folder = folder.join("skin");
-    // Of the profile that the unit tests were built in; results do not depend on it.
-    let dump =
-        cargo("run").args(["--package", "anthronet", "--example", "skin_dump", "--"]).arg(&folder).status();
-    if !dump.is_ok_and(|status| status.success()) {
-        tally.case("skinned arrays", Err("the example skin_dump failed".to_owned()));
+    // With the packages, features and profile of the unit tests, which have built it by now; results do not depend on it.
+    let build = ["--workspace", "--all-features", "--example", "skin_dump"];
+    let built = tools::run(cargo("build").args(build));
+    let program =
+        tools::target().join("debug/examples/skin_dump").with_extension(std::env::consts::EXE_EXTENSION);
+    if let Err(why) = built.and_then(|()| tools::run(Command::new(program).arg(&folder))) {
+        tally.case("skinned arrays", Err(why));
         return Ok(());
     }
     for (name, with) in
