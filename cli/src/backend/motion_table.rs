@@ -141,13 +141,9 @@ fn builtin_row(name: &str, rests: &[Arc<RestPose>]) -> Result<Row> {
         let options = feet::FeetOptions { find_floor: false, ..feet::FeetOptions::default() };
         let measured = feet::measure(&clip, &feet::contacts(&clip, &options)?)?;
         row.feet(&measured, &measured, 1.0 / rests.len() as f64);
-        let limits = JointLimits::of_rig(rest);
-        for frame in 0..clip.frame_count() {
-            for (joint, excess) in limits.excess(rest, &clip.pose(frame)).into_iter().enumerate() {
-                let name = rest.names().get(joint).map(String::as_str);
-                row.beyond(f64::from(excess).to_degrees(), name);
-            }
-        }
+        let (excess, joint) = clip::worst_excess(&JointLimits::of_rig(rest), &clip);
+        let name = joint.and_then(|j| rest.names().get(j)).map(String::as_str);
+        row.beyond(f64::from(excess).to_degrees(), name);
     }
     Ok(row)
 }

@@ -31,7 +31,7 @@ pub use builtin::{BUILTIN, builtin};
 pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
 pub use edit::{in_place, looped, resample};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
-pub use onto::{ClipQuality, OntoOptions, OntoReport, onto};
+pub use onto::{ClipQuality, OntoOptions, OntoReport, onto, worst_excess};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
     BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,

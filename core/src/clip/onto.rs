@@ -132,8 +132,9 @@ pub fn onto(
     Ok((clips, report))
 }
 
-/// The farthest beyond its limits that a joint turns in any frame, radians, and which.
-fn worst_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
+/// The farthest beyond its limits that a joint turns in any frame of a clip of our rig, radians, and which joint; 0 and
+/// none when all stay within.
+pub fn worst_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
     let mut worst = (0.0, None);
     for frame in 0..clip.frame_count() {
         for (joint, excess) in limits.excess(clip.rest(), &clip.pose(frame)).into_iter().enumerate() {
