@@ -1,4 +1,4 @@
-//! The data set: a hundred thousand bodies in coefficients, with their measures and joints.
+//! The data set: two hundred thousand bodies in coefficients, with their measures and joints.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::corpus::{Corpus, DATA_VERSION, Gauge, SEED, Split, plausible};
 use crate::{Error, Result};
 
 /// Numbers drawn; implausible bodies among them are left out.
-pub const DRAWN: u64 = 120_000;
+pub const DRAWN: u64 = 240_000;
 const BATCH: u64 = 480;
 
 /// Bodies of one split, row by row.

@@ -2,7 +2,7 @@
 //!
 //! The tour, in the order in which data flows: [`assets`] reads the MakeHuman data, [`sampling`] draws people,
 //! [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] lays the measures on their mean,
-//! [`dataset`] measures a hundred thousand of them in the coefficients of [`basis`], [`generator`] trains the
+//! [`dataset`] measures two hundred thousand of them in the coefficients of [`basis`], [`generator`] trains the
 //! network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it; [`commands`] ties them together.
 
 pub mod assets;

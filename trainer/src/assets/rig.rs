@@ -37,6 +37,9 @@ pub struct Rig {
     pub weights: Vec<Vec<(u16, f32)>>,
 }
 
+/// Shares of a vertex below this are left out: MakeHuman has strays of 1e-5 that move nothing one can see.
+const LEAST_WEIGHT: f32 = 1e-4;
+
 #[derive(Deserialize)]
 struct Bone {
     head: End,
@@ -227,7 +230,9 @@ impl Rig {
             .map(|&raw| {
                 let weights = &dense[raw as usize];
                 let sum: f32 = weights.values().sum();
-                weights.iter().filter(|(_, w)| **w > 0.0).map(|(&j, &w)| (j as u16, w / sum)).collect()
+                let kept: Vec<_> = weights.iter().filter(|(_, w)| **w / sum >= LEAST_WEIGHT).collect();
+                let sum: f32 = kept.iter().map(|(_, w)| **w).sum();
+                kept.into_iter().map(|(&j, &w)| (j as u16, w / sum)).collect()
             })
             .collect())
     }

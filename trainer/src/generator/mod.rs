@@ -138,7 +138,7 @@ impl Default for TrainingOptions {
         Self {
             out_dir: PathBuf::from("."),
             seed: 1,
-            epochs: 150,
+            epochs: 70,
             threads: 0,
             resume: false,
             quiet: false,
