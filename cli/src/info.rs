@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let info = Model::open()?.info()?;
+    let info = Model::open()?.info();
     if arguments.json {
         let json = serde_json::to_string(&info).map_err(|e| Failure::failed(e.to_string()))?;
         return print(&(json + "\n"));

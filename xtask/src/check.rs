@@ -1,7 +1,7 @@
 //! `cargo xtask check`: what a reader may take for granted.
 
-use crate::layering;
 use crate::tools::{self, Outcome, cargo};
+use crate::{bindings, layering};
 use std::process::Command;
 
 pub(crate) fn run() -> Outcome {
@@ -13,6 +13,7 @@ pub(crate) fn run() -> Outcome {
         Command::new(cargo_program).current_dir(tools::root()).args(["fmt", "--all", "--check"]),
     ));
     keep(layers());
+    keep(bindings::check());
     // One set of features for lints, documentation and tests, so that the heavy dependencies are built once each way.
     keep(tools::run(cargo("clippy").args([
         "--workspace",

@@ -1,10 +1,29 @@
-//! `cargo xtask gen`: the pictures in `docs/`, made by the commands that a user has.
+//! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made by the commands that a user has.
 
-use crate::requests;
 use crate::tools::{self, Outcome};
+use crate::{bindings, requests};
 use std::process::Command;
 
-pub(crate) fn run() -> Outcome {
+/// What can be generated alone.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Kind {
+    /// The C header and the C# bindings
+    Bindings,
+    /// The pictures in docs
+    Pictures,
+}
+
+pub(crate) fn run(only: Option<Kind>) -> Outcome {
+    if only != Some(Kind::Pictures) {
+        bindings::write()?;
+    }
+    if only != Some(Kind::Bindings) {
+        pictures()?;
+    }
+    Ok(())
+}
+
+fn pictures() -> Outcome {
     let anthronet = tools::command_line()?;
     let root = tools::root();
     let scratch = tools::target().join("gen");

@@ -12,19 +12,19 @@ use std::path::Path;
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
+    ("space", &[]),
     ("mesh", &[]),
     ("measure", &["mesh"]),
     ("rig", &["mesh"]),
     ("condition", &["measure", "mesh"]),
     ("model", &["condition", "measure", "mesh", "rig"]),
     ("body", &["model", "condition", "measure", "mesh", "rig"]),
-    ("space", &[]),
     ("input", &[]),
-    ("pose", &["rig"]),
+    ("pose", &["rig", "space"]),
     ("clip", &["pose", "rig", "space", "input"]),
     ("skin", &["pose", "rig", "mesh"]),
     ("export", &["body", "model", "condition", "measure", "mesh", "rig", "pose", "clip", "space"]),
-    ("import", &["export", "measure", "mesh", "rig", "pose", "clip", "space", "input"]),
+    ("import", &["export", "model", "measure", "mesh", "rig", "pose", "clip", "space", "input"]),
 ];
 
 /// Rooms without a view of bodies, open to everybody.

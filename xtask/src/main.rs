@@ -6,10 +6,11 @@
 //! | `test`  | `check`, the Rust tests, and the cross-boundary tests in programs that are not ours |
 //! | `train` | rebuilds the committed model from nothing |
 //! | `bench` | the library's benchmarks |
-//! | `gen`   | rewrites generated files: the pictures in `docs/` |
+//! | `gen`   | rewrites generated files: the C header, the C# bindings, the pictures in `docs/` |
 //! | `bless` | rewrites the goldens in `tests/golden/` after an intended change |
 
 mod bench;
+mod bindings;
 mod bless;
 mod check;
 mod environment;
@@ -53,8 +54,12 @@ enum Verb {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Rewrite generated files: docs/preview.png, docs/people.png
-    Gen,
+    /// Rewrite generated files: ffi/include/anthronet.h, the C# bindings, docs/preview.png, docs/people.png
+    Gen {
+        /// One kind alone
+        #[arg(long, value_enum)]
+        only: Option<r#gen::Kind>,
+    },
     /// Rewrite tests/golden/hashes.json; look at the difference before you commit it
     Bless,
 }
@@ -65,7 +70,7 @@ fn main() -> ExitCode {
         Verb::Test { only } => test::run(only),
         Verb::Train { rest } => train::run(&rest),
         Verb::Bench { rest } => bench::run(&rest),
-        Verb::Gen => r#gen::run(),
+        Verb::Gen { only } => r#gen::run(only),
         Verb::Bless => bless::run(),
     };
     match done {

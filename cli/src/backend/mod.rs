@@ -64,40 +64,8 @@ impl Model {
     }
 
     /// Measures, joints, versions and scores, as documented for `info --json`.
-    pub(crate) fn info(&self) -> Result<serde_json::Value> {
-        let model = &self.0;
-        let (character, ranges) = (model.character(), model.ranges());
-        let measures = model.definitions().iter().map(|(id, definition)| {
-            let mut measure = json!({
-                "name": definition.name,
-                "kind": definition.kind,
-                "points": definition.points,
-                "normal": definition.normal.to_array(),
-                "axis": definition.axis.map(|axis| axis.to_array()),
-                "standard": definition.standard(),
-                "min": ranges[id.index()].min,
-                "max": ranges[id.index()].max,
-            });
-            if !definition.edges.is_empty() {
-                measure["edges"] = json!(definition.edges);
-            }
-            measure
-        });
-        let skeleton = character.skeleton();
-        let joints = skeleton.names().iter().zip(skeleton.parents()).map(|(name, parent)| {
-            let parent = parent.and_then(|p| skeleton.names().get(p as usize));
-            json!({"name": name, "parent": parent})
-        });
-        let levels = Lod::ALL.map(|lod| character.vertex_count(lod));
-        Ok(json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "measures": measures.collect::<Vec<_>>(),
-            "joints": joints.collect::<Vec<_>>(),
-            "vertices_per_lod": levels,
-            "latent_size": model.latent_size(),
-            "measures_sha256": model.definitions().hash(),
-            "model": model.provenance(),
-        }))
+    pub(crate) fn info(&self) -> serde_json::Value {
+        self.0.info()
     }
 
     /// What is usual for a sex, from the prior.
@@ -156,11 +124,7 @@ impl Person {
 
 /// All measures of a file's body: its first mesh, at any level of detail.
 pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
-    let in_file = |failure: Failure| Failure::failed(format!("{}: {failure}", path.display()));
-    let scene = anthronet::import::open(path)?;
-    let mesh = scene.meshes.first().ok_or_else(|| in_file(Failure::failed("has no mesh")))?;
-    let vertices = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
-    let measured = model.0.measure_mesh(vertices).map_err(|error| in_file(error.into()))?;
+    let measured = anthronet::import::measure_file(&model.0, path)?;
     let Mass { volume_m3, mass_kg, bmi } = measured.mass;
     let named = MeasureId::all().zip(measured.measurements);
     let named = named.map(|(id, value)| NamedValue { name: id.name(), value });

@@ -44,35 +44,55 @@ pub fn write_scene(scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
 /// As [`write_scene`].
 pub fn write_scene_with(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions) -> Result<()> {
     let path = path.as_ref();
-    let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-    match ending.as_deref() {
-        Some("glb") => write_atomic(path, &gltf::to_glb_with(scene, &options.gltf)?),
-        Some("vrm") => write_atomic(path, &gltf::to_vrm(scene, &options.vrm)?),
-        Some("obj") => write_atomic(path, &obj::to_obj(scene)?),
-        Some("usda") => write_atomic(path, &usd::to_usda(scene)?),
-        Some("usdc") => write_atomic(path, &usd::to_usdc(scene)?),
-        Some("usdz") => write_atomic(path, &usd::to_usdz(scene)?),
-        Some("gltf") => {
-            let bin_path = path.with_extension("bin");
-            let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
-                return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
-            };
-            let files = gltf::to_gltf_with(scene, bin_name, &options.gltf)?;
-            // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
-            let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
-            let json = Pending::new(path, |file| file.write_all(&files.json))?;
-            let bin_is_new = !bin.target.exists();
-            let bin_target = bin.target.clone();
-            bin.commit()?;
-            json.commit().inspect_err(|_| {
-                if bin_is_new {
-                    // The failure itself is what the caller must hear of.
-                    let _ = fs::remove_file(&bin_target);
-                }
-            })
-        }
-        _ => Err(Error::file(path, format!("unknown ending, expected one of {}", ENDINGS.join(" ")))),
+    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+    if ending != "gltf" {
+        let Some(bytes) = in_one_file(scene, &ending, options) else {
+            return Err(Error::file(path, format!("unknown ending, expected one of {}", ENDINGS.join(" "))));
+        };
+        return write_atomic(path, &bytes?);
     }
+    let bin_path = path.with_extension("bin");
+    let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
+        return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
+    };
+    let files = gltf::to_gltf_with(scene, bin_name, &options.gltf)?;
+    // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
+    let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
+    let json = Pending::new(path, |file| file.write_all(&files.json))?;
+    let bin_is_new = !bin.target.exists();
+    let bin_target = bin.target.clone();
+    bin.commit()?;
+    json.commit().inspect_err(|_| {
+        if bin_is_new {
+            // The failure itself is what the caller must hear of.
+            let _ = fs::remove_file(&bin_target);
+        }
+    })
+}
+
+/// The scene as the bytes of one file, in the format of an ending without its dot, in any case: `glb`, `vrm`, `usda`,
+/// `usdc`, `usdz` or `obj`.
+///
+/// # Errors
+/// [`Error::Request`] for another format, [`Error::Invalid`] for a scene that does not validate.
+pub fn scene_to_bytes(scene: &Scene, format: &str, options: &WriteOptions) -> Result<Vec<u8>> {
+    in_one_file(scene, &format.to_ascii_lowercase(), options).unwrap_or_else(|| {
+        let expected = "expected one of glb vrm usda usdc usdz obj, which are one file each";
+        Err(Error::request("format", format!("{expected}, got `{format}`")))
+    })
+}
+
+/// `None` for a format that is none, or that is more than one file.
+fn in_one_file(scene: &Scene, format: &str, options: &WriteOptions) -> Option<Result<Vec<u8>>> {
+    Some(match format {
+        "glb" => gltf::to_glb_with(scene, &options.gltf),
+        "vrm" => gltf::to_vrm(scene, &options.vrm),
+        "obj" => obj::to_obj(scene),
+        "usda" => usd::to_usda(scene),
+        "usdc" => usd::to_usdc(scene),
+        "usdz" => usd::to_usdz(scene),
+        _ => return None,
+    })
 }
 
 /// Writes a file whole or not at all; an existing regular file is replaced, through a symbolic link too.

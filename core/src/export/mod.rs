@@ -10,12 +10,14 @@ pub mod gltf;
 pub mod obj;
 pub mod scene;
 pub mod skin_tone;
+mod split;
 #[cfg(test)]
 pub(crate) mod synthetic;
 pub mod usd;
 
 pub use character::SceneOptions;
-pub use file::{WriteOptions, write_atomic, write_scene, write_scene_with};
+pub use file::{WriteOptions, scene_to_bytes, write_atomic, write_scene, write_scene_with};
 pub use gltf::{GltfOptions, VrmMeta, vrm};
-pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh};
+pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
 pub use skin_tone::SkinTone;
+pub use split::SplitMesh;

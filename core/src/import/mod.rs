@@ -5,6 +5,7 @@
 //! whatever is wrong is an [`Error::File`] that says what and where.
 
 pub mod gltf;
+mod measured;
 pub mod obj;
 pub mod scene;
 pub mod usd;
@@ -12,6 +13,8 @@ pub mod usd;
 use std::{ffi::OsStr, path::Path};
 
 use glam::Vec3;
+
+pub use measured::measure_file;
 
 use crate::input::{MAX_ELEMENTS, read};
 use crate::{Error, Result};

@@ -4,6 +4,7 @@ mod character;
 pub mod config;
 mod file;
 mod generator;
+mod info;
 mod measured_mesh;
 mod measured_space;
 pub mod network;

@@ -2,6 +2,8 @@
 
 use glam::{Affine3A, Quat, Vec3};
 
+use crate::space::Space;
+
 /// A joint's transform to its parent: `parent_from_joint`, a rigid motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Local {
@@ -32,6 +34,14 @@ impl Local {
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.conjugate();
         Self { rotation, translation: rotation * -self.translation }
+    }
+
+    /// The same motion of ours with both its spaces in `space`.
+    pub fn in_space(self, space: Space) -> Self {
+        Self {
+            rotation: space.rotation_from_ours(self.rotation),
+            translation: space.from_ours(self.translation),
+        }
     }
 }
 

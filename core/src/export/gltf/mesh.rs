@@ -10,6 +10,7 @@ use serde_json::json;
 
 use super::super::accessor::{DocumentBuilder, Usage};
 use super::super::scene::SceneMesh;
+use super::super::split::SplitMesh;
 use super::raw;
 use crate::Result;
 
@@ -24,8 +25,7 @@ pub(super) fn push(builder: &mut DocumentBuilder, mesh: &SceneMesh, joints: usiz
         attributes.push((Semantic::Normals, normals));
     }
     if !mesh.uvs.is_empty() {
-        // A vertex that no face uses has no texture coordinate of its own.
-        let uvs = split.uvs.iter().map(|uv| mesh.uvs.get(*uv as usize).copied().unwrap_or_default());
+        let uvs = split.uvs(mesh);
         attributes.push((Semantic::TexCoords(0), builder.push_accessor(uvs, Usage::Vertices)));
     }
     for set in 0..mesh.influences_per_vertex / 4 {
@@ -83,49 +83,4 @@ fn written_slots(mesh: &SceneMesh, vertex: usize, set: usize) -> [(u16, f32); 4]
     let others: f64 = slots[1..].iter().map(|(_, weight)| f64::from(*weight)).sum();
     slots[0].1 = (1.0 - others) as f32;
     std::array::from_fn(|i| slots[4 * set + i])
-}
-
-/// A mesh whose vertices have one texture coordinate each.
-struct SplitMesh {
-    /// Scene vertex of every written vertex: `0..V`, then the duplicates.
-    source: Vec<u32>,
-    /// Texture coordinate index of every written vertex, or [`UNSEEN`].
-    uvs: Vec<u32>,
-    /// Written vertices of every triangle.
-    triangles: Vec<[u32; 3]>,
-}
-
-const UNSEEN: u32 = u32::MAX;
-
-impl SplitMesh {
-    fn new(mesh: &SceneMesh) -> Self {
-        let vertices = mesh.positions.len();
-        let mut source: Vec<u32> = (0..vertices as u32).collect();
-        let mut uvs = vec![UNSEEN; vertices];
-        // The written copies of one scene vertex form a chain; they are few.
-        let mut next_copy = vec![UNSEEN; vertices];
-        let mut written = |(vertex, uv): (u32, u32)| {
-            let mut copy = vertex as usize;
-            loop {
-                if uvs[copy] == UNSEEN {
-                    uvs[copy] = uv;
-                }
-                let same = uvs[copy] == uv || mesh.uvs.get(uvs[copy] as usize) == mesh.uvs.get(uv as usize);
-                if same {
-                    return copy as u32;
-                }
-                if next_copy[copy] == UNSEEN {
-                    let new = source.len() as u32;
-                    next_copy[copy] = new;
-                    source.push(vertex);
-                    uvs.push(uv);
-                    next_copy.push(UNSEEN);
-                    return new;
-                }
-                copy = next_copy[copy] as usize;
-            }
-        };
-        let triangles = mesh.triangulated().into_iter().map(|triangle| triangle.map(&mut written)).collect();
-        Self { source, uvs, triangles }
-    }
 }

@@ -1,0 +1,45 @@
+//! What a model is, for programs.
+
+use serde_json::json;
+
+use super::Model;
+use crate::mesh::Lod;
+
+impl Model {
+    /// Measures with definitions, standards and ranges (metres), joints with parents, vertices per level of detail,
+    /// versions and scores: the JSON of `anthronet info --json`.
+    pub fn info(&self) -> serde_json::Value {
+        let (character, ranges) = (self.character(), self.ranges());
+        let measures = self.definitions().iter().map(|(id, definition)| {
+            let mut measure = json!({
+                "name": definition.name,
+                "kind": definition.kind,
+                "points": definition.points,
+                "normal": definition.normal.to_array(),
+                "axis": definition.axis.map(|axis| axis.to_array()),
+                "standard": definition.standard(),
+                "min": ranges[id.index()].min,
+                "max": ranges[id.index()].max,
+            });
+            if !definition.edges.is_empty() {
+                measure["edges"] = json!(definition.edges);
+            }
+            measure
+        });
+        let skeleton = character.skeleton();
+        let joints = skeleton.names().iter().zip(skeleton.parents()).map(|(name, parent)| {
+            let parent = parent.and_then(|p| skeleton.names().get(p as usize));
+            json!({"name": name, "parent": parent})
+        });
+        let levels = Lod::ALL.map(|lod| character.vertex_count(lod));
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "measures": measures.collect::<Vec<_>>(),
+            "joints": joints.collect::<Vec<_>>(),
+            "vertices_per_lod": levels,
+            "latent_size": self.latent_size(),
+            "measures_sha256": self.definitions().hash(),
+            "model": self.provenance(),
+        })
+    }
+}

@@ -1,0 +1,1024 @@
+/* AnthroNet: people from tape measures. SPDX-License-Identifier: MIT OR Apache-2.0
+ *
+ * Made from ffi/src by `cargo xtask gen`; do not edit.
+ *
+ * Handles. A function that makes something writes a new handle to `out_…`; free it once with the `…_free` of its kind.
+ * Handles made of others do not need them any longer, in whatever order they are freed. Freeing NULL does nothing.
+ *
+ * Threads. What is passed as `const T*` may be used by many threads at once; what is passed as `T*` by one.
+ *
+ * Errors. Functions return ANTHRONET_OK or a code; with a code, nothing was written to any `out_…` pointer, and `error`,
+ * which may be NULL, says what was wrong. Numbers that are not finite, sizes that do not fit, values that no enumeration
+ * has and NULL where something is needed are refused. What no library can see is the caller's to keep: pointers point to
+ * what is alive and to as much as the counts beside them say.
+ *
+ * Text is a pointer and a length in bytes, UTF-8, not ended by a zero, both ways.
+ *
+ * Structures that begin with `struct_size` are filled with zeros by the caller, who then sets `struct_size` to their
+ * sizeof. Zeros ask for the defaults. NULL for one that is read is a structure of zeros.
+ *
+ * Space. Metres, radians, seconds, kilograms. Axes and handedness as the ANTHRONET_SPACE_… that is asked for.
+ * Matrices are column-major and multiply column vectors; quaternions are x, y, z, w.
+ */
+
+#ifndef ANTHRONET_H
+#define ANTHRONET_H
+
+#include <stdint.h>
+
+// The version of this interface. Raised when a caller that was compiled for an older one would misunderstand.
+#define ANTHRONET_ABI_VERSION 1
+
+// Done.
+#define ANTHRONET_OK 0
+
+// A pointer that has to be given is NULL, or not aligned.
+#define ANTHRONET_ERROR_POINTER 101
+
+// A size, count, stride or `struct_size` is not what it must be.
+#define ANTHRONET_ERROR_SIZE 102
+
+// A number is none of the values of its enumeration.
+#define ANTHRONET_ERROR_ENUM 103
+
+// An index is beyond the last.
+#define ANTHRONET_ERROR_INDEX 104
+
+// A text is not UTF-8.
+#define ANTHRONET_ERROR_TEXT 105
+
+// A field of a request is unknown, not finite, or out of range.
+#define ANTHRONET_ERROR_REQUEST 201
+
+// The measures of a request cannot belong to one person.
+#define ANTHRONET_ERROR_INFEASIBLE 202
+
+// A model file is damaged or of another version.
+#define ANTHRONET_ERROR_MODEL 301
+
+// A file is not what it should be.
+#define ANTHRONET_ERROR_FILE 401
+
+// The operating system refused to read or write.
+#define ANTHRONET_ERROR_IO 402
+
+// Data contradicts itself: counts that differ, numbers that are not finite, a pose of another skeleton.
+#define ANTHRONET_ERROR_INVALID 501
+
+// The job is still running.
+#define ANTHRONET_ERROR_BUSY 601
+
+// The job was cancelled before this was made.
+#define ANTHRONET_ERROR_CANCELLED 602
+
+// What was asked for was taken before.
+#define ANTHRONET_ERROR_TAKEN 603
+
+// An error of a kind that is younger than this header.
+#define ANTHRONET_ERROR_OTHER 900
+
+// A defect of the library, caught; the message says where. Please report it.
+#define ANTHRONET_ERROR_PANIC 901
+
+// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
+#define ANTHRONET_SPACE_GLTF 0
+
+// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender.
+#define ANTHRONET_SPACE_BLENDER 1
+
+// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way.
+#define ANTHRONET_SPACE_UNITY 2
+
+// The rig's own names, such as `upperarm_l`.
+#define ANTHRONET_NAMES_NATIVE 0
+
+// Unity's `HumanBodyBones`, such as `LeftUpperArm`.
+#define ANTHRONET_NAMES_UNITY 1
+
+// Mixamo's, such as `mixamorig:LeftArm`.
+#define ANTHRONET_NAMES_MIXAMO 2
+
+// VRM 1.0's, such as `leftUpperArm`.
+#define ANTHRONET_NAMES_VRM 3
+
+// Blender's, such as `upper_arm.L`.
+#define ANTHRONET_NAMES_BLENDER 4
+
+// Linear blend skinning: what glTF, UsdSkel and game engines do.
+#define ANTHRONET_SKIN_LINEAR 0
+
+// Dual quaternions: Blender's "Preserve Volume".
+#define ANTHRONET_SKIN_DUAL_QUATERNION 1
+
+// The paper's formula: joints move vertices but do not turn them.
+#define ANTHRONET_SKIN_JOINT_TRANSLATION 2
+
+// Worth knowing.
+#define ANTHRONET_LOG_INFO 0
+
+// Something may not be as it was meant.
+#define ANTHRONET_LOG_WARNING 1
+
+// A defect that no call could return.
+#define ANTHRONET_LOG_ERROR 2
+
+// The sex is left to the measures.
+#define ANTHRONET_SEX_ANY 0
+
+// Female.
+#define ANTHRONET_SEX_FEMALE 1
+
+// Male.
+#define ANTHRONET_SEX_MALE 2
+
+// Open measures get their likeliest values beside the given ones.
+#define ANTHRONET_FILL_MEAN 0
+
+// Open measures are drawn from what is plausible beside the given ones; the seed chooses.
+#define ANTHRONET_FILL_SAMPLE 1
+
+// Bodies are still being made.
+#define ANTHRONET_JOB_RUNNING 0
+
+// Every request has its body or its error.
+#define ANTHRONET_JOB_DONE 1
+
+// Cancelled, and nothing is running any more; what was made before can be taken.
+#define ANTHRONET_JOB_CANCELLED 2
+
+// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+#define ANTHRONET_LAYOUT_RENDER 0
+
+// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+#define ANTHRONET_LAYOUT_MODEL 1
+
+// float × 3 per vertex, metres.
+#define ANTHRONET_ATTRIBUTE_POSITIONS 0
+
+// float × 3 per vertex, unit length.
+#define ANTHRONET_ATTRIBUTE_NORMALS 1
+
+// float × 2 per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
+// upwards in the others, as their programs have it.
+#define ANTHRONET_ATTRIBUTE_UVS 2
+
+// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+#define ANTHRONET_ATTRIBUTE_TRIANGLES 3
+
+// uint16 × influences per vertex: joints.
+#define ANTHRONET_ATTRIBUTE_JOINTS 4
+
+// float × influences per vertex: weights, descending, of sum 1.
+#define ANTHRONET_ATTRIBUTE_WEIGHTS 5
+
+// uint32 per vertex: which vertex of the model it is.
+#define ANTHRONET_ATTRIBUTE_SOURCES 6
+
+// uint32 × 4 per quad: vertices. Model layout alone.
+#define ANTHRONET_ATTRIBUTE_QUADS 7
+
+// uint32 × 4 per quad: texture coordinates of its corners. Model layout alone.
+#define ANTHRONET_ATTRIBUTE_QUAD_UVS 8
+
+// uint32 × 3 per triangle: texture coordinates of its corners. Model layout alone.
+#define ANTHRONET_ATTRIBUTE_TRIANGLE_UVS 9
+
+// 32-bit floats.
+#define ANTHRONET_TYPE_F32 0
+
+// 32-bit unsigned integers.
+#define ANTHRONET_TYPE_U32 1
+
+// 16-bit unsigned integers.
+#define ANTHRONET_TYPE_U16 2
+
+// Outside its duration a clip holds its first or last frame.
+#define ANTHRONET_WRAP_ONCE 0
+
+// A clip starts anew; its last frame is its first.
+#define ANTHRONET_WRAP_LOOP 1
+
+// As `ANTHRONET_WRAP_LOOP`, and each round goes on from where the last one ended.
+#define ANTHRONET_WRAP_TRAVEL 2
+
+// Each joint relative to its parent: what animation tracks hold.
+#define ANTHRONET_RELATIVE_TO_PARENT 0
+
+// Each joint relative to the model: what skinning takes.
+#define ANTHRONET_RELATIVE_TO_MODEL 1
+
+// Fingers as the source's where it has any, else at ease.
+#define ANTHRONET_FINGERS_SOURCE 0
+
+// Hands at ease.
+#define ANTHRONET_FINGERS_RELAXED 1
+
+// Fingers as in the bind pose.
+#define ANTHRONET_FINGERS_REST 2
+
+// What the file says, or its proportions.
+#define ANTHRONET_UP_FOUND 0
+
+// +Y points up in the file.
+#define ANTHRONET_UP_Y 1
+
+// +Z points up in the file.
+#define ANTHRONET_UP_Z 2
+
+// A person in the bind pose, with the report of how it was made. Immutable.
+typedef struct anthronet_body anthronet_body;
+
+// Bytes of the library's: a file in memory, or JSON as UTF-8.
+typedef struct anthronet_bytes anthronet_bytes;
+
+// A motion of a body's joints, frame by frame. Immutable.
+typedef struct anthronet_clip anthronet_clip;
+
+// Requests that are being made into bodies by a thread of the library. May be polled and cancelled from any thread.
+typedef struct anthronet_job anthronet_job;
+
+// The surfaces of a body in a space and layout.
+typedef struct anthronet_mesh anthronet_mesh;
+
+// A trained model: makes bodies. Immutable; may be used by many threads at once.
+typedef struct anthronet_model anthronet_model;
+
+// A motion file as it was read: at least one clip of the file's own skeleton. Immutable.
+typedef struct anthronet_motion anthronet_motion;
+
+// A person to be made. One thread at a time may change it.
+typedef struct anthronet_request anthronet_request;
+
+// A part of a mesh ready to be posed. Immutable; may be used by many threads and jobs at once.
+typedef struct anthronet_skinner anthronet_skinner;
+
+// What every call that can fail returns: `ANTHRONET_OK` or one of `ANTHRONET_ERROR_…`.
+typedef int32_t anthronet_status;
+
+// Text of the library's: UTF-8, not ended by a zero, valid as long as what it was asked of.
+typedef struct anthronet_text {
+    // The first byte.
+    const char *data;
+    // Number of bytes.
+    uint64_t length;
+} anthronet_text;
+
+// What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+typedef struct anthronet_error {
+    // The status that the call returned.
+    int32_t code;
+    // A sentence in English, UTF-8, ended by a zero; longer ones are cut.
+    char message[512];
+} anthronet_error;
+
+// Takes a message: its level, `length` bytes of UTF-8 that are valid during the call alone, and what was passed with the
+// callback. Called from any thread, one call at a time; it must not call the library.
+typedef void (*anthronet_log_callback)(uint32_t level, const char *message, uint64_t length, void *user);
+
+// What the scales say of a mesh.
+typedef struct anthronet_measured {
+    // Set by the caller: `sizeof(anthronet_measured)`.
+    uint32_t struct_size;
+    // The level of detail that the mesh was recognised as.
+    uint32_t lod;
+    // Mass, kg.
+    double mass_kg;
+    // Volume, m³.
+    double volume_m3;
+    // Body mass index, kg/m².
+    double bmi;
+} anthronet_measured;
+
+// One measure of a body. Metres.
+typedef struct anthronet_measure_report {
+    // What the request gives; 0 for an open measure.
+    double asked;
+    // What the body has.
+    double obtained;
+    // Obtained − asked; 0 for an open measure.
+    double residual;
+    // Lower end of what 90 % of people with the given measures have; the value itself for a given measure.
+    double low90;
+    // Upper end of that interval.
+    double high90;
+    // Share of people of this sex, 0 to 100, who have at most the obtained value.
+    double percentile;
+    // 1 if the request gives it, else 0.
+    uint32_t given;
+    // `ANTHRONET_FILL_…` of an open measure, 0 of a given one.
+    uint32_t filled;
+} anthronet_measure_report;
+
+// A body in numbers.
+typedef struct anthronet_body_summary {
+    // Set by the caller: `sizeof(anthronet_body_summary)`.
+    uint32_t struct_size;
+    // `ANTHRONET_SEX_FEMALE` or `ANTHRONET_SEX_MALE`.
+    uint32_t sex;
+    // The request's seed.
+    uint64_t seed;
+    // Mass, kg.
+    double mass_kg;
+    // Volume, m³.
+    double volume_m3;
+    // Body mass index, kg/m².
+    double bmi;
+    // Largest |obtained − asked| over the given measures, metres.
+    double solve_residual;
+    // Steps of the exact solve.
+    uint32_t iterations;
+    // 1 if the solve met its tolerance.
+    uint32_t converged;
+    // Number of joints.
+    uint32_t joint_count;
+    // Number of warnings in the report.
+    uint32_t warning_count;
+} anthronet_body_summary;
+
+// How far a job is.
+typedef struct anthronet_job_progress {
+    // Set by the caller: `sizeof(anthronet_job_progress)`.
+    uint32_t struct_size;
+    // `ANTHRONET_JOB_…`.
+    uint32_t state;
+    // Requests that have their body or error.
+    uint32_t done;
+    // Requests altogether.
+    uint32_t total;
+} anthronet_job_progress;
+
+// Where a joint is, relative to its parent or to the model: a rotation, then a translation.
+typedef struct anthronet_transform {
+    // Unit quaternion x, y, z, w.
+    float rotation[4];
+    // Metres.
+    float translation[3];
+} anthronet_transform;
+
+// A joint in the bind pose. Matrices are column-major and multiply column vectors.
+typedef struct anthronet_joint {
+    // Place of the parent, before this joint's own; −1 of the root.
+    int32_t parent;
+    // From the joint along its +Y axis to where its bone ends, metres.
+    float length;
+    // Relative to the parent.
+    struct anthronet_transform parent_from_joint;
+    // From the joint's space to the model's.
+    float model_from_joint[16];
+    // The inverse bind matrix.
+    float joint_from_model[16];
+} anthronet_joint;
+
+// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+typedef struct anthronet_humanoid_bone {
+    // Set by the caller: `sizeof(anthronet_humanoid_bone)`.
+    uint32_t struct_size;
+    // 1 if Unity and VRM 1.0 require it.
+    uint32_t required;
+    // Name in the rig.
+    struct anthronet_text native;
+    // Member of Unity's `HumanBodyBones`.
+    struct anthronet_text unity;
+    // Name in Unity's `HumanTrait.BoneName`.
+    struct anthronet_text unity_trait;
+    // Name in files from Mixamo.
+    struct anthronet_text mixamo;
+    // Key in VRM 1.0's `humanBones`.
+    struct anthronet_text vrm;
+    // Name in Blender.
+    struct anthronet_text blender;
+} anthronet_humanoid_bone;
+
+// What of a body becomes a mesh; all zeros ask for the defaults.
+typedef struct anthronet_mesh_options {
+    // Set by the caller: `sizeof(anthronet_mesh_options)`.
+    uint32_t struct_size;
+    // Level of detail, 0 (finest) to 3.
+    uint32_t lod;
+    // Influences per vertex, 4 or 8; 0 stands for 4.
+    uint32_t influences;
+    // `ANTHRONET_SPACE_…` of all that is read from the mesh.
+    uint32_t space;
+    // `ANTHRONET_LAYOUT_…`.
+    uint32_t layout;
+    // 1 leaves out eyes, teeth, tongue and lashes.
+    uint32_t body_only;
+    // Step of the Monk skin tone scale, 1 to 10; 0 for the default tone.
+    uint32_t skin_tone;
+} anthronet_mesh_options;
+
+// A part of a mesh: one surface with one material. The body is the first.
+typedef struct anthronet_mesh_part {
+    // Set by the caller: `sizeof(anthronet_mesh_part)`.
+    uint32_t struct_size;
+    // Number of vertices.
+    uint32_t vertex_count;
+    // Number of texture coordinates.
+    uint32_t uv_count;
+    // Number of triangles.
+    uint32_t triangle_count;
+    // Number of quads; 0 in the render layout.
+    uint32_t quad_count;
+    // Influences per vertex.
+    uint32_t influences;
+    // 1 if back faces are drawn too.
+    uint32_t double_sided;
+    // Perceptual roughness of the material, 0 to 1.
+    float roughness;
+    // Colour of the material: linear red, green, blue and alpha.
+    float base_color[4];
+    // Its name, such as `Body`; valid as long as the mesh.
+    struct anthronet_text name;
+} anthronet_mesh_part;
+
+// An array of a mesh.
+typedef struct anthronet_view {
+    // The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+    const void *data;
+    // Number of rows.
+    uint64_t rows;
+    // Numbers per row.
+    uint32_t columns;
+    // `ANTHRONET_TYPE_…` of the numbers.
+    uint32_t number_type;
+} anthronet_view;
+
+// A clip in numbers.
+typedef struct anthronet_clip_info {
+    // Set by the caller: `sizeof(anthronet_clip_info)`.
+    uint32_t struct_size;
+    // Number of frames.
+    uint32_t frame_count;
+    // Number of joints.
+    uint32_t joint_count;
+    // 0; fills the structure up.
+    uint32_t reserved;
+    // Frames per second.
+    double frames_per_second;
+    // From the first frame to the last, seconds.
+    double duration;
+    // Its name; valid as long as the clip.
+    struct anthronet_text name;
+} anthronet_clip_info;
+
+// What is said of a motion file beforehand; it wins over what the file says. Zeros leave everything to the file.
+typedef struct anthronet_motion_options {
+    // Set by the caller: `sizeof(anthronet_motion_options)`.
+    uint32_t struct_size;
+    // `ANTHRONET_UP_…`.
+    uint32_t up;
+    // Metres per unit of length, such as 0.01.
+    double metres_per_unit;
+    // Frames per second: frames were recorded at this rate, curves are sampled at it.
+    double frames_per_second;
+} anthronet_motion_options;
+
+// How a motion comes onto a body; all zeros ask for the defaults.
+typedef struct anthronet_retarget_options {
+    // Set by the caller: `sizeof(anthronet_retarget_options)`.
+    uint32_t struct_size;
+    // `ANTHRONET_FINGERS_…`.
+    uint32_t fingers;
+    // 1 leaves joints beyond what people's joints do.
+    uint32_t no_limits;
+    // 1 leaves feet where the motion puts them, sliding or under the floor.
+    uint32_t no_feet;
+    // 1 leaves out the way over the ground.
+    uint32_t in_place;
+    // 1 makes the end meet the beginning.
+    uint32_t looped;
+    // 1 gives the way over the ground to the joint `Root` instead of the pelvis.
+    uint32_t root_motion;
+    // Bytes of `mapping_json`.
+    uint32_t mapping_length;
+    // Which joint of the source drives which of ours, as JSON: `{"upperarm_l": "LeftArm", "jaw": null}`; NULL to find
+    // all of them.
+    const char *mapping_json;
+    // Frames per second of the result; 0 keeps those of the motion.
+    double frames_per_second;
+} anthronet_retarget_options;
+
+// One surface to pose. Everything is in the space of the mesh that the skinner was made of.
+typedef struct anthronet_skin_job {
+    // Set by the caller: `sizeof(anthronet_skin_job)`; in a list of jobs alike in all.
+    uint32_t struct_size;
+    // `ANTHRONET_SKIN_…`.
+    uint32_t method;
+    // The surface.
+    const struct anthronet_skinner *skinner;
+    // The pose: every joint relative to the model, as `anthronet_clip_sample` fills it.
+    const struct anthronet_transform *joints;
+    // Number of joints.
+    uint32_t joint_count;
+    // Number of `offsets`: 0, or one per vertex.
+    uint32_t offset_count;
+    // Three floats per vertex, added to the bind positions before they are posed (correctives), metres; or NULL.
+    const float *offsets;
+    // Where three floats per vertex are written, metres.
+    void *positions;
+    // Bytes of that buffer.
+    uint64_t position_bytes;
+    // Bytes from position to position; 0 for packed.
+    uint64_t position_stride;
+    // Where unit normals are written, three floats per vertex; NULL for nowhere. In the buffer of the positions, as
+    // vertex buffers are laid out, it points at the first normal, behind the first position by less than the stride.
+    void *normals;
+    // Bytes of that buffer.
+    uint64_t normal_bytes;
+    // Bytes from normal to normal; 0 for packed.
+    uint64_t normal_stride;
+} anthronet_skin_job;
+
+// What of a body goes into a file; all zeros ask for the defaults.
+typedef struct anthronet_export_options {
+    // Set by the caller: `sizeof(anthronet_export_options)`.
+    uint32_t struct_size;
+    // Level of detail, 0 (finest) to 3.
+    uint32_t lod;
+    // Influences per vertex, 4 or 8; 0 stands for 4.
+    uint32_t influences;
+    // What the joints are called: `ANTHRONET_NAMES_…`.
+    uint32_t joint_names;
+    // 1 leaves out eyes, teeth, tongue and lashes.
+    uint32_t body_only;
+    // Step of the Monk skin tone scale, 1 to 10; 0 for the default tone.
+    uint32_t skin_tone;
+    // 1 compresses .glb and .gltf (EXT_meshopt_compression).
+    uint32_t compress;
+    // Number of `clips`.
+    uint32_t clip_count;
+    // Clips of this body or one of the same rig that go into the file; NULL for none. Their names are unique.
+    const struct anthronet_clip *const *clips;
+} anthronet_export_options;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another must not go
+// on.
+uint32_t anthronet_abi_version(void);
+
+// The version of the library, such as `0.1.0`; valid for ever.
+anthronet_status anthronet_version(struct anthronet_text *out_version, struct anthronet_error *error);
+
+// Sets who hears messages; NULL for nobody, which is the default. When it returns, the former callback is not running
+// and will not be called again. `user` is handed to every call.
+anthronet_status anthronet_set_log_callback(anthronet_log_callback callback, void *user, struct anthronet_error *error);
+
+// Where the bytes are, and how many; valid until they are freed.
+anthronet_status anthronet_bytes_data(const struct anthronet_bytes *bytes,
+                                      const uint8_t **out_data,
+                                      uint64_t *out_length,
+                                      struct anthronet_error *error);
+
+// Frees bytes; NULL is nothing.
+void anthronet_bytes_free(struct anthronet_bytes *bytes);
+
+// Opens the model that the library carries.
+anthronet_status anthronet_model_open_embedded(struct anthronet_model **out_model, struct anthronet_error *error);
+
+// Opens the model file that the environment variable `ANTHRONET_MODEL` names, and the embedded one where it names
+// none.
+anthronet_status anthronet_model_open_default(struct anthronet_model **out_model, struct anthronet_error *error);
+
+// Opens a model file.
+anthronet_status anthronet_model_open_path(const char *path,
+                                           uint64_t path_length,
+                                           struct anthronet_model **out_model,
+                                           struct anthronet_error *error);
+
+// Opens a model from the bytes of its file, which are not needed afterwards.
+anthronet_status anthronet_model_open_memory(const uint8_t *data,
+                                             uint64_t length,
+                                             struct anthronet_model **out_model,
+                                             struct anthronet_error *error);
+
+// Frees a model; NULL is nothing. Bodies and jobs made by it stay whole.
+void anthronet_model_free(struct anthronet_model *model);
+
+// What the model is, as JSON: measures with definitions and ranges, joints, versions, scores.
+anthronet_status anthronet_model_info(const struct anthronet_model *model,
+                                      struct anthronet_bytes **out_json,
+                                      struct anthronet_error *error);
+
+// Number of latent numbers of a body.
+anthronet_status anthronet_model_latent_size(const struct anthronet_model *model,
+                                             uint32_t *out_size,
+                                             struct anthronet_error *error);
+
+// Number of vertices of the body at a level of detail, 0 to 3, in the model's order.
+anthronet_status anthronet_model_vertex_count(const struct anthronet_model *model,
+                                              uint32_t level,
+                                              uint32_t *out_count,
+                                              struct anthronet_error *error);
+
+// The smallest and largest value that a request may give of a measure, metres.
+anthronet_status anthronet_model_measure_range(const struct anthronet_model *model,
+                                               uint32_t measure,
+                                               double *out_min,
+                                               double *out_max,
+                                               struct anthronet_error *error);
+
+// Number of measures: 36.
+uint32_t anthronet_measure_count(void);
+
+// The name of a measure, such as `waist_circumference`; valid for ever.
+anthronet_status anthronet_measure_name(uint32_t measure,
+                                        struct anthronet_text *out_name,
+                                        struct anthronet_error *error);
+
+// The place of a measure by its name, with its side.
+anthronet_status anthronet_measure_index(const char *name,
+                                         uint64_t name_length,
+                                         uint32_t *out_measure,
+                                         struct anthronet_error *error);
+
+// Measures a body in its bind pose at any level of detail, sculpted or not: `positions` are the vertices of the body
+// alone in the model's order, three floats each, `stride` bytes apart (0: packed), metres, in `from_space`. Fills
+// `count` (36) measures, metres; `out_measured` may be NULL.
+anthronet_status anthronet_measure_mesh(const struct anthronet_model *model,
+                                        const void *positions,
+                                        uint32_t vertex_count,
+                                        uint64_t stride,
+                                        uint32_t from_space,
+                                        double *out_metres,
+                                        uint32_t count,
+                                        struct anthronet_measured *out_measured,
+                                        struct anthronet_error *error);
+
+// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order. Results as
+// of `anthronet_measure_mesh`.
+anthronet_status anthronet_measure_file(const struct anthronet_model *model,
+                                        const char *path,
+                                        uint64_t path_length,
+                                        double *out_metres,
+                                        uint32_t count,
+                                        struct anthronet_measured *out_measured,
+                                        struct anthronet_error *error);
+
+// A request that asks for nothing: the likeliest person.
+anthronet_status anthronet_request_new(struct anthronet_request **out_request, struct anthronet_error *error);
+
+// A request from JSON: `{"sex": "female", "measures": {"height": 1.7}, "seed": 7}`; metres.
+anthronet_status anthronet_request_from_json(const char *json,
+                                             uint64_t json_length,
+                                             struct anthronet_request **out_request,
+                                             struct anthronet_error *error);
+
+// Another request that asks for the same.
+anthronet_status anthronet_request_copy(const struct anthronet_request *request,
+                                        struct anthronet_request **out_request,
+                                        struct anthronet_error *error);
+
+// Frees a request; NULL is nothing.
+void anthronet_request_free(struct anthronet_request *request);
+
+// The request as JSON, in the form that `anthronet_request_from_json` reads.
+anthronet_status anthronet_request_to_json(const struct anthronet_request *request,
+                                           struct anthronet_bytes **out_json,
+                                           struct anthronet_error *error);
+
+// Sets the sex: `ANTHRONET_SEX_…`.
+anthronet_status anthronet_request_set_sex(struct anthronet_request *request,
+                                           uint32_t sex,
+                                           struct anthronet_error *error);
+
+// Gives a measure by its name, metres; a name without its side, such as `arm_length`, gives both sides.
+anthronet_status anthronet_request_set_measure(struct anthronet_request *request,
+                                               const char *name,
+                                               uint64_t name_length,
+                                               double metres,
+                                               struct anthronet_error *error);
+
+// Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
+// `anthronet_measure_name`; `count` is their number, 36. What `metres` holds of an open measure does not matter.
+anthronet_status anthronet_request_set_measures(struct anthronet_request *request,
+                                                const double *metres,
+                                                const uint8_t *given,
+                                                uint32_t count,
+                                                struct anthronet_error *error);
+
+// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` (36) entries each.
+anthronet_status anthronet_request_measures(const struct anthronet_request *request,
+                                            double *out_metres,
+                                            uint8_t *out_given,
+                                            uint32_t count,
+                                            struct anthronet_error *error);
+
+// Leaves a measure open again, by its place in the order of `anthronet_measure_name`.
+anthronet_status anthronet_request_open_measure(struct anthronet_request *request,
+                                                uint32_t measure,
+                                                struct anthronet_error *error);
+
+// Sets the seed: 0 for the likeliest of the people with these measures, any other number for one of them.
+anthronet_status anthronet_request_set_seed(struct anthronet_request *request,
+                                            uint64_t seed,
+                                            struct anthronet_error *error);
+
+// Sets the latent numbers by hand, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the
+// seed.
+anthronet_status anthronet_request_set_latent(struct anthronet_request *request,
+                                              const double *latent,
+                                              uint32_t count,
+                                              struct anthronet_error *error);
+
+// Sets how open measures are filled: `ANTHRONET_FILL_…`.
+anthronet_status anthronet_request_set_fill(struct anthronet_request *request,
+                                            uint32_t fill,
+                                            struct anthronet_error *error);
+
+// Whether measures that no one person has are replaced by the nearest that one has (1), with a warning in the report,
+// or refused (0).
+anthronet_status anthronet_request_set_nearest(struct anthronet_request *request,
+                                               uint32_t nearest,
+                                               struct anthronet_error *error);
+
+// Makes the body that a request describes.
+anthronet_status anthronet_generate(const struct anthronet_model *model,
+                                    const struct anthronet_request *request,
+                                    struct anthronet_body **out_body,
+                                    struct anthronet_error *error);
+
+// Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way.
+anthronet_status anthronet_interpolate(const struct anthronet_model *model,
+                                       const struct anthronet_request *from,
+                                       const struct anthronet_request *to,
+                                       double t,
+                                       struct anthronet_body **out_body,
+                                       struct anthronet_error *error);
+
+// Frees a body; NULL is nothing. What was made of it stays whole.
+void anthronet_body_free(struct anthronet_body *body);
+
+// The report as JSON: `{"measures": [{"name", "asked", "obtained", …}], "warnings", "conflicts", "seed", …}`; metres.
+anthronet_status anthronet_body_report(const struct anthronet_body *body,
+                                       struct anthronet_bytes **out_json,
+                                       struct anthronet_error *error);
+
+// The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+anthronet_status anthronet_body_measures(const struct anthronet_body *body,
+                                         struct anthronet_measure_report *out_measures,
+                                         uint32_t count,
+                                         struct anthronet_error *error);
+
+// Sex, seed, mass and how the solve went.
+anthronet_status anthronet_body_summarise(const struct anthronet_body *body,
+                                          struct anthronet_body_summary *out_summary,
+                                          struct anthronet_error *error);
+
+// The latent numbers of the body: fills `count` entries, as many as `anthronet_model_latent_size` says.
+anthronet_status anthronet_body_latent(const struct anthronet_body *body,
+                                       double *out_latent,
+                                       uint32_t count,
+                                       struct anthronet_error *error);
+
+// Starts to make the bodies of `count` requests, in order. The requests are copied and the model is kept: both may be
+// freed.
+anthronet_status anthronet_job_start(const struct anthronet_model *model,
+                                     const struct anthronet_request *const *requests,
+                                     uint32_t count,
+                                     struct anthronet_job **out_job,
+                                     struct anthronet_error *error);
+
+// How far the job is. Returns at once.
+anthronet_status anthronet_job_poll(const struct anthronet_job *job,
+                                    struct anthronet_job_progress *out_progress,
+                                    struct anthronet_error *error);
+
+// Asks the job to stop after the body that it is at. Returns at once.
+anthronet_status anthronet_job_cancel(const struct anthronet_job *job, struct anthronet_error *error);
+
+// Takes the body of a request, once, as soon as it is there; while the job goes on, too. Fails with the error of that
+// request, with `ANTHRONET_ERROR_BUSY` before there is one, with `ANTHRONET_ERROR_CANCELLED` when there will be none.
+anthronet_status anthronet_job_take(const struct anthronet_job *job,
+                                    uint32_t index,
+                                    struct anthronet_body **out_body,
+                                    struct anthronet_error *error);
+
+// Cancels the job, waits until it has stopped and frees it; NULL is nothing.
+void anthronet_job_free(struct anthronet_job *job);
+
+// The joints of a body in the bind pose, parents first: fills `count` entries, as many as
+// `anthronet_body_summary.joint_count` says.
+anthronet_status anthronet_body_joints(const struct anthronet_body *body,
+                                       uint32_t in_space,
+                                       struct anthronet_joint *out_joints,
+                                       uint32_t count,
+                                       struct anthronet_error *error);
+
+// The name of a joint of a body in a vocabulary, `ANTHRONET_NAMES_…`; valid as long as the body.
+anthronet_status anthronet_body_joint_name(const struct anthronet_body *body,
+                                           uint32_t joint,
+                                           uint32_t names,
+                                           struct anthronet_text *out_name,
+                                           struct anthronet_error *error);
+
+// Number of humanoid bones: 55.
+uint32_t anthronet_humanoid_bone_count(void);
+
+// A humanoid bone.
+anthronet_status anthronet_humanoid_bone_at(uint32_t index,
+                                            struct anthronet_humanoid_bone *out_bone,
+                                            struct anthronet_error *error);
+
+// Makes the meshes of a body; `options` may be NULL.
+anthronet_status anthronet_mesh_new(const struct anthronet_body *body,
+                                    const struct anthronet_mesh_options *options,
+                                    struct anthronet_mesh **out_mesh,
+                                    struct anthronet_error *error);
+
+// Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+anthronet_status anthronet_mesh_update(struct anthronet_mesh *mesh,
+                                       const struct anthronet_body *body,
+                                       struct anthronet_error *error);
+
+// Frees a mesh; NULL is nothing.
+void anthronet_mesh_free(struct anthronet_mesh *mesh);
+
+// Number of parts: the body, then eyes, teeth, tongue and lashes.
+anthronet_status anthronet_mesh_part_count(const struct anthronet_mesh *mesh,
+                                           uint32_t *out_count,
+                                           struct anthronet_error *error);
+
+// What a part is.
+anthronet_status anthronet_mesh_describe_part(const struct anthronet_mesh *mesh,
+                                              uint32_t part,
+                                              struct anthronet_mesh_part *out_part,
+                                              struct anthronet_error *error);
+
+// Where an array of a part is, `attribute` one of `ANTHRONET_ATTRIBUTE_…`.
+anthronet_status anthronet_mesh_data(const struct anthronet_mesh *mesh,
+                                     uint32_t part,
+                                     uint32_t attribute,
+                                     struct anthronet_view *out_view,
+                                     struct anthronet_error *error);
+
+// Copies an array of a part to a buffer of `buffer_bytes` bytes, `stride` bytes from row to row (0: packed). Bytes
+// between the rows stay as they are.
+anthronet_status anthronet_mesh_read(const struct anthronet_mesh *mesh,
+                                     uint32_t part,
+                                     uint32_t attribute,
+                                     void *out_rows,
+                                     uint64_t buffer_bytes,
+                                     uint64_t stride,
+                                     struct anthronet_error *error);
+
+// Number of built-in clips.
+uint32_t anthronet_clip_builtin_count(void);
+
+// The name of a built-in clip, such as `walk`; valid for ever.
+anthronet_status anthronet_clip_builtin_name(uint32_t index,
+                                             struct anthronet_text *out_name,
+                                             struct anthronet_error *error);
+
+// Makes a built-in clip for a body.
+anthronet_status anthronet_clip_builtin(const char *name,
+                                        uint64_t name_length,
+                                        const struct anthronet_body *body,
+                                        struct anthronet_clip **out_clip,
+                                        struct anthronet_error *error);
+
+// Frees a clip; NULL is nothing.
+void anthronet_clip_free(struct anthronet_clip *clip);
+
+// What a clip is.
+anthronet_status anthronet_clip_describe(const struct anthronet_clip *clip,
+                                         struct anthronet_clip_info *out_info,
+                                         struct anthronet_error *error);
+
+// The pose of a clip at a time, seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+// `ANTHRONET_RELATIVE_TO_…`.
+anthronet_status anthronet_clip_sample(const struct anthronet_clip *clip,
+                                       double seconds,
+                                       uint32_t wrap,
+                                       uint32_t relative,
+                                       uint32_t in_space,
+                                       struct anthronet_transform *out_joints,
+                                       uint32_t count,
+                                       struct anthronet_error *error);
+
+// All frames of a clip, one after the other: fills `count` = frames × joints transforms.
+anthronet_status anthronet_clip_bake(const struct anthronet_clip *clip,
+                                     uint32_t relative,
+                                     uint32_t in_space,
+                                     struct anthronet_transform *out_joints,
+                                     uint64_t count,
+                                     struct anthronet_error *error);
+
+// The clip at another rate, frames per second.
+anthronet_status anthronet_clip_resample(const struct anthronet_clip *clip,
+                                         double frames_per_second,
+                                         struct anthronet_clip **out_clip,
+                                         struct anthronet_error *error);
+
+// The clip without its way over the ground.
+anthronet_status anthronet_clip_in_place(const struct anthronet_clip *clip,
+                                         struct anthronet_clip **out_clip,
+                                         struct anthronet_error *error);
+
+// The clip with its end going over into its beginning during the last `seconds`.
+anthronet_status anthronet_clip_looped(const struct anthronet_clip *clip,
+                                       double seconds,
+                                       struct anthronet_clip **out_clip,
+                                       struct anthronet_error *error);
+
+// Two clips of one body at once: `weight` 0 is the first, 1 the second.
+anthronet_status anthronet_clip_blend(const struct anthronet_clip *first,
+                                      const struct anthronet_clip *second,
+                                      float weight,
+                                      struct anthronet_clip **out_clip,
+                                      struct anthronet_error *error);
+
+// Two clips of one body one after the other, overlapping by `seconds`.
+anthronet_status anthronet_clip_crossfade(const struct anthronet_clip *first,
+                                          const struct anthronet_clip *second,
+                                          double seconds,
+                                          struct anthronet_clip **out_clip,
+                                          struct anthronet_error *error);
+
+// Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz. `read_options` may be NULL.
+anthronet_status anthronet_motion_open_path(const char *path,
+                                            uint64_t path_length,
+                                            const struct anthronet_motion_options *read_options,
+                                            struct anthronet_motion **out_motion,
+                                            struct anthronet_error *error);
+
+// Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a name gets
+// it.
+anthronet_status anthronet_motion_open_memory(const uint8_t *data,
+                                              uint64_t length,
+                                              const char *name,
+                                              uint64_t name_length,
+                                              const struct anthronet_motion_options *read_options,
+                                              struct anthronet_motion **out_motion,
+                                              struct anthronet_error *error);
+
+// Frees a motion; NULL is nothing.
+void anthronet_motion_free(struct anthronet_motion *motion);
+
+// Number of clips: at least one.
+anthronet_status anthronet_motion_clip_count(const struct anthronet_motion *motion,
+                                             uint32_t *out_count,
+                                             struct anthronet_error *error);
+
+// The name of a clip; valid as long as the motion.
+anthronet_status anthronet_motion_clip_name(const struct anthronet_motion *motion,
+                                            uint32_t clip,
+                                            struct anthronet_text *out_name,
+                                            struct anthronet_error *error);
+
+// How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+anthronet_status anthronet_motion_report(const struct anthronet_motion *motion,
+                                         struct anthronet_bytes **out_json,
+                                         struct anthronet_error *error);
+
+// Brings one clip of a motion onto a body. `retarget_options` may be NULL; `out_report` too, else it gets JSON: which
+// joint drives which, what drives nothing, how far directions, limits and feet are off.
+anthronet_status anthronet_motion_retarget(const struct anthronet_motion *motion,
+                                           uint32_t clip,
+                                           const struct anthronet_body *body,
+                                           const struct anthronet_retarget_options *retarget_options,
+                                           struct anthronet_clip **out_clip,
+                                           struct anthronet_bytes **out_report,
+                                           struct anthronet_error *error);
+
+// Makes a part of a mesh ready to be posed.
+anthronet_status anthronet_skinner_new(const struct anthronet_mesh *mesh,
+                                       uint32_t part,
+                                       struct anthronet_skinner **out_skinner,
+                                       struct anthronet_error *error);
+
+// Frees a skinner; NULL is nothing.
+void anthronet_skinner_free(struct anthronet_skinner *skinner);
+
+// Number of vertices that the skinner writes.
+anthronet_status anthronet_skinner_vertex_count(const struct anthronet_skinner *skinner,
+                                                uint32_t *out_count,
+                                                struct anthronet_error *error);
+
+// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. Buffers of
+// different jobs must not overlap.
+anthronet_status anthronet_skin(const struct anthronet_skin_job *jobs, uint32_t count, struct anthronet_error *error);
+
+// Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
+// .obj. The file appears whole or not at all. `options` may be NULL.
+anthronet_status anthronet_export_path(const struct anthronet_body *body,
+                                       const struct anthronet_export_options *options,
+                                       const char *path,
+                                       uint64_t path_length,
+                                       struct anthronet_error *error);
+
+// Writes a body to memory in a format: `glb`, `vrm`, `usda`, `usdc`, `usdz` or `obj`.
+anthronet_status anthronet_export_memory(const struct anthronet_body *body,
+                                         const struct anthronet_export_options *options,
+                                         const char *format,
+                                         uint64_t format_length,
+                                         struct anthronet_bytes **out_bytes,
+                                         struct anthronet_error *error);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* ANTHRONET_H */

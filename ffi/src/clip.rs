@@ -1,0 +1,278 @@
+//! Clips of a body's own skeleton: built in or retargeted; sampled, changed, blended.
+
+use std::ffi::c_char;
+
+use anthronet::clip::{self, BUILTIN, Clip, Sampler, Wrap};
+use anthronet::pose::Local;
+use anthronet::space::Space;
+
+use crate::body::anthronet_body;
+use crate::options::{Descriptor, DescriptorOut, choice, space};
+use crate::pointer::{Out, anthronet_text, at, exactly, free, read, slice_mut, text};
+use crate::skeleton::anthronet_transform;
+use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+
+/// Outside its duration a clip holds its first or last frame.
+pub const ANTHRONET_WRAP_ONCE: u32 = 0;
+/// A clip starts anew; its last frame is its first.
+pub const ANTHRONET_WRAP_LOOP: u32 = 1;
+/// As `ANTHRONET_WRAP_LOOP`, and each round goes on from where the last one ended.
+pub const ANTHRONET_WRAP_TRAVEL: u32 = 2;
+
+/// Each joint relative to its parent: what animation tracks hold.
+pub const ANTHRONET_RELATIVE_TO_PARENT: u32 = 0;
+/// Each joint relative to the model: what skinning takes.
+pub const ANTHRONET_RELATIVE_TO_MODEL: u32 = 1;
+
+/// A motion of a body's joints, frame by frame. Immutable.
+pub struct anthronet_clip(pub(crate) Clip);
+
+/// A clip in numbers.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct anthronet_clip_info {
+    /// Set by the caller: `sizeof(anthronet_clip_info)`.
+    pub struct_size: u32,
+    /// Number of frames.
+    pub frame_count: u32,
+    /// Number of joints.
+    pub joint_count: u32,
+    /// 0; fills the structure up.
+    pub reserved: u32,
+    /// Frames per second.
+    pub frames_per_second: f64,
+    /// From the first frame to the last, seconds.
+    pub duration: f64,
+    /// Its name; valid as long as the clip.
+    pub name: anthronet_text,
+}
+
+// SAFETY: numbers and a text of NULL, the size first.
+unsafe impl Descriptor for anthronet_clip_info {}
+
+fn make(
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+    make: impl FnOnce() -> Outcome<Clip>,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_clip, "out_clip")?;
+        out.give(anthronet_clip(make()?));
+        Ok(())
+    })
+}
+
+/// Number of built-in clips.
+#[unsafe(no_mangle)]
+pub extern "C" fn anthronet_clip_builtin_count() -> u32 {
+    BUILTIN.len() as u32
+}
+
+/// The name of a built-in clip, such as `walk`; valid for ever.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_builtin_name(
+    index: u32,
+    out_name: *mut anthronet_text,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_name, "out_name")?;
+        out.write(anthronet_text::of(at(&BUILTIN, index, "index")?));
+        Ok(())
+    })
+}
+
+/// Makes a built-in clip for a body.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_builtin(
+    name: *const c_char,
+    name_length: u64,
+    body: *const anthronet_body,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || Ok(clip::builtin(text(name, name_length, "name")?, &read(body, "body")?.rest)?))
+}
+
+/// Frees a clip; NULL is nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_free(clip: *mut anthronet_clip) {
+    free(clip);
+}
+
+/// What a clip is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_describe(
+    clip: *const anthronet_clip,
+    out_info: *mut anthronet_clip_info,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = DescriptorOut::new(out_info, "out_info")?;
+        let clip = &read(clip, "clip")?.0;
+        out.write(&anthronet_clip_info {
+            struct_size: 0,
+            frame_count: clip.frame_count() as u32,
+            joint_count: clip.rest().len() as u32,
+            reserved: 0,
+            frames_per_second: clip.frames_per_second(),
+            duration: clip.duration(),
+            name: anthronet_text::of(clip.name()),
+        });
+        Ok(())
+    })
+}
+
+/// The pose of a clip at a time, seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+/// `ANTHRONET_RELATIVE_TO_…`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_sample(
+    clip: *const anthronet_clip,
+    seconds: f64,
+    wrap: u32,
+    relative: u32,
+    in_space: u32,
+    out_joints: *mut anthronet_transform,
+    count: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let wrap = choice(&[Wrap::Once, Wrap::Loop, Wrap::Travel], wrap, "wrap")?;
+        let (to_model, space) = (to_model(relative)?, space(in_space)?);
+        finite("seconds", seconds)?;
+        let clip = &read(clip, "clip")?.0;
+        exactly("count", clip.rest().len(), count.into())?;
+        let out = slice_mut(out_joints, count.into(), "out_joints")?;
+        scratch(|pose, model| {
+            Sampler::new(clip, wrap).sample_into(seconds, pose);
+            write(clip, &pose.locals, model, to_model, space, out);
+        });
+        Ok(())
+    })
+}
+
+/// All frames of a clip, one after the other: fills `count` = frames × joints transforms.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_bake(
+    clip: *const anthronet_clip,
+    relative: u32,
+    in_space: u32,
+    out_joints: *mut anthronet_transform,
+    count: u64,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let (to_model, space) = (to_model(relative)?, space(in_space)?);
+        let clip = &read(clip, "clip")?.0;
+        exactly("count", clip.frame_count() * clip.rest().len(), count)?;
+        let out = slice_mut(out_joints, count, "out_joints")?;
+        scratch(|pose, model| {
+            for (frame, out) in out.chunks_exact_mut(clip.rest().len().max(1)).enumerate() {
+                clip.pose_into(frame, pose);
+                write(clip, &pose.locals, model, to_model, space, out);
+            }
+        });
+        Ok(())
+    })
+}
+
+/// The clip at another rate, frames per second.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_resample(
+    clip: *const anthronet_clip,
+    frames_per_second: f64,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || Ok(clip::resample(&read(clip, "clip")?.0, frames_per_second)?))
+}
+
+/// The clip without its way over the ground.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_in_place(
+    clip: *const anthronet_clip,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || Ok(clip::in_place(&read(clip, "clip")?.0)?))
+}
+
+/// The clip with its end going over into its beginning during the last `seconds`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_looped(
+    clip: *const anthronet_clip,
+    seconds: f64,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || Ok(clip::looped(&read(clip, "clip")?.0, seconds)?))
+}
+
+/// Two clips of one body at once: `weight` 0 is the first, 1 the second.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_blend(
+    first: *const anthronet_clip,
+    second: *const anthronet_clip,
+    weight: f32,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || {
+        finite("weight", weight.into())?;
+        Ok(clip::blend(&read(first, "first")?.0, &read(second, "second")?.0, weight, None)?)
+    })
+}
+
+/// Two clips of one body one after the other, overlapping by `seconds`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_crossfade(
+    first: *const anthronet_clip,
+    second: *const anthronet_clip,
+    seconds: f64,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || {
+        Ok(clip::crossfade(&read(first, "first")?.0, &read(second, "second")?.0, seconds)?)
+    })
+}
+
+/// Whether transforms are asked for relative to the model.
+fn to_model(relative: u32) -> Outcome<bool> {
+    choice(&[false, true], relative, "relative")
+}
+
+fn finite(what: &str, value: f64) -> Outcome {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
+}
+
+/// Room for a pose that stays from call to call, so that sampling allocates nothing.
+fn scratch(work: impl FnOnce(&mut anthronet::pose::Pose, &mut Vec<Local>)) {
+    use std::cell::RefCell;
+    thread_local! {
+        static ROOM: RefCell<(anthronet::pose::Pose, Vec<Local>)> = RefCell::default();
+    }
+    ROOM.with_borrow_mut(|(pose, model)| work(pose, model));
+}
+
+fn write(
+    clip: &Clip,
+    locals: &[Local],
+    model: &mut Vec<Local>,
+    to_model: bool,
+    space: Space,
+    out: &mut [anthronet_transform],
+) {
+    let joints = if to_model {
+        anthronet::pose::model_from_joints(clip.rest().parents(), locals, model);
+        model.as_slice()
+    } else {
+        locals
+    };
+    for (out, joint) in out.iter_mut().zip(joints) {
+        *out = joint.in_space(space).into();
+    }
+}

@@ -1,0 +1,93 @@
+//! Characters as files, on the disk or in memory.
+
+use std::ffi::c_char;
+use std::path::Path;
+
+use anthronet::export::{GltfOptions, Scene, WriteOptions, scene_to_bytes, write_scene_with};
+
+use crate::body::anthronet_body;
+use crate::bytes::anthronet_bytes;
+use crate::clip::anthronet_clip;
+use crate::mesh::scene_options;
+use crate::options::{Descriptor, described, flag};
+use crate::pointer::{Out, read, slice, text};
+use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
+
+/// What of a body goes into a file; all zeros ask for the defaults.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct anthronet_export_options {
+    /// Set by the caller: `sizeof(anthronet_export_options)`.
+    pub struct_size: u32,
+    /// Level of detail, 0 (finest) to 3.
+    pub lod: u32,
+    /// Influences per vertex, 4 or 8; 0 stands for 4.
+    pub influences: u32,
+    /// What the joints are called: `ANTHRONET_NAMES_…`.
+    pub joint_names: u32,
+    /// 1 leaves out eyes, teeth, tongue and lashes.
+    pub body_only: u32,
+    /// Step of the Monk skin tone scale, 1 to 10; 0 for the default tone.
+    pub skin_tone: u32,
+    /// 1 compresses .glb and .gltf (EXT_meshopt_compression).
+    pub compress: u32,
+    /// Number of `clips`.
+    pub clip_count: u32,
+    /// Clips of this body or one of the same rig that go into the file; NULL for none. Their names are unique.
+    pub clips: *const *const anthronet_clip,
+}
+
+// SAFETY: numbers and a pointer that may be NULL, the size first.
+unsafe impl Descriptor for anthronet_export_options {}
+
+/// Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
+/// .obj. The file appears whole or not at all. `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_export_path(
+    body: *const anthronet_body,
+    options: *const anthronet_export_options,
+    path: *const c_char,
+    path_length: u64,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let path = Path::new(text(path, path_length, "path")?);
+        let (scene, options) = scene(body, options)?;
+        Ok(write_scene_with(&scene, path, &options)?)
+    })
+}
+
+/// Writes a body to memory in a format: `glb`, `vrm`, `usda`, `usdc`, `usdz` or `obj`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_export_memory(
+    body: *const anthronet_body,
+    options: *const anthronet_export_options,
+    format: *const c_char,
+    format_length: u64,
+    out_bytes: *mut *mut anthronet_bytes,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_bytes, "out_bytes")?;
+        let format = text(format, format_length, "format")?;
+        let (scene, options) = scene(body, options)?;
+        out.give(anthronet_bytes(scene_to_bytes(&scene, format, &options)?));
+        Ok(())
+    })
+}
+
+fn scene(
+    body: *const anthronet_body,
+    options: *const anthronet_export_options,
+) -> Outcome<(Scene, WriteOptions)> {
+    let body = read(body, "body")?;
+    let asked = described(options, "options")?;
+    let looks =
+        scene_options(asked.lod, asked.influences, asked.joint_names, asked.body_only, asked.skin_tone)?;
+    let gltf = GltfOptions { compress: flag(asked.compress, "compress")? };
+    let mut scene = Scene::from_body(&body.body, &looks)?;
+    for clip in slice(asked.clips, asked.clip_count.into(), "clips")? {
+        scene.clips.push(read(*clip, "clip")?.0.clone());
+    }
+    Ok((scene, WriteOptions { gltf, ..WriteOptions::default() }))
+}

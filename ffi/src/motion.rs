@@ -1,0 +1,248 @@
+//! Motions: files as they were read, and their way onto a body.
+
+use std::ffi::c_char;
+use std::path::Path;
+
+use anthronet::clip::feet::FeetOptions;
+use anthronet::clip::{self, FingerMode, Motion, OntoOptions, ReadOptions, RootMotion};
+use anthronet::space::{Axis, Unit};
+
+use crate::body::anthronet_body;
+use crate::bytes::anthronet_bytes;
+use crate::clip::anthronet_clip;
+use crate::options::{Descriptor, choice, described, flag};
+use crate::pointer::{Out, anthronet_text, at, free, read, slice, text};
+use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+
+/// Fingers as the source's where it has any, else at ease.
+pub const ANTHRONET_FINGERS_SOURCE: u32 = 0;
+/// Hands at ease.
+pub const ANTHRONET_FINGERS_RELAXED: u32 = 1;
+/// Fingers as in the bind pose.
+pub const ANTHRONET_FINGERS_REST: u32 = 2;
+
+/// What the file says, or its proportions.
+pub const ANTHRONET_UP_FOUND: u32 = 0;
+/// +Y points up in the file.
+pub const ANTHRONET_UP_Y: u32 = 1;
+/// +Z points up in the file.
+pub const ANTHRONET_UP_Z: u32 = 2;
+
+/// What is said of a motion file beforehand; it wins over what the file says. Zeros leave everything to the file.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct anthronet_motion_options {
+    /// Set by the caller: `sizeof(anthronet_motion_options)`.
+    pub struct_size: u32,
+    /// `ANTHRONET_UP_…`.
+    pub up: u32,
+    /// Metres per unit of length, such as 0.01.
+    pub metres_per_unit: f64,
+    /// Frames per second: frames were recorded at this rate, curves are sampled at it.
+    pub frames_per_second: f64,
+}
+
+// SAFETY: numbers alone, the size first.
+unsafe impl Descriptor for anthronet_motion_options {}
+
+/// How a motion comes onto a body; all zeros ask for the defaults.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct anthronet_retarget_options {
+    /// Set by the caller: `sizeof(anthronet_retarget_options)`.
+    pub struct_size: u32,
+    /// `ANTHRONET_FINGERS_…`.
+    pub fingers: u32,
+    /// 1 leaves joints beyond what people's joints do.
+    pub no_limits: u32,
+    /// 1 leaves feet where the motion puts them, sliding or under the floor.
+    pub no_feet: u32,
+    /// 1 leaves out the way over the ground.
+    pub in_place: u32,
+    /// 1 makes the end meet the beginning.
+    pub looped: u32,
+    /// 1 gives the way over the ground to the joint `Root` instead of the pelvis.
+    pub root_motion: u32,
+    /// Bytes of `mapping_json`.
+    pub mapping_length: u32,
+    /// Which joint of the source drives which of ours, as JSON: `{"upperarm_l": "LeftArm", "jaw": null}`; NULL to find
+    /// all of them.
+    pub mapping_json: *const c_char,
+    /// Frames per second of the result; 0 keeps those of the motion.
+    pub frames_per_second: f64,
+}
+
+// SAFETY: numbers and a pointer that may be NULL, the size first.
+unsafe impl Descriptor for anthronet_retarget_options {}
+
+/// A motion file as it was read: at least one clip of the file's own skeleton. Immutable.
+pub struct anthronet_motion(Motion);
+
+fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
+    let asked = described(pointer, "options")?;
+    let unit = match asked.metres_per_unit {
+        0.0 => None,
+        metres => Some(Unit::of_metres(metres).ok_or_else(|| {
+            let message = format!("metres_per_unit: expected a positive number, got {metres}");
+            Fault::new(ANTHRONET_ERROR_REQUEST, message)
+        })?),
+    };
+    Ok(ReadOptions {
+        unit,
+        up: choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?,
+        frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
+    })
+}
+
+fn give(out: Out<*mut anthronet_motion>, motion: Motion) {
+    motion.report.warnings.iter().for_each(|warning| crate::log::warning(warning));
+    out.give(anthronet_motion(motion));
+}
+
+/// Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz. `read_options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_open_path(
+    path: *const c_char,
+    path_length: u64,
+    read_options: *const anthronet_motion_options,
+    out_motion: *mut *mut anthronet_motion,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_motion, "out_motion")?;
+        let path = Path::new(text(path, path_length, "path")?);
+        give(out, clip::read(path, &options(read_options)?)?);
+        Ok(())
+    })
+}
+
+/// Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a name gets
+/// it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_open_memory(
+    data: *const u8,
+    length: u64,
+    name: *const c_char,
+    name_length: u64,
+    read_options: *const anthronet_motion_options,
+    out_motion: *mut *mut anthronet_motion,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_motion, "out_motion")?;
+        let bytes = slice(data, length, "data")?;
+        let name = Path::new(text(name, name_length, "name")?);
+        give(out, clip::from_bytes(bytes, name, &options(read_options)?)?);
+        Ok(())
+    })
+}
+
+/// Frees a motion; NULL is nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_free(motion: *mut anthronet_motion) {
+    free(motion);
+}
+
+/// Number of clips: at least one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_clip_count(
+    motion: *const anthronet_motion,
+    out_count: *mut u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        Out::new(out_count, "out_count")?.write(read(motion, "motion")?.0.clips.len() as u32);
+        Ok(())
+    })
+}
+
+/// The name of a clip; valid as long as the motion.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_clip_name(
+    motion: *const anthronet_motion,
+    clip: u32,
+    out_name: *mut anthronet_text,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_name, "out_name")?;
+        let clip = at(&read(motion, "motion")?.0.clips, clip, "clip")?;
+        out.write(anthronet_text::of(clip.name()));
+        Ok(())
+    })
+}
+
+/// How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_report(
+    motion: *const anthronet_motion,
+    out_json: *mut *mut anthronet_bytes,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_json, "out_json")?;
+        out.give(json(&read(motion, "motion")?.0.report)?);
+        Ok(())
+    })
+}
+
+/// Brings one clip of a motion onto a body. `retarget_options` may be NULL; `out_report` too, else it gets JSON: which
+/// joint drives which, what drives nothing, how far directions, limits and feet are off.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_retarget(
+    motion: *const anthronet_motion,
+    clip: u32,
+    body: *const anthronet_body,
+    retarget_options: *const anthronet_retarget_options,
+    out_clip: *mut *mut anthronet_clip,
+    out_report: *mut *mut anthronet_bytes,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_clip, "out_clip")?;
+        let out_report = Out::optional(out_report, "out_report")?;
+        let motion = &read(motion, "motion")?.0;
+        let body = read(body, "body")?;
+        let options = onto_options(&described(retarget_options, "options")?)?;
+        let one =
+            Motion { clips: vec![at(&motion.clips, clip, "clip")?.clone()], report: motion.report.clone() };
+        let (clips, report) = clip::onto(&one, &body.rest, &options)?;
+        let clip = clips.into_iter().next().map(anthronet_clip);
+        let clip =
+            clip.ok_or_else(|| Fault::new(crate::status::ANTHRONET_ERROR_OTHER, "no clip was made"))?;
+        let report_json = json(&report)?;
+        if !report.joints.unmatched.is_empty() {
+            crate::log::info(&format!("joints that drive nothing: {}", report.joints.unmatched.join(", ")));
+        }
+        out.give(clip);
+        if let Some(out) = out_report {
+            out.give(report_json);
+        }
+        Ok(())
+    })
+}
+
+fn onto_options(asked: &anthronet_retarget_options) -> Outcome<OntoOptions> {
+    let mut options = OntoOptions {
+        limits: !flag(asked.no_limits, "no_limits")?,
+        feet: (!flag(asked.no_feet, "no_feet")?).then(FeetOptions::default),
+        in_place: flag(asked.in_place, "in_place")?,
+        looped: flag(asked.looped, "looped")?,
+        frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
+        ..OntoOptions::default()
+    };
+    let fingers = [FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest];
+    options.retarget.fingers = choice(&fingers, asked.fingers, "fingers")?;
+    options.retarget.root =
+        choice(&[RootMotion::Pelvis, RootMotion::Root], asked.root_motion, "root_motion")?;
+    if !asked.mapping_json.is_null() {
+        let mapping = text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?;
+        options.mapping = clip::read_overrides(mapping, Path::new("mapping_json"))?;
+    }
+    Ok(options)
+}
+
+fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {
+    let bytes = serde_json::to_vec(value);
+    bytes.map(anthronet_bytes).map_err(|e| Fault::new(crate::status::ANTHRONET_ERROR_OTHER, e.to_string()))
+}

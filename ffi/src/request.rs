@@ -1,0 +1,249 @@
+//! Requests: what is asked of a model.
+
+use std::ffi::c_char;
+
+use anthronet::condition::{Fill, Request};
+use anthronet::measure::{MEASURE_COUNT, Sex};
+
+use crate::bytes::anthronet_bytes;
+use crate::options::{choice, flag};
+use crate::pointer::{Out, beyond, change, exactly, free, read, slice, slice_mut, text};
+use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+
+/// The sex is left to the measures.
+pub const ANTHRONET_SEX_ANY: u32 = 0;
+/// Female.
+pub const ANTHRONET_SEX_FEMALE: u32 = 1;
+/// Male.
+pub const ANTHRONET_SEX_MALE: u32 = 2;
+
+/// Open measures get their likeliest values beside the given ones.
+pub const ANTHRONET_FILL_MEAN: u32 = 0;
+/// Open measures are drawn from what is plausible beside the given ones; the seed chooses.
+pub const ANTHRONET_FILL_SAMPLE: u32 = 1;
+
+/// A person to be made. One thread at a time may change it.
+pub struct anthronet_request(pub(crate) Request);
+
+/// A request that asks for nothing: the likeliest person.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_new(
+    out_request: *mut *mut anthronet_request,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        Out::new(out_request, "out_request")?.give(anthronet_request(Request::default()));
+        Ok(())
+    })
+}
+
+/// A request from JSON: `{"sex": "female", "measures": {"height": 1.7}, "seed": 7}`; metres.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_from_json(
+    json: *const c_char,
+    json_length: u64,
+    out_request: *mut *mut anthronet_request,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_request, "out_request")?;
+        out.give(anthronet_request(Request::from_json(text(json, json_length, "json")?)?));
+        Ok(())
+    })
+}
+
+/// Another request that asks for the same.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_copy(
+    request: *const anthronet_request,
+    out_request: *mut *mut anthronet_request,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_request, "out_request")?;
+        out.give(anthronet_request(read(request, "request")?.0.clone()));
+        Ok(())
+    })
+}
+
+/// Frees a request; NULL is nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_free(request: *mut anthronet_request) {
+    free(request);
+}
+
+/// The request as JSON, in the form that `anthronet_request_from_json` reads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_to_json(
+    request: *const anthronet_request,
+    out_json: *mut *mut anthronet_bytes,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_json, "out_json")?;
+        out.give(anthronet_bytes(read(request, "request")?.0.to_json().into_bytes()));
+        Ok(())
+    })
+}
+
+/// Sets the sex: `ANTHRONET_SEX_…`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_sex(
+    request: *mut anthronet_request,
+    sex: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let sex = choice(&[None, Some(Sex::Female), Some(Sex::Male)], sex, "sex")?;
+        change(request, "request")?.0.sex = sex;
+        Ok(())
+    })
+}
+
+/// Gives a measure by its name, metres; a name without its side, such as `arm_length`, gives both sides.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_measure(
+    request: *mut anthronet_request,
+    name: *const c_char,
+    name_length: u64,
+    metres: f64,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let name = text(name, name_length, "name")?;
+        finite(name, metres)?;
+        Ok(change(request, "request")?.0.set(name, metres)?)
+    })
+}
+
+/// Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
+/// `anthronet_measure_name`; `count` is their number, 36. What `metres` holds of an open measure does not matter.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_measures(
+    request: *mut anthronet_request,
+    metres: *const f64,
+    given: *const u8,
+    count: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        exactly("count", MEASURE_COUNT, count.into())?;
+        let metres = slice(metres, count.into(), "metres")?;
+        let given = slice(given, count.into(), "given")?;
+        let mut measures = [None; MEASURE_COUNT];
+        for (i, measure) in measures.iter_mut().enumerate() {
+            let name = anthronet::measure::MeasureId::from_index(i).map_or("measure", |id| id.name());
+            if flag(given[i].into(), "given")? {
+                finite(name, metres[i])?;
+                *measure = Some(metres[i]);
+            }
+        }
+        change(request, "request")?.0.measures = measures;
+        Ok(())
+    })
+}
+
+/// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` (36) entries each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_measures(
+    request: *const anthronet_request,
+    out_metres: *mut f64,
+    out_given: *mut u8,
+    count: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        exactly("count", MEASURE_COUNT, count.into())?;
+        let measures = &read(request, "request")?.0.measures;
+        let metres = slice_mut(out_metres, count.into(), "out_metres")?;
+        let given = slice_mut(out_given, count.into(), "out_given")?;
+        for (i, measure) in measures.iter().enumerate() {
+            metres[i] = measure.unwrap_or_default();
+            given[i] = measure.is_some().into();
+        }
+        Ok(())
+    })
+}
+
+/// Leaves a measure open again, by its place in the order of `anthronet_measure_name`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_open_measure(
+    request: *mut anthronet_request,
+    measure: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let measures = &mut change(request, "request")?.0.measures;
+        let count = measures.len();
+        *measures.get_mut(measure as usize).ok_or_else(|| beyond("measure", measure, count))? = None;
+        Ok(())
+    })
+}
+
+/// Sets the seed: 0 for the likeliest of the people with these measures, any other number for one of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_seed(
+    request: *mut anthronet_request,
+    seed: u64,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        change(request, "request")?.0.seed = seed;
+        Ok(())
+    })
+}
+
+/// Sets the latent numbers by hand, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the
+/// seed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_latent(
+    request: *mut anthronet_request,
+    latent: *const f64,
+    count: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let latent = slice(latent, count.into(), "latent")?;
+        for (i, value) in latent.iter().enumerate() {
+            finite(&format!("latent {i}"), *value)?;
+        }
+        change(request, "request")?.0.z = (!latent.is_empty()).then(|| latent.to_vec());
+        Ok(())
+    })
+}
+
+/// Sets how open measures are filled: `ANTHRONET_FILL_…`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_fill(
+    request: *mut anthronet_request,
+    fill: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let fill = choice(&[Fill::Mean, Fill::Sample], fill, "fill")?;
+        change(request, "request")?.0.fill = fill;
+        Ok(())
+    })
+}
+
+/// Whether measures that no one person has are replaced by the nearest that one has (1), with a warning in the report,
+/// or refused (0).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_request_set_nearest(
+    request: *mut anthronet_request,
+    nearest: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let nearest = flag(nearest, "nearest")?;
+        change(request, "request")?.0.nearest = nearest;
+        Ok(())
+    })
+}
+
+fn finite(what: &str, value: f64) -> Outcome {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
+}

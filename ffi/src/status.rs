@@ -1,0 +1,126 @@
+//! Status codes, the error that a caller may pass, and the guard around every entry.
+
+use std::any::Any;
+use std::ffi::c_char;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use anthronet::Error;
+
+/// What every call that can fail returns: `ANTHRONET_OK` or one of `ANTHRONET_ERROR_…`.
+pub type anthronet_status = i32;
+
+/// Done.
+pub const ANTHRONET_OK: i32 = 0;
+/// A pointer that has to be given is NULL, or not aligned.
+pub const ANTHRONET_ERROR_POINTER: i32 = 101;
+/// A size, count, stride or `struct_size` is not what it must be.
+pub const ANTHRONET_ERROR_SIZE: i32 = 102;
+/// A number is none of the values of its enumeration.
+pub const ANTHRONET_ERROR_ENUM: i32 = 103;
+/// An index is beyond the last.
+pub const ANTHRONET_ERROR_INDEX: i32 = 104;
+/// A text is not UTF-8.
+pub const ANTHRONET_ERROR_TEXT: i32 = 105;
+/// A field of a request is unknown, not finite, or out of range.
+pub const ANTHRONET_ERROR_REQUEST: i32 = 201;
+/// The measures of a request cannot belong to one person.
+pub const ANTHRONET_ERROR_INFEASIBLE: i32 = 202;
+/// A model file is damaged or of another version.
+pub const ANTHRONET_ERROR_MODEL: i32 = 301;
+/// A file is not what it should be.
+pub const ANTHRONET_ERROR_FILE: i32 = 401;
+/// The operating system refused to read or write.
+pub const ANTHRONET_ERROR_IO: i32 = 402;
+/// Data contradicts itself: counts that differ, numbers that are not finite, a pose of another skeleton.
+pub const ANTHRONET_ERROR_INVALID: i32 = 501;
+/// The job is still running.
+pub const ANTHRONET_ERROR_BUSY: i32 = 601;
+/// The job was cancelled before this was made.
+pub const ANTHRONET_ERROR_CANCELLED: i32 = 602;
+/// What was asked for was taken before.
+pub const ANTHRONET_ERROR_TAKEN: i32 = 603;
+/// An error of a kind that is younger than this header.
+pub const ANTHRONET_ERROR_OTHER: i32 = 900;
+/// A defect of the library, caught; the message says where. Please report it.
+pub const ANTHRONET_ERROR_PANIC: i32 = 901;
+
+/// Bytes of a message with its terminating zero.
+const MESSAGE: usize = 512;
+
+/// What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+#[repr(C)]
+pub struct anthronet_error {
+    /// The status that the call returned.
+    pub code: i32,
+    /// A sentence in English, UTF-8, ended by a zero; longer ones are cut.
+    pub message: [c_char; 512],
+}
+
+/// Why an entry fails.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub(crate) code: i32,
+    pub(crate) message: String,
+}
+
+/// What the body of an entry returns.
+pub(crate) type Outcome<T = ()> = Result<T, Fault>;
+
+impl Fault {
+    pub(crate) fn new(code: i32, message: impl Into<String>) -> Self {
+        Self { code, message: message.into() }
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        let code = match &error {
+            Error::Request { .. } => ANTHRONET_ERROR_REQUEST,
+            Error::Infeasible(_) => ANTHRONET_ERROR_INFEASIBLE,
+            Error::Model { .. } => ANTHRONET_ERROR_MODEL,
+            Error::File { .. } => ANTHRONET_ERROR_FILE,
+            Error::Io { .. } => ANTHRONET_ERROR_IO,
+            Error::Invalid { .. } => ANTHRONET_ERROR_INVALID,
+            _ => ANTHRONET_ERROR_OTHER,
+        };
+        Self { code, message: error.to_string() }
+    }
+}
+
+/// Runs an entry: errors and panics become a code, and a message where the caller wants one.
+pub(crate) fn guard(error: *mut anthronet_error, entry: impl FnOnce() -> Outcome) -> anthronet_status {
+    // A panic leaves nothing half done that a caller could reach: entries write their results last.
+    let outcome = catch_unwind(AssertUnwindSafe(entry))
+        .unwrap_or_else(|panic| Err(Fault::new(ANTHRONET_ERROR_PANIC, panic_text(&*panic))));
+    let Err(Fault { code, message }) = outcome else { return ANTHRONET_OK };
+    // SAFETY: NULL or the caller's own, as the preamble asks.
+    if let Some(error) = unsafe { error.as_mut() } {
+        error.code = code;
+        write_message(&mut error.message, &message);
+    }
+    code
+}
+
+/// Runs an entry that cannot fail but by a defect, such as freeing.
+pub(crate) fn guard_quietly(entry: impl FnOnce()) {
+    if let Err(panic) = catch_unwind(AssertUnwindSafe(entry)) {
+        crate::log::error(&panic_text(&*panic));
+    }
+}
+
+/// What a panic said.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref().copied());
+    format!("a defect of the library: {}", said.unwrap_or("no message"))
+}
+
+/// Cuts at a character's end and terminates.
+fn write_message(out: &mut [c_char; MESSAGE], message: &str) {
+    let mut end = message.len().min(MESSAGE - 1);
+    while !message.is_char_boundary(end) {
+        end -= 1;
+    }
+    for (to, from) in out.iter_mut().zip(message.as_bytes()[..end].iter().chain([&0])) {
+        *to = *from as c_char;
+    }
+}

@@ -1,0 +1,68 @@
+//! The C header and the C# bindings, both from the sources of `ffi`.
+
+use crate::tools::{self, Outcome};
+use std::path::{Path, PathBuf};
+
+/// The header that C and C++ include.
+pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
+/// The declarations that C# calls.
+pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
+
+/// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
+const SOURCES: [&str; 15] = [
+    "version", "status", "pointer", "options", "log", "bytes", "model", "measure", "request", "body", "job",
+    "skeleton", "mesh", "clip", "motion",
+];
+const LAST: [&str; 2] = ["skin", "export"];
+
+/// Writes both into the source tree.
+pub(crate) fn write() -> Outcome {
+    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+        tools::write(&tools::root().join(path), &text)?;
+    }
+    Ok(())
+}
+
+/// Fails unless the files in the source tree are what the sources make, byte by byte.
+pub(crate) fn check() -> Outcome {
+    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+        let there = tools::read(&tools::root().join(path))?;
+        if there != text {
+            return Err(format!("{path}: is not what ffi/src makes: run `cargo xtask gen` and commit it"));
+        }
+    }
+    println!("bindings: {HEADER} and {CSHARP} are what ffi/src makes");
+    Ok(())
+}
+
+fn sources() -> impl Iterator<Item = PathBuf> {
+    let folder = tools::root().join("ffi/src");
+    SOURCES.into_iter().chain(LAST).map(move |name| folder.join(name).with_extension("rs"))
+}
+
+fn header() -> Outcome<String> {
+    let root = tools::root().join("ffi");
+    let config = cbindgen::Config::from_file(root.join("cbindgen.toml"))?;
+    let builder = sources().fold(cbindgen::Builder::new().with_config(config), |b, file| b.with_src(file));
+    let bindings = builder.generate().map_err(|e| format!("{HEADER}: {e}"))?;
+    let mut bytes = Vec::new();
+    bindings.write(&mut bytes);
+    String::from_utf8(bytes).map_err(|e| format!("{HEADER}: {e}"))
+}
+
+fn csharp() -> Outcome<String> {
+    let scratch = tools::target().join("gen").join(Path::new(CSHARP).file_name().unwrap_or_default());
+    tools::write(&scratch, "")?;
+    sources()
+        .fold(csbindgen::Builder::default(), |b, file| b.input_extern_file(file))
+        .csharp_dll_name("anthronet")
+        .csharp_dll_name_if("UNITY_IOS && !UNITY_EDITOR", "__Internal")
+        .csharp_namespace("Anthronet.Native")
+        .csharp_class_name("NativeMethods")
+        .csharp_use_nint_types(false)
+        .csharp_use_function_pointer(false)
+        .csharp_generate_const_filter(|name| name.starts_with("ANTHRONET_"))
+        .generate_csharp_file(&scratch)
+        .map_err(|e| format!("{CSHARP}: {e}"))?;
+    tools::read(&scratch)
+}
