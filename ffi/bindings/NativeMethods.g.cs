@@ -659,6 +659,13 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_builtin(byte* name, ulong name_length, anthronet_body* body, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
+        ///  Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+        ///  relative to its parent in `in_space`; `count` = frames × joints.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_new(anthronet_body* body, byte* name, ulong name_length, double frames_per_second, uint in_space, anthronet_transform* frames, ulong count, anthronet_clip** out_clip, anthronet_error* error);
+
+        /// <summary>
         ///  Frees a clip; NULL is nothing.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_free", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -725,6 +732,12 @@ namespace Anthronet.Native
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_open_memory", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_open_memory(byte* data, ulong length, byte* name, ulong name_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
+
+        /// <summary>
+        ///  Makes a motion of poses instead of a file, to be retargeted as one.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_motion_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_motion_new(anthronet_motion_source* source, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
         ///  Frees a motion; NULL is nothing.
@@ -1337,6 +1350,54 @@ namespace Anthronet.Native
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_motion
     {
+    }
+
+    /// <summary>
+    ///  A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe partial struct anthronet_motion_source
+    {
+        /// <summary>
+        ///  Set by the caller: `sizeof(anthronet_motion_source)`.
+        /// </summary>
+        public uint struct_size;
+        /// <summary>
+        ///  `ANTHRONET_SPACE_…` of the transforms; lengths are metres.
+        /// </summary>
+        public uint space;
+        /// <summary>
+        ///  Number of joints.
+        /// </summary>
+        public uint joint_count;
+        /// <summary>
+        ///  Number of frames.
+        /// </summary>
+        public uint frame_count;
+        /// <summary>
+        ///  Frames per second.
+        /// </summary>
+        public double frames_per_second;
+        /// <summary>
+        ///  Name of the clip.
+        /// </summary>
+        public anthronet_text name;
+        /// <summary>
+        ///  Name of each joint; none twice.
+        /// </summary>
+        public anthronet_text* joint_names;
+        /// <summary>
+        ///  Place of each joint's parent, before the joint's own; −1 for none.
+        /// </summary>
+        public int* parents;
+        /// <summary>
+        ///  Where each joint rests, relative to its parent.
+        /// </summary>
+        public anthronet_transform* rest;
+        /// <summary>
+        ///  Frame by frame, each joint relative to its parent: frames × joints.
+        /// </summary>
+        public anthronet_transform* frames;
     }
 
     /// <summary>

@@ -473,6 +473,30 @@ typedef struct anthronet_motion_options {
     double frames_per_second;
 } anthronet_motion_options;
 
+// A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+typedef struct anthronet_motion_source {
+    // Set by the caller: `sizeof(anthronet_motion_source)`.
+    uint32_t struct_size;
+    // `ANTHRONET_SPACE_…` of the transforms; lengths are metres.
+    uint32_t space;
+    // Number of joints.
+    uint32_t joint_count;
+    // Number of frames.
+    uint32_t frame_count;
+    // Frames per second.
+    double frames_per_second;
+    // Name of the clip.
+    struct anthronet_text name;
+    // Name of each joint; none twice.
+    const struct anthronet_text *joint_names;
+    // Place of each joint's parent, before the joint's own; −1 for none.
+    const int32_t *parents;
+    // Where each joint rests, relative to its parent.
+    const struct anthronet_transform *rest;
+    // Frame by frame, each joint relative to its parent: frames × joints.
+    const struct anthronet_transform *frames;
+} anthronet_motion_source;
+
 // How a motion comes onto a body; all zeros ask for the defaults.
 typedef struct anthronet_retarget_options {
     // Set by the caller: `sizeof(anthronet_retarget_options)`.
@@ -879,6 +903,18 @@ anthronet_status anthronet_clip_builtin(const char *name,
                                         struct anthronet_clip **out_clip,
                                         struct anthronet_error *error);
 
+// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+// relative to its parent in `in_space`; `count` = frames × joints.
+anthronet_status anthronet_clip_new(const struct anthronet_body *body,
+                                    const char *name,
+                                    uint64_t name_length,
+                                    double frames_per_second,
+                                    uint32_t in_space,
+                                    const struct anthronet_transform *frames,
+                                    uint64_t count,
+                                    struct anthronet_clip **out_clip,
+                                    struct anthronet_error *error);
+
 // Frees a clip; NULL is nothing.
 void anthronet_clip_free(struct anthronet_clip *clip);
 
@@ -953,6 +989,11 @@ anthronet_status anthronet_motion_open_memory(const uint8_t *data,
                                               const struct anthronet_motion_options *read_options,
                                               struct anthronet_motion **out_motion,
                                               struct anthronet_error *error);
+
+// Makes a motion of poses instead of a file, to be retargeted as one.
+anthronet_status anthronet_motion_new(const struct anthronet_motion_source *source,
+                                      struct anthronet_motion **out_motion,
+                                      struct anthronet_error *error);
 
 // Frees a motion; NULL is nothing.
 void anthronet_motion_free(struct anthronet_motion *motion);
