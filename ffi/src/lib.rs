@@ -20,6 +20,7 @@ pub mod mesh;
 pub mod model;
 pub mod motion;
 pub mod options;
+mod panic;
 pub mod pointer;
 pub mod request;
 pub mod skeleton;

@@ -310,7 +310,7 @@ fn onto_options(asked: &anthronet_retarget_options) -> Outcome<OntoOptions> {
     options.retarget.fingers = choice(&fingers, asked.fingers, "fingers")?;
     options.retarget.root =
         choice(&[RootMotion::Pelvis, RootMotion::Root], asked.root_motion, "root_motion")?;
-    if !asked.mapping_json.is_null() {
+    if !asked.mapping_json.is_null() || asked.mapping_length != 0 {
         let mapping = text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?;
         options.mapping = clip::read_overrides(mapping, Path::new("mapping_json"))?;
     }
