@@ -9,11 +9,26 @@ pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
 pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
 
 /// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
-const SOURCES: [&str; 15] = [
-    "version", "status", "pointer", "options", "log", "bytes", "model", "measure", "request", "body", "job",
-    "skeleton", "mesh", "clip", "motion",
+const SOURCES: [&str; 18] = [
+    "version",
+    "status",
+    "pointer",
+    "options",
+    "log",
+    "bytes",
+    "model",
+    "measure",
+    "request",
+    "body",
+    "job",
+    "skeleton",
+    "mesh",
+    "blend_shape",
+    "clip",
+    "motion",
+    "skin",
+    "export",
 ];
-const LAST: [&str; 2] = ["skin", "export"];
 
 /// Writes both into the source tree.
 pub(crate) fn write() -> Outcome {
@@ -37,7 +52,7 @@ pub(crate) fn check() -> Outcome {
 
 fn sources() -> impl Iterator<Item = PathBuf> {
     let folder = tools::root().join("ffi/src");
-    SOURCES.into_iter().chain(LAST).map(move |name| folder.join(name).with_extension("rs"))
+    SOURCES.into_iter().map(move |name| folder.join(name).with_extension("rs"))
 }
 
 fn header() -> Outcome<String> {
