@@ -14,11 +14,26 @@ pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
 /// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
-const SOURCES: [&str; 15] = [
-    "version", "status", "pointer", "options", "log", "bytes", "model", "measure", "request", "body", "job",
-    "skeleton", "mesh", "clip", "motion",
+const SOURCES: [&str; 18] = [
+    "version",
+    "status",
+    "pointer",
+    "options",
+    "log",
+    "bytes",
+    "model",
+    "measure",
+    "request",
+    "body",
+    "job",
+    "skeleton",
+    "mesh",
+    "blend_shape",
+    "clip",
+    "motion",
+    "skin",
+    "export",
 ];
-const LAST: [&str; 2] = ["skin", "export"];
 
 /// All of them, with their paths in the source tree.
 fn all() -> Outcome<[(&'static str, String); 3]> {
@@ -49,7 +64,7 @@ pub(crate) fn check() -> Outcome {
 
 fn sources() -> impl Iterator<Item = PathBuf> {
     let folder = tools::root().join("ffi/src");
-    SOURCES.into_iter().chain(LAST).map(move |name| folder.join(name).with_extension("rs"))
+    SOURCES.into_iter().map(move |name| folder.join(name).with_extension("rs"))
 }
 
 fn header() -> Outcome<String> {
