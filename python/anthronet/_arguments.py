@@ -31,7 +31,7 @@ def choice(table: Mapping[Any, int], value: Any, name: str) -> int:
     try:
         return table[value]
     except (KeyError, TypeError):
-        known = ", ".join(map(repr, table))
+        known = ", ".join(map(repr, table)) or "none"
         kind = ValueError if isinstance(value, (str, type(None))) else TypeError
         raise kind(f"{name}: expected one of {known}, got {value!r}") from None
 
@@ -115,12 +115,12 @@ def instance(value: Any, kind: Type[T], name: str) -> T:
 def floats(value: Any, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
     """A packed array of 32-bit floats; copied only where it is something else. None in `shape` is any number."""
     try:
-        array = np.asarray(value)
-        array = np.ascontiguousarray(array, np.float32) if array.dtype.kind in "fiu" else None
+        given = np.asarray(value)
     except (TypeError, ValueError):
-        array = None
-    if array is None:
+        given = np.empty(0, object)
+    if given.dtype.kind not in "fiu":
         raise TypeError(f"{name}: expected an array of numbers, got {type(value).__name__}")
+    array = np.ascontiguousarray(given, np.float32)
     shaped(array, name, shape)
     return array if array.flags.aligned else array.copy()
 

@@ -30,7 +30,7 @@ _ATTRIBUTES = {
 }
 # What a blend shape moves.
 _MOVED = {name: _ATTRIBUTES[name] for name in ("positions", "normals")}
-_TYPES = {
+_TYPES: Dict[int, np.dtype] = {
     _native.TYPE_F32: np.dtype(np.float32),
     _native.TYPE_U32: np.dtype(np.uint32),
     _native.TYPE_U16: np.dtype(np.uint16),
@@ -79,7 +79,8 @@ class Mesh(Owner):
         from ._body import Body
 
         body = _arguments.instance(body, Body, "body")
-        self._open
+        if self.closed:
+            raise ValueError("Mesh: is closed")
         self._handle = self._surfaces(body)
 
     def add_blend_shape(self, name: str, body: Body) -> None:
@@ -285,7 +286,7 @@ class Part:
     def _source(self, attribute: str, shape: Optional[int]) -> _Source:
         handle = self._mesh._open
         if shape is None:
-            place = (handle, self._index, _arguments.choice(_ATTRIBUTES, attribute, "attribute"))
+            place: Tuple[Any, ...] = (handle, self._index, _arguments.choice(_ATTRIBUTES, attribute, "attribute"))
             data, read = lib.anthronet_mesh_data, lib.anthronet_mesh_read
         else:
             place = (handle, shape, self._index, _arguments.choice(_MOVED, attribute, "attribute"))

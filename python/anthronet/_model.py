@@ -12,7 +12,7 @@ from . import _arguments, _native
 from ._arguments import Path
 from ._body import Body
 from ._job import Job
-from ._library import Handle, Owner, call, described, json_of, lib, new_handle, number_of
+from ._library import Owner, call, described, json_of, lib, new_handle, number_of
 from ._request import MEASURES, Request
 
 
