@@ -1,4 +1,6 @@
-//! The C header and the C# bindings, both from the sources of `ffi`.
+//! The C header and the bindings of C# and Python, all of them from the sources of `ffi`.
+
+mod python;
 
 use crate::tools::{self, Outcome};
 use std::path::{Path, PathBuf};
@@ -7,6 +9,9 @@ use std::path::{Path, PathBuf};
 pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
 /// The declarations that C# calls.
 pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
+
+/// The declarations that Python calls.
+pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
 /// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
 const SOURCES: [&str; 18] = [
@@ -30,9 +35,16 @@ const SOURCES: [&str; 18] = [
     "export",
 ];
 
-/// Writes both into the source tree.
+/// All of them, with their paths in the source tree.
+fn all() -> Outcome<[(&'static str, String); 3]> {
+    let header = header()?;
+    let python = python::declarations(&header)?;
+    Ok([(HEADER, header), (CSHARP, csharp()?), (PYTHON, python)])
+}
+
+/// Writes them into the source tree.
 pub(crate) fn write() -> Outcome {
-    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+    for (path, text) in all()? {
         tools::write(&tools::root().join(path), &text)?;
     }
     Ok(())
@@ -40,13 +52,13 @@ pub(crate) fn write() -> Outcome {
 
 /// Fails unless the files in the source tree are what the sources make, byte by byte.
 pub(crate) fn check() -> Outcome {
-    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+    for (path, text) in all()? {
         let there = tools::read(&tools::root().join(path))?;
         if there != text {
             return Err(format!("{path}: is not what ffi/src makes: run `cargo xtask gen` and commit it"));
         }
     }
-    println!("bindings: {HEADER} and {CSHARP} are what ffi/src makes");
+    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are what ffi/src makes");
     Ok(())
 }
 
