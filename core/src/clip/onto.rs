@@ -10,7 +10,7 @@ use super::retarget::{DirectionError, RetargetOptions, Retargeter, direction_err
 use super::{Clip, Motion, in_place, looped, resample};
 use crate::Result;
 use crate::pose::RestPose;
-use crate::pose::limits::JointLimits;
+use crate::pose::limits::{JointLimits, TwistsBefore};
 
 /// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
 const LOOP_BLEND: f64 = 0.3;
@@ -99,9 +99,10 @@ pub fn onto(
     for source in &motion.clips {
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
+        let mut twists = TwistsBefore::default();
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
-                limits.clamp(target, pose);
+                limits.clamp_after(target, pose, &mut twists);
             }
         })?;
         let mut feet = None;

@@ -21,6 +21,9 @@ use super::{Pose, RestPose, SwingTwist};
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.
 const ROUNDING: f32 = 2e-5;
+/// How far past half a turn from the middle of its range a twist stays at the end of the range that it left by, radians
+/// (60°).
+const PAST_HALF: f32 = 1.05;
 
 /// A row of the table, degrees, for a joint in the middle or on the left.
 struct Row {
@@ -92,8 +95,10 @@ pub struct JointLimit {
 }
 
 impl JointLimit {
-    /// The nearest swing and twist within, and how far off that is: the larger of the two.
-    fn within(&self, given: SwingTwist) -> (SwingTwist, f32) {
+    /// The nearest swing and twist within, and how far off that is: the larger of the two. `before` is how far the twist
+    /// was from the middle of its range a moment ago, and becomes what it is now; without it the nearest is the shorter
+    /// way round.
+    fn within(&self, given: SwingTwist, before: &mut Option<f32>) -> (SwingTwist, f32) {
         let inside = Vec2::new(
             given.swing.x.clamp(self.swing_x[0], self.swing_x[1]),
             given.swing.y.clamp(self.swing_z[0], self.swing_z[1]),
@@ -101,8 +106,9 @@ impl JointLimit {
         .clamp_length_max(self.cone);
         let middle = 0.5 * (self.twist[0] + self.twist[1]);
         let off = given.twist - middle;
-        // The shorter way round.
-        let off = off - TAU * libm::roundf(off / TAU);
+        let near = |place: f32| off + TAU * libm::roundf((place - off) / TAU);
+        let off = before.map(near).filter(|off| libm::fabsf(*off) < PI + PAST_HALF).unwrap_or(near(0.0));
+        *before = Some(off);
         let half = 0.5 * (self.twist[1] - self.twist[0]);
         let twist = middle + off.clamp(-half, half);
         let excess = inside.distance(given.swing).max(libm::fabsf(off) - half).max(0.0);
@@ -110,9 +116,9 @@ impl JointLimit {
     }
 
     /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
-    fn clamped(&self, from_rest: Quat) -> Option<(Quat, f32)> {
+    fn clamped(&self, from_rest: Quat, before: &mut Option<f32>) -> Option<(Quat, f32)> {
         let centre = Quat::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
-        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest));
+        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), before);
         (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
     }
 
@@ -148,6 +154,10 @@ impl JointLimit {
     }
 }
 
+/// How the joints of a clip were twisted in the frame before: see [`JointLimits::clamp_after`]. Begins empty.
+#[derive(Clone, Debug, Default)]
+pub struct TwistsBefore(Vec<Option<f32>>);
+
 /// The limits of a skeleton's joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointLimits {
@@ -179,19 +189,30 @@ impl JointLimits {
     /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
     /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
     pub fn clamp(&self, rest: &RestPose, pose: &mut Pose) {
-        for joint in 0..self.limits.len() {
-            self.clamp_joint(rest, pose, joint);
+        self.clamp_after(rest, pose, &mut TwistsBefore::default());
+    }
+
+    /// As [`clamp`](Self::clamp), frame after frame of a clip: where a joint twists on past half a turn from the middle
+    /// of its range it stays at the end that it left by, instead of jumping to the other.
+    pub fn clamp_after(&self, rest: &RestPose, pose: &mut Pose, before: &mut TwistsBefore) {
+        before.0.resize(self.limits.len(), None);
+        for (joint, before) in before.0.iter_mut().enumerate() {
+            self.clamp_one(rest, pose, joint, before);
         }
     }
 
     /// Brings one joint within its limits; whether it had to be moved.
     pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
+        self.clamp_one(rest, pose, joint, &mut None)
+    }
+
+    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut Option<f32>) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
             (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
             return false;
         };
-        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation) else {
+        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation, before) else {
             return false;
         };
         local.rotation = (rest.rotation * inside).normalize();
@@ -205,7 +226,8 @@ impl JointLimits {
             .iter()
             .zip(from_rest)
             .map(|(limit, (rest, local))| {
-                let clamped = limit.and_then(|l| l.clamped(rest.rotation.conjugate() * local.rotation));
+                let turned = rest.rotation.conjugate() * local.rotation;
+                let clamped = limit.and_then(|limit| limit.clamped(turned, &mut None));
                 clamped.map_or(0.0, |(_, excess)| excess)
             })
             .collect()
