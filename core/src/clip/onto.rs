@@ -99,7 +99,7 @@ pub fn onto(
     for source in &motion.clips {
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
-        let mut twists = TwistsBefore::default();
+        let mut twists = TwistsBefore::first(&limits, source.frames_per_second());
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
                 limits.clamp_after(target, pose, &mut twists);

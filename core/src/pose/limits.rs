@@ -24,6 +24,8 @@ const ROUNDING: f32 = 2e-5;
 /// How far past half a turn from the middle of its range a twist stays at the end of the range that it left by, radians
 /// (60°).
 const PAST_HALF: f32 = 1.05;
+/// How fast a twist goes over to the other end of its range when it must, radians a second (600°): as fast as wrists do.
+const GOING_OVER: f32 = 10.5;
 
 /// A row of the table, degrees, for a joint in the middle or on the left.
 struct Row {
@@ -95,28 +97,23 @@ pub struct JointLimit {
 }
 
 impl JointLimit {
-    /// The nearest swing and twist within, and how far off that is: the larger of the two. `before` is how far the twist
-    /// was from the middle of its range a moment ago, and becomes what it is now; without it the nearest is the shorter
-    /// way round.
-    fn within(&self, given: SwingTwist, before: &mut Option<f32>) -> (SwingTwist, f32) {
+    /// The nearest swing and twist within, and how far off that is: the larger of the two. The nearest twist is the
+    /// shorter way round, but goes on from the one `before`.
+    fn within(&self, given: SwingTwist, before: &mut TwistBefore) -> (SwingTwist, f32) {
         let inside = Vec2::new(
             given.swing.x.clamp(self.swing_x[0], self.swing_x[1]),
             given.swing.y.clamp(self.swing_z[0], self.swing_z[1]),
         )
         .clamp_length_max(self.cone);
         let middle = 0.5 * (self.twist[0] + self.twist[1]);
-        let off = given.twist - middle;
-        let near = |place: f32| off + TAU * libm::roundf((place - off) / TAU);
-        let off = before.map(near).filter(|off| libm::fabsf(*off) < PI + PAST_HALF).unwrap_or(near(0.0));
-        *before = Some(off);
         let half = 0.5 * (self.twist[1] - self.twist[0]);
-        let twist = middle + off.clamp(-half, half);
-        let excess = inside.distance(given.swing).max(libm::fabsf(off) - half).max(0.0);
-        (SwingTwist { swing: inside, twist }, excess)
+        let (off, kept) = before.go_on(given.twist - middle, half);
+        let excess = inside.distance(given.swing).max(libm::fabsf(off - kept));
+        (SwingTwist { swing: inside, twist: middle + kept }, excess)
     }
 
     /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
-    fn clamped(&self, from_rest: Quat, before: &mut Option<f32>) -> Option<(Quat, f32)> {
+    fn clamped(&self, from_rest: Quat, before: &mut TwistBefore) -> Option<(Quat, f32)> {
         let centre = Quat::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
         let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), before);
         (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
@@ -154,9 +151,45 @@ impl JointLimit {
     }
 }
 
-/// How the joints of a clip were twisted in the frame before: see [`JointLimits::clamp_after`]. Begins empty.
+/// How a joint was twisted in the frame before.
+#[derive(Clone, Copy, Debug, Default)]
+struct TwistBefore {
+    /// From the middle of its range, radians: as given, past half a turn if it got there bit by bit, and as kept.
+    last: Option<(f32, f32)>,
+    /// The farthest that it may go from there to the other end of its range.
+    fastest: f32,
+}
+
+impl TwistBefore {
+    /// The next twist, as given and kept within `half` of the middle of its range.
+    fn go_on(&mut self, given: f32, half: f32) -> (f32, f32) {
+        let near = |place: f32| given + TAU * libm::roundf((place - given) / TAU);
+        let mut off = near(0.0);
+        let mut kept = off.clamp(-half, half);
+        if let Some((off_before, kept_before)) = self.last {
+            let unwound = near(off_before);
+            if libm::fabsf(unwound) < PI + PAST_HALF {
+                off = unwound;
+            }
+            let fastest = libm::fabsf(unwound - off_before).max(self.fastest);
+            kept = off.clamp(-half, half).clamp(kept_before - fastest, kept_before + fastest);
+        }
+        self.last = Some((off, kept));
+        (off, kept)
+    }
+}
+
+/// How the joints of a clip were twisted in the frame before: see [`JointLimits::clamp_after`].
 #[derive(Clone, Debug, Default)]
-pub struct TwistsBefore(Vec<Option<f32>>);
+pub struct TwistsBefore(Vec<TwistBefore>);
+
+impl TwistsBefore {
+    /// Before the first frame.
+    pub fn first(limits: &JointLimits, frames_per_second: f64) -> Self {
+        let before = TwistBefore { last: None, fastest: GOING_OVER / frames_per_second as f32 };
+        Self(vec![before; limits.limits.len()])
+    }
+}
 
 /// The limits of a skeleton's joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,13 +222,14 @@ impl JointLimits {
     /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
     /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
     pub fn clamp(&self, rest: &RestPose, pose: &mut Pose) {
-        self.clamp_after(rest, pose, &mut TwistsBefore::default());
+        for joint in 0..self.limits.len() {
+            self.clamp_joint(rest, pose, joint);
+        }
     }
 
-    /// As [`clamp`](Self::clamp), frame after frame of a clip: where a joint twists on past half a turn from the middle
-    /// of its range it stays at the end that it left by, instead of jumping to the other.
+    /// As [`clamp`](Self::clamp), frame after frame of a clip: a joint that twists on past half a turn from the middle
+    /// of its range stays at the end that it left by, and goes over to the other in time, instead of jumping to and fro.
     pub fn clamp_after(&self, rest: &RestPose, pose: &mut Pose, before: &mut TwistsBefore) {
-        before.0.resize(self.limits.len(), None);
         for (joint, before) in before.0.iter_mut().enumerate() {
             self.clamp_one(rest, pose, joint, before);
         }
@@ -203,10 +237,10 @@ impl JointLimits {
 
     /// Brings one joint within its limits; whether it had to be moved.
     pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
-        self.clamp_one(rest, pose, joint, &mut None)
+        self.clamp_one(rest, pose, joint, &mut TwistBefore::default())
     }
 
-    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut Option<f32>) -> bool {
+    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
             (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
@@ -227,7 +261,7 @@ impl JointLimits {
             .zip(from_rest)
             .map(|(limit, (rest, local))| {
                 let turned = rest.rotation.conjugate() * local.rotation;
-                let clamped = limit.and_then(|limit| limit.clamped(turned, &mut None));
+                let clamped = limit.and_then(|limit| limit.clamped(turned, &mut TwistBefore::default()));
                 clamped.map_or(0.0, |(_, excess)| excess)
             })
             .collect()
