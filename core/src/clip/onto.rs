@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::feet::{FeetOptions, FeetReport, plant};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
-use super::retarget::{DirectionError, RetargetOptions, Retargeter, direction_error};
+use super::retarget::{DirectionError, Jump, RetargetOptions, Retargeter, direction_error, worst_jump};
 use super::{Clip, Motion, in_place, looped, resample};
 use crate::Result;
 use crate::pose::RestPose;
@@ -63,6 +63,8 @@ pub struct ClipQuality {
     pub beyond_limits: f64,
     /// The joint that does.
     pub beyond_limits_joint: Option<String>,
+    /// The farthest that a limb turns in one frame beyond the motion.
+    pub jump: Jump,
     /// What was done about the feet; `None` where nothing was asked for.
     pub feet: Option<FeetReport>,
 }
@@ -110,8 +112,9 @@ pub fn onto(
             let (planted, found) = plant(&clip, options)?;
             (clip, feet) = (planted, Some(found));
         }
-        // Directions are those of the motion as it was, so before its end is bent to its beginning.
+        // Both compare with the motion as it was, so before its end is bent to its beginning.
         let direction = direction_error(source, &clip, &map);
+        let jump = worst_jump(source, &clip, &map);
         if options.in_place {
             clip = in_place(&clip)?;
         }
@@ -126,6 +129,7 @@ pub fn onto(
             direction,
             beyond_limits: f64::from(beyond).to_degrees(),
             beyond_limits_joint: joint.and_then(|j| target.names().get(j).cloned()),
+            jump,
             feet,
         });
         clips.push(clip);
