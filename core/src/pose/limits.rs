@@ -17,6 +17,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{Quat, Vec2, Vec3};
 
 use super::{Pose, RestPose, SwingTwist};
+use crate::rig::humanoid::finger;
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.
@@ -136,8 +137,7 @@ impl JointLimit {
             Some(base) => (base, true),
             None => (name.strip_suffix("_l").unwrap_or(name), false),
         };
-        let finger = ["index", "middle", "ring", "pinky"].iter().any(|f| base.starts_with(f));
-        let key = if finger && !base.ends_with("_01") { "finger" } else { base };
+        let key = if let Some((1.., 2..)) = finger(name) { "finger" } else { base };
         let row = TABLE.iter().find(|row| row.name == key)?;
         let range = |r: [f32; 2]| r.map(f32::to_radians);
         let (centre, cone) = match key {
