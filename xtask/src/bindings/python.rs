@@ -15,8 +15,18 @@ Made from ffi/src by `cargo xtask gen`; do not edit.
 
 /// What of ctypes may be needed, in the order in which Python's formatters want it.
 const CTYPES: [&str; 12] = [
-    "CFUNCTYPE", "POINTER", "Structure", "c_char", "c_char_p", "c_double", "c_float", "c_int32", "c_uint8",
-    "c_uint32", "c_uint64", "c_void_p",
+    "CFUNCTYPE",
+    "POINTER",
+    "Structure",
+    "c_char",
+    "c_char_p",
+    "c_double",
+    "c_float",
+    "c_int32",
+    "c_uint8",
+    "c_uint32",
+    "c_uint64",
+    "c_void_p",
 ];
 
 /// The Python module that declares what the header declares.
