@@ -71,11 +71,12 @@ def matrices(transforms):
     return found
 
 
-def into(axes, found):
-    """A matrix of glTF space in another space: same change on both sides."""
-    change = np.eye(4)
-    change[:3, :3] = axes
-    return change @ found @ change.T
+def into(space, model_from_joint):
+    """A joint of glTF space in another space: the model's axes change; the joint's own stay, or are mirrored with it."""
+    model, joint = np.eye(4), np.eye(4)
+    model[:3, :3] = AXES[space]
+    joint[0, 0] = -1 if space == "unity" else 1
+    return model @ model_from_joint @ joint
 
 
 def test_mesh_spaces():
@@ -121,7 +122,10 @@ def test_joint_spaces():
         assert side * where[left, 0] > 0.3 and side * where[right, 0] < -0.3, (space, where[left])
         reach = [abs(where[joint, 0]) for joint in (left, right)]
         assert reach[0] > reach[1] + 0.003, (space, reach)
-        assert np.allclose(joints["model_from_joint"], into(axes, ours["model_from_joint"]), atol=1e-6)
+        assert np.allclose(joints["model_from_joint"], into(space, ours["model_from_joint"]), atol=1e-6)
+        tails = where + joints["length"][:, None] * joints["model_from_joint"][:, :3, 1]
+        in_ours = ours["model_from_joint"][:, :3, 3] + ours["length"][:, None] * ours["model_from_joint"][:, :3, 1]
+        assert np.allclose(tails, in_ours @ axes.T, atol=1e-6), "bones run along +Y in every space"
         product = joints["model_from_joint"].astype(float) @ joints["joint_from_model"]
         assert np.allclose(product, np.eye(4), atol=1e-6)
         assert np.allclose(np.linalg.det(joints["model_from_joint"][:, :3, :3].astype(float)), 1, atol=1e-5)
@@ -138,7 +142,7 @@ def test_posed_spaces():
     surface = UNEVEN.mesh(lod=1).skinner().skin(ours)
     for space, axes in AXES.items():
         pose = walk.sample(0.4, relative="model", space=space)
-        assert np.allclose(matrices(pose), into(axes, matrices(ours)), atol=1e-5), space
+        assert np.allclose(matrices(pose), into(space, matrices(ours)), atol=1e-5), space
         local, parents = matrices(walk.sample(0.4, space=space)), UNEVEN.parents
         chained = []
         for i, parent in enumerate(parents):

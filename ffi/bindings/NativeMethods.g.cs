@@ -1368,8 +1368,8 @@ namespace Anthronet.Native
         /// </summary>
         public uint mapping_length;
         /// <summary>
-        ///  Which joint of the source drives which of ours, as JSON: `{"upperarm_l": "LeftArm", "jaw": null}`; NULL to find
-        ///  all of them.
+        ///  Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Jaw": null}`; NULL
+        ///  to find all of them.
         /// </summary>
         public byte* mapping_json;
         /// <summary>

@@ -516,8 +516,8 @@ typedef struct anthronet_retarget_options {
     uint32_t root_motion;
     // Bytes of `mapping_json`.
     uint32_t mapping_length;
-    // Which joint of the source drives which of ours, as JSON: `{"upperarm_l": "LeftArm", "jaw": null}`; NULL to find
-    // all of them.
+    // Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Jaw": null}`; NULL
+    // to find all of them.
     const char *mapping_json;
     // Frames per second of the result; 0 keeps those of the motion.
     double frames_per_second;
