@@ -9,7 +9,8 @@ file comes onto it as a `Clip`, and a `Skinner` poses its surface by the clip's 
 freed with their last reference, at the end of `with`, or by `close`.
 
 Metres, radians, seconds, kilograms. The space that is asked for says axes and handedness: `"gltf"` is right-handed, +Y
-up, the character faces +Z; `"blender"` is right-handed, +Z up, it faces −Y; `"unity"` is left-handed, +Y up, it faces +Z.
+up, the character faces +Z; `"blender"` is right-handed, +Z up, it faces −Y; `"unity"` is left-handed, +Y up, it faces
++Z. A joint's +Y axis runs along its bone in all of them.
 Quaternions are x, y, z, w. Matrices multiply column vectors.
 
 All errors of the library are `Error`; arguments of a wrong type are TypeError, wrong values ValueError.

@@ -146,7 +146,7 @@ class Body(Owner):
         """The names of the joints, in their order.
 
         Args:
-            names: `"native"`, `"unity"`, `"mixamo"`, `"vrm"` or `"blender"`; joints without a name there keep their own.
+            names: `"native"`, `"unity"`, `"mixamo"`, `"vrm"` or `"blender"`; joints without a name there keep theirs.
         """
         number = _arguments.choice(_arguments.NAMES, names, "names")
         handle = self._open
@@ -172,8 +172,8 @@ class Body(Owner):
             lod: level of detail, 0 (53,514 vertices) to 3.
             influences: joints per vertex, 4 or 8.
             space: `"gltf"`, `"blender"` or `"unity"`: axes, handedness, winding and direction of v.
-            layout: `"render"` for triangles with vertices doubled at seams, `"model"` for the model's vertices and quads
-                with texture coordinates by corner.
+            layout: `"render"` for triangles with vertices doubled at seams, `"model"` for the model's vertices and
+                quads with texture coordinates by corner.
             body_only: leaves out eyes, teeth, tongue and lashes.
             skin_tone: step of the Monk scale, 1 to 10; 0 for the default.
 
@@ -195,8 +195,8 @@ class Body(Owner):
         skin_tone: int = 0,
         body_only: bool = False,
     ) -> None:
-        """Writes the body to a file, whole or not at all, in the format of its ending: .glb, .gltf (and .bin beside it),
-        .vrm, .usda, .usdc, .usdz or .obj.
+        """Writes the body to a file, whole or not at all, in the format of its ending: .glb, .gltf (and .bin beside
+        it), .vrm, .usda, .usdc, .usdz or .obj.
 
         Args:
             path: where to.

@@ -79,7 +79,8 @@ class Job(Owner):
             Error: that request's own.
         """
         place = _arguments.whole(index, "index")
-        return Body._of(new_handle(lib.anthronet_job_take, lib.anthronet_body_free, self._open, place), self._latent_size)
+        handle = new_handle(lib.anthronet_job_take, lib.anthronet_body_free, self._open, place)
+        return Body._of(handle, self._latent_size)
 
     def results(self, return_errors: bool = False) -> Iterator[Union[Body, Error]]:
         """The bodies in the order of their requests, each as soon as it is there; waits in between.

@@ -84,8 +84,8 @@ class Mesh(Owner):
         self._handle = self._surfaces(body)
 
     def add_blend_shape(self, name: str, body: Body) -> None:
-        """Adds a blend shape that leads to the surface of another body: at weight 1 the mesh has that body's shape in the
-        bind pose. Bones stay where they are, so bodies should be of about the same stature.
+        """Adds a blend shape that leads to the surface of another body: at weight 1 the mesh has that body's shape in
+        the bind pose. Bones stay where they are, so bodies should be of about the same stature.
 
         Args:
             name: its name, not taken by another.
@@ -189,8 +189,8 @@ class Part:
 
     @property
     def uvs(self) -> np.ndarray:
-        """(vertices, 2) float32 in the render layout, (texture coordinates, 2) in the model layout; v grows downwards in
-        glTF space and upwards in the others."""
+        """(vertices, 2) float32 in the render layout, (texture coordinates, 2) in the model layout; v grows downwards
+        in glTF space and upwards in the others."""
         return self._view("uvs")
 
     @property
@@ -229,7 +229,7 @@ class Part:
         return self._view("sources")
 
     def blend_shape(self, shape: Union[str, int], attribute: str = "positions") -> np.ndarray:
-        """The way of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view, as the others.
+        """The way of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view.
 
         Args:
             shape: its name or place in `Mesh.blend_shapes`.

@@ -25,7 +25,7 @@ _UPS = {None: _native.UP_FOUND, "y": _native.UP_Y, "z": _native.UP_Z}
 
 
 class Motion(Owner):
-    """A motion file as it was read: at least one clip of the file's own skeleton. Immutable; may be used by many threads.
+    """A motion file as it was read: at least one clip of its own skeleton. Immutable; may be used by many threads.
 
     Made by `open_motion`, `Motion.from_bytes` and `Motion.from_poses`.
     """
@@ -74,7 +74,7 @@ class Motion(Owner):
         frames_per_second: float,
         space: str = "gltf",
     ) -> Motion:
-        """A motion of a skeleton that a program has, such as an action of an armature, to be retargeted as one of a file.
+        """A motion of a skeleton that a program has, such as an action of an armature, to be retargeted as a file's.
 
         Args:
             name: of its clip.
