@@ -145,14 +145,15 @@ class Motion(Owner):
         Args:
             body: whose joints move.
             clip: its place in `clip_names`.
-            fingers: `"source"` for the file's where it has any, `"relaxed"` for hands at ease, `"rest"` for the bind pose.
+            fingers: `"source"` for the file's where it has any, `"relaxed"` for hands at ease, `"rest"` for those of the
+                bind pose.
             limits: keeps joints within what people's joints do.
             feet: keeps feet on the floor, without sliding.
             in_place: leaves out the way over the ground.
             looped: makes the end meet the beginning.
             root_motion: gives the way over the ground to the joint `Root` instead of the pelvis.
-            mapping: which joint of the source drives which of ours, or nothing: `{"LeftArm": "upperarm_l", "Jaw": None}`;
-                the rest is found.
+            mapping: which joint of the source drives which of ours, or nothing: `{"LeftArm": "upperarm_l", "Jaw":
+                None}`; the rest is found.
             frames_per_second: rate of the result; None for the motion's.
 
         Returns:
