@@ -26,6 +26,11 @@ const BLENDER_LIBRARIES: &[&str] = &[
     "libxkbcommon0",
 ];
 
+/// The Blender that every test runs in; its version is that of `tests/requirements.txt`.
+const BLENDER: &str = "5.0.1";
+/// The older ones that the extension supports, each in a virtual environment of its own.
+const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
+
 /// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
 pub(crate) struct Environment {
     /// Python with numpy and scipy.
@@ -45,6 +50,20 @@ impl Environment {
         let mut command = Command::new(program);
         command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
         Ok(command)
+    }
+
+    /// Python of every Blender that the extension supports, with its version, or why it is not there.
+    pub(crate) fn blenders(&self) -> Outcome<Vec<(&'static str, Result<PathBuf, String>)>> {
+        let newest = self.blender.clone().and_then(|()| self.python.clone());
+        let mut all = vec![(BLENDER, newest.clone())];
+        for version in OLDER_BLENDERS {
+            let found = match &newest {
+                Ok(python) => older_blender(python, version)?,
+                Err(reason) => Err(reason.clone()),
+            };
+            all.push((version, found));
+        }
+        Ok(all)
     }
 
     /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to
@@ -150,6 +169,20 @@ fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
         Ok(()) => import().map(|_| Ok(())),
         Err(reason) => Ok(Err(format!("{message}; {reason}"))),
     }
+}
+
+/// Python of an older Blender, in a virtual environment beside the others.
+fn older_blender(python: &Path, version: &str) -> Outcome<Result<PathBuf, String>> {
+    let venv = tools::target().join("test-env").join(format!("blender-{version}"));
+    let module = format!("bpy=={version}");
+    let blender = program(&venv, "python");
+    let needs = tools::root().join("tests/requirements-blender.txt");
+    installed_once(&venv, &format!("{module}\n{}", tools::read(&needs)?), || {
+        tools::run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"];
+        tools::run(Command::new(&blender).args(pip).arg(&module).arg("--requirement").arg(&needs))
+    })?;
+    Ok(import_blender(&blender)?.map(|()| blender))
 }
 
 /// Debian's Godot 3 without a window, installed where that is needed and allowed.

@@ -4,6 +4,7 @@
 //! `skipped NAME: why`; all its other lines are for the reader.
 
 mod animation;
+mod blender;
 mod skin;
 mod tally;
 mod usd;
