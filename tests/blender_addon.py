@@ -474,7 +474,7 @@ def picturing():
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples, scene.cycles.seed = "CPU", 24, 1
     scene.cycles.use_denoising = False
-    scene.render.resolution_x, scene.render.resolution_y = 900, 620
+    scene.render.resolution_x, scene.render.resolution_y = 660, 455
     scene.view_settings.view_transform = "Standard"
     path = pictures / "blender_people.png"
     scene.render.filepath = str(path)
