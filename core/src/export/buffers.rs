@@ -27,7 +27,7 @@ pub struct MeshBuffers {
     pub material: SceneMaterial,
     /// `(V, 3)`, metres.
     pub positions: Vec<[f32; 3]>,
-    /// `(V, 3)`, unit length.
+    /// `(V, 3)`, unit length, or empty for none.
     pub normals: Vec<[f32; 3]>,
     /// `(V, 2)` in the render layout, else `(T, 2)`, which the faces' corners point at. v grows downwards in the
     /// library's own space, as in glTF, and upwards in the others, as their programs have it.
@@ -79,7 +79,7 @@ impl MeshBuffers {
         let rows = || source().map(|v| v * per_vertex..(v + 1) * per_vertex);
         Self {
             positions: source().map(|v| mesh.positions[v]).collect(),
-            normals: source().map(|v| mesh.normals[v]).collect(),
+            normals: source().filter_map(|v| mesh.normals.get(v).copied()).collect(),
             uvs: split.uvs(&mesh),
             triangle_uvs: Vec::new(),
             quads: Vec::new(),
