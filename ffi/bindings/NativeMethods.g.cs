@@ -604,7 +604,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_new(anthronet_body* body, anthronet_mesh_options* options, anthronet_mesh** out_mesh, anthronet_error* error);
 
         /// <summary>
-        ///  Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+        ///  Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+        ///  are invalid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_update", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_update(anthronet_mesh* mesh, anthronet_body* body, anthronet_error* error);
@@ -641,6 +642,38 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_read(anthronet_mesh* mesh, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
 
         /// <summary>
+        ///  Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
+        ///  the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_add_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_add_blend_shape(anthronet_mesh* mesh, byte* name, ulong name_length, anthronet_body* body, anthronet_error* error);
+
+        /// <summary>
+        ///  Number of blend shapes.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_count(anthronet_mesh* mesh, uint* out_count, anthronet_error* error);
+
+        /// <summary>
+        ///  The name of a blend shape; valid until the mesh is updated or freed.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_name(anthronet_mesh* mesh, uint shape, anthronet_text* out_name, anthronet_error* error);
+
+        /// <summary>
+        ///  Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+        ///  floats per vertex to be added to those of the mesh.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_data", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_data(anthronet_mesh* mesh, uint shape, uint part, uint attribute, anthronet_view* out_view, anthronet_error* error);
+
+        /// <summary>
+        ///  Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_read_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_read_blend_shape(anthronet_mesh* mesh, uint shape, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
+
+        /// <summary>
         ///  Number of built-in clips.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_builtin_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -657,6 +690,13 @@ namespace Anthronet.Native
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_builtin", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_builtin(byte* name, ulong name_length, anthronet_body* body, anthronet_clip** out_clip, anthronet_error* error);
+
+        /// <summary>
+        ///  Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+        ///  relative to its parent in `in_space`; `count` = frames × joints.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_new(anthronet_body* body, byte* name, ulong name_length, double frames_per_second, uint in_space, anthronet_transform* frames, ulong count, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
         ///  Frees a clip; NULL is nothing.
@@ -725,6 +765,12 @@ namespace Anthronet.Native
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_open_memory", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_open_memory(byte* data, ulong length, byte* name, ulong name_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
+
+        /// <summary>
+        ///  Makes a motion of poses instead of a file, to be retargeted as one.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_motion_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_motion_new(anthronet_motion_source* source, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
         ///  Frees a motion; NULL is nothing.
@@ -1337,6 +1383,54 @@ namespace Anthronet.Native
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_motion
     {
+    }
+
+    /// <summary>
+    ///  A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe partial struct anthronet_motion_source
+    {
+        /// <summary>
+        ///  Set by the caller: `sizeof(anthronet_motion_source)`.
+        /// </summary>
+        public uint struct_size;
+        /// <summary>
+        ///  `ANTHRONET_SPACE_…` of the transforms; lengths are metres.
+        /// </summary>
+        public uint space;
+        /// <summary>
+        ///  Number of joints.
+        /// </summary>
+        public uint joint_count;
+        /// <summary>
+        ///  Number of frames.
+        /// </summary>
+        public uint frame_count;
+        /// <summary>
+        ///  Frames per second.
+        /// </summary>
+        public double frames_per_second;
+        /// <summary>
+        ///  Name of the clip.
+        /// </summary>
+        public anthronet_text name;
+        /// <summary>
+        ///  Name of each joint; none twice.
+        /// </summary>
+        public anthronet_text* joint_names;
+        /// <summary>
+        ///  Place of each joint's parent, before the joint's own; −1 for none.
+        /// </summary>
+        public int* parents;
+        /// <summary>
+        ///  Where each joint rests, relative to its parent.
+        /// </summary>
+        public anthronet_transform* rest;
+        /// <summary>
+        ///  Frame by frame, each joint relative to its parent: frames × joints.
+        /// </summary>
+        public anthronet_transform* frames;
     }
 
     /// <summary>

@@ -473,6 +473,30 @@ typedef struct anthronet_motion_options {
     double frames_per_second;
 } anthronet_motion_options;
 
+// A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+typedef struct anthronet_motion_source {
+    // Set by the caller: `sizeof(anthronet_motion_source)`.
+    uint32_t struct_size;
+    // `ANTHRONET_SPACE_…` of the transforms; lengths are metres.
+    uint32_t space;
+    // Number of joints.
+    uint32_t joint_count;
+    // Number of frames.
+    uint32_t frame_count;
+    // Frames per second.
+    double frames_per_second;
+    // Name of the clip.
+    struct anthronet_text name;
+    // Name of each joint; none twice.
+    const struct anthronet_text *joint_names;
+    // Place of each joint's parent, before the joint's own; −1 for none.
+    const int32_t *parents;
+    // Where each joint rests, relative to its parent.
+    const struct anthronet_transform *rest;
+    // Frame by frame, each joint relative to its parent: frames × joints.
+    const struct anthronet_transform *frames;
+} anthronet_motion_source;
+
 // How a motion comes onto a body; all zeros ask for the defaults.
 typedef struct anthronet_retarget_options {
     // Set by the caller: `sizeof(anthronet_retarget_options)`.
@@ -828,7 +852,8 @@ anthronet_status anthronet_mesh_new(const struct anthronet_body *body,
                                     struct anthronet_mesh **out_mesh,
                                     struct anthronet_error *error);
 
-// Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+// are invalid.
 anthronet_status anthronet_mesh_update(struct anthronet_mesh *mesh,
                                        const struct anthronet_body *body,
                                        struct anthronet_error *error);
@@ -864,6 +889,44 @@ anthronet_status anthronet_mesh_read(const struct anthronet_mesh *mesh,
                                      uint64_t stride,
                                      struct anthronet_error *error);
 
+// Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
+// the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+anthronet_status anthronet_mesh_add_blend_shape(struct anthronet_mesh *mesh,
+                                                const char *name,
+                                                uint64_t name_length,
+                                                const struct anthronet_body *body,
+                                                struct anthronet_error *error);
+
+// Number of blend shapes.
+anthronet_status anthronet_mesh_blend_shape_count(const struct anthronet_mesh *mesh,
+                                                  uint32_t *out_count,
+                                                  struct anthronet_error *error);
+
+// The name of a blend shape; valid until the mesh is updated or freed.
+anthronet_status anthronet_mesh_blend_shape_name(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 struct anthronet_text *out_name,
+                                                 struct anthronet_error *error);
+
+// Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+// floats per vertex to be added to those of the mesh.
+anthronet_status anthronet_mesh_blend_shape_data(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 uint32_t part,
+                                                 uint32_t attribute,
+                                                 struct anthronet_view *out_view,
+                                                 struct anthronet_error *error);
+
+// Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+anthronet_status anthronet_mesh_read_blend_shape(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 uint32_t part,
+                                                 uint32_t attribute,
+                                                 void *out_rows,
+                                                 uint64_t buffer_bytes,
+                                                 uint64_t stride,
+                                                 struct anthronet_error *error);
+
 // Number of built-in clips.
 uint32_t anthronet_clip_builtin_count(void);
 
@@ -878,6 +941,18 @@ anthronet_status anthronet_clip_builtin(const char *name,
                                         const struct anthronet_body *body,
                                         struct anthronet_clip **out_clip,
                                         struct anthronet_error *error);
+
+// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+// relative to its parent in `in_space`; `count` = frames × joints.
+anthronet_status anthronet_clip_new(const struct anthronet_body *body,
+                                    const char *name,
+                                    uint64_t name_length,
+                                    double frames_per_second,
+                                    uint32_t in_space,
+                                    const struct anthronet_transform *frames,
+                                    uint64_t count,
+                                    struct anthronet_clip **out_clip,
+                                    struct anthronet_error *error);
 
 // Frees a clip; NULL is nothing.
 void anthronet_clip_free(struct anthronet_clip *clip);
@@ -953,6 +1028,11 @@ anthronet_status anthronet_motion_open_memory(const uint8_t *data,
                                               const struct anthronet_motion_options *read_options,
                                               struct anthronet_motion **out_motion,
                                               struct anthronet_error *error);
+
+// Makes a motion of poses instead of a file, to be retargeted as one.
+anthronet_status anthronet_motion_new(const struct anthronet_motion_source *source,
+                                      struct anthronet_motion **out_motion,
+                                      struct anthronet_error *error);
 
 // Frees a motion; NULL is nothing.
 void anthronet_motion_free(struct anthronet_motion *motion);

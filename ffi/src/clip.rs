@@ -8,7 +8,7 @@ use anthronet::space::Space;
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, choice, space};
-use crate::pointer::{Out, anthronet_text, at, exactly, free, read, slice_mut, text};
+use crate::pointer::{Out, anthronet_text, at, exactly, free, read, slice, slice_mut, text};
 use crate::skeleton::anthronet_transform;
 use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
@@ -92,6 +92,27 @@ pub unsafe extern "C" fn anthronet_clip_builtin(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     make(out_clip, error, || Ok(clip::builtin(text(name, name_length, "name")?, &read(body, "body")?.rest)?))
+}
+
+/// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+/// relative to its parent in `in_space`; `count` = frames × joints.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_new(
+    body: *const anthronet_body,
+    name: *const c_char,
+    name_length: u64,
+    frames_per_second: f64,
+    in_space: u32,
+    frames: *const anthronet_transform,
+    count: u64,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || {
+        let name = text(name, name_length, "name")?.to_owned();
+        let poses = crate::motion::locals(slice(frames, count, "frames")?, space(in_space)?);
+        Ok(Clip::of_poses(name, read(body, "body")?.rest.clone(), frames_per_second, &poses)?)
+    })
 }
 
 /// Frees a clip; NULL is nothing.

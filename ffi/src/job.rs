@@ -12,8 +12,8 @@ use crate::options::{Descriptor, DescriptorOut};
 use crate::pointer::{Out, beyond, free, read, slice};
 use crate::request::anthronet_request;
 use crate::status::{
-    ANTHRONET_ERROR_BUSY, ANTHRONET_ERROR_CANCELLED, ANTHRONET_ERROR_OTHER, ANTHRONET_ERROR_PANIC,
-    ANTHRONET_ERROR_TAKEN, Fault, Outcome, anthronet_error, anthronet_status, guard, panic_text,
+    ANTHRONET_ERROR_BUSY, ANTHRONET_ERROR_CANCELLED, ANTHRONET_ERROR_OTHER, ANTHRONET_ERROR_TAKEN, Fault,
+    Outcome, anthronet_error, anthronet_status, caught, guard,
 };
 
 /// Bodies are still being made.
@@ -76,8 +76,7 @@ impl Shared {
                 break;
             }
             let make = || anthronet_body::new(model.0.generate(request)?).map(Box::new);
-            let made = std::panic::catch_unwind(std::panic::AssertUnwindSafe(make))
-                .unwrap_or_else(|panic| Err(Fault::new(ANTHRONET_ERROR_PANIC, panic_text(&*panic))));
+            let made = caught(make);
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = Slot::Made(made);
             self.done.fetch_add(1, Ordering::Release);
         }

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use anthronet::export::{Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
+use anthronet::export::{BlendShape, Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
 use anthronet::pose::Local;
 
 use crate::body::anthronet_body;
@@ -114,7 +114,9 @@ pub struct anthronet_view {
 pub struct anthronet_mesh {
     pub(crate) parts: Vec<MeshBuffers>,
     pub(crate) bind: Vec<Local>,
-    options: anthronet_mesh_options,
+    /// By shape, then by part.
+    pub(crate) blend_shapes: Vec<Vec<BlendShape>>,
+    pub(crate) options: anthronet_mesh_options,
 }
 
 /// Makes the meshes of a body; `options` may be NULL.
@@ -132,7 +134,8 @@ pub unsafe extern "C" fn anthronet_mesh_new(
     })
 }
 
-/// Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+/// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+/// are invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_update(
     mesh: *mut anthronet_mesh,
@@ -204,13 +207,7 @@ pub unsafe extern "C" fn anthronet_mesh_data(
     guard(error, || {
         let out = Out::new(out_view, "out_view")?;
         let array = array(at(&read(mesh, "mesh")?.parts, part, "part")?, attribute)?;
-        let rows = array.bytes.len() / array.width();
-        out.write(anthronet_view {
-            data: if rows == 0 { std::ptr::null() } else { array.bytes.as_ptr().cast() },
-            rows: rows as u64,
-            columns: array.columns as u32,
-            number_type: array.number_type,
-        });
+        out.write(array.view());
         Ok(())
     })
 }
@@ -234,16 +231,26 @@ pub unsafe extern "C" fn anthronet_mesh_read(
     })
 }
 
-struct Array<'a> {
-    bytes: &'a [u8],
-    columns: usize,
-    number_type: u32,
+pub(crate) struct Array<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) columns: usize,
+    pub(crate) number_type: u32,
 }
 
 impl Array<'_> {
     /// Bytes of a row.
-    fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.columns * if self.number_type == ANTHRONET_TYPE_U16 { 2 } else { 4 }
+    }
+
+    pub(crate) fn view(&self) -> anthronet_view {
+        let rows = self.bytes.len() / self.width();
+        anthronet_view {
+            data: if rows == 0 { std::ptr::null() } else { self.bytes.as_ptr().cast() },
+            rows: rows as u64,
+            columns: self.columns as u32,
+            number_type: self.number_type,
+        }
     }
 }
 
@@ -295,13 +302,14 @@ pub(crate) fn scene_options(
 }
 
 impl anthronet_mesh {
-    fn of(body: &anthronet_body, options: anthronet_mesh_options) -> Outcome<Self> {
+    pub(crate) fn of(body: &anthronet_body, options: anthronet_mesh_options) -> Outcome<Self> {
         let space = space(options.space)?;
         let layout = choice(&[Layout::Render, Layout::Model], options.layout, "layout")?;
         let asked = scene_options(options.lod, options.influences, 0, options.body_only, options.skin_tone)?;
         Ok(Self {
             parts: Scene::from_body(&body.body, &asked)?.into_buffers(layout, space)?,
             bind: body.rest.model_from_joints().iter().map(|joint| joint.in_space(space)).collect(),
+            blend_shapes: Vec::new(),
             options,
         })
     }

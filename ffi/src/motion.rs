@@ -2,17 +2,22 @@
 
 use std::ffi::c_char;
 use std::path::Path;
+use std::sync::Arc;
 
 use anthronet::clip::feet::FeetOptions;
-use anthronet::clip::{self, FingerMode, Motion, OntoOptions, ReadOptions, RootMotion};
-use anthronet::space::{Axis, Unit};
+use anthronet::clip::{self, Clip, FingerMode, Motion, OntoOptions, ReadOptions, RootMotion};
+use anthronet::pose::{Local, RestPose};
+use anthronet::space::{Axis, Space, Unit};
 
 use crate::body::anthronet_body;
 use crate::bytes::anthronet_bytes;
 use crate::clip::anthronet_clip;
-use crate::options::{Descriptor, choice, described, flag};
+use crate::options::{Descriptor, choice, described, flag, space};
 use crate::pointer::{Out, anthronet_text, at, free, read, slice, text};
-use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::skeleton::anthronet_transform;
+use crate::status::{
+    ANTHRONET_ERROR_INDEX, ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard,
+};
 
 /// Fingers as the source's where it has any, else at ease.
 pub const ANTHRONET_FINGERS_SOURCE: u32 = 0;
@@ -137,6 +142,76 @@ pub unsafe extern "C" fn anthronet_motion_open_memory(
     })
 }
 
+/// A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct anthronet_motion_source {
+    /// Set by the caller: `sizeof(anthronet_motion_source)`.
+    pub struct_size: u32,
+    /// `ANTHRONET_SPACE_…` of the transforms; lengths are metres.
+    pub space: u32,
+    /// Number of joints.
+    pub joint_count: u32,
+    /// Number of frames.
+    pub frame_count: u32,
+    /// Frames per second.
+    pub frames_per_second: f64,
+    /// Name of the clip.
+    pub name: anthronet_text,
+    /// Name of each joint; none twice.
+    pub joint_names: *const anthronet_text,
+    /// Place of each joint's parent, before the joint's own; −1 for none.
+    pub parents: *const i32,
+    /// Where each joint rests, relative to its parent.
+    pub rest: *const anthronet_transform,
+    /// Frame by frame, each joint relative to its parent: frames × joints.
+    pub frames: *const anthronet_transform,
+}
+
+// SAFETY: numbers, pointers that may be NULL and a text of NULL, the size first.
+unsafe impl Descriptor for anthronet_motion_source {}
+
+/// Makes a motion of poses instead of a file, to be retargeted as one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_motion_new(
+    source: *const anthronet_motion_source,
+    out_motion: *mut *mut anthronet_motion,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_motion, "out_motion")?;
+        read(source, "source")?;
+        let source = described(source, "source")?;
+        let joints = u64::from(source.joint_count);
+        let space = space(source.space)?;
+        let names = slice(source.joint_names, joints, "joint_names")?
+            .iter()
+            .map(|name| Ok(text(name.data, name.length, "joint_names")?.to_owned()));
+        let parents = slice(source.parents, joints, "parents")?.iter().map(|p| match p {
+            -1 => Ok(None),
+            0.. => Ok(Some(*p as u32)),
+            _ => Err(Fault::new(ANTHRONET_ERROR_INDEX, format!("parents: expected -1 or more, got {p}"))),
+        });
+        let rest = locals(slice(source.rest, joints, "rest")?, space);
+        let rest = RestPose::new(
+            names.collect::<Outcome<_>>()?,
+            parents.collect::<Outcome<_>>()?,
+            rest,
+            vec![None; source.joint_count as usize],
+        )?;
+        let frames = slice(source.frames, joints * u64::from(source.frame_count), "frames")?;
+        let name = text(source.name.data, source.name.length, "name")?.to_owned();
+        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &locals(frames, space))?;
+        give(out, Motion::of_clip(clip));
+        Ok(())
+    })
+}
+
+/// Transforms of a space as the library's own.
+pub(crate) fn locals(transforms: &[anthronet_transform], space: Space) -> Vec<Local> {
+    transforms.iter().map(|transform| Local::from(transform).out_of_space(space)).collect()
+}
+
 /// Frees a motion; NULL is nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_free(motion: *mut anthronet_motion) {
@@ -235,7 +310,7 @@ fn onto_options(asked: &anthronet_retarget_options) -> Outcome<OntoOptions> {
     options.retarget.fingers = choice(&fingers, asked.fingers, "fingers")?;
     options.retarget.root =
         choice(&[RootMotion::Pelvis, RootMotion::Root], asked.root_motion, "root_motion")?;
-    if !asked.mapping_json.is_null() {
+    if !asked.mapping_json.is_null() || asked.mapping_length != 0 {
         let mapping = text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?;
         options.mapping = clip::read_overrides(mapping, Path::new("mapping_json"))?;
     }

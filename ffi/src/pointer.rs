@@ -81,11 +81,13 @@ impl<T> Out<*mut T> {
 
 /// Takes a handle back and drops it; NULL is nothing.
 pub(crate) fn free<T>(handle: *mut T) {
-    crate::status::guard_quietly(|| {
+    // A defect is logged; there is nobody to return it to.
+    let _ = crate::status::caught(|| {
         if !handle.is_null() {
             // SAFETY: from `Out::give`, once, by contract.
             drop(unsafe { Box::from_raw(handle) });
         }
+        Ok(())
     });
 }
 

@@ -1,6 +1,5 @@
 //! Status codes, the error that a caller may pass, and the guard around every entry.
 
-use std::any::Any;
 use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -89,38 +88,31 @@ impl From<Error> for Fault {
 
 /// Runs an entry: errors and panics become a code, and a message where the caller wants one.
 pub(crate) fn guard(error: *mut anthronet_error, entry: impl FnOnce() -> Outcome) -> anthronet_status {
-    // A panic leaves nothing half done that a caller could reach: entries write their results last.
-    let outcome = catch_unwind(AssertUnwindSafe(entry))
-        .unwrap_or_else(|panic| Err(Fault::new(ANTHRONET_ERROR_PANIC, panic_text(&*panic))));
-    let Err(Fault { code, message }) = outcome else { return ANTHRONET_OK };
-    // SAFETY: NULL or the caller's own, as the preamble asks.
-    if let Some(error) = unsafe { error.as_mut() } {
-        error.code = code;
-        write_message(&mut error.message, &message);
+    let Err(Fault { code, message }) = caught(entry) else { return ANTHRONET_OK };
+    if !error.is_null() {
+        // SAFETY: the caller's own, as the preamble asks; it need not even be aligned.
+        unsafe { error.write_unaligned(anthronet_error { code, message: cut(&message) }) };
     }
     code
 }
 
-/// Runs an entry that cannot fail but by a defect, such as freeing.
-pub(crate) fn guard_quietly(entry: impl FnOnce()) {
-    if let Err(panic) = catch_unwind(AssertUnwindSafe(entry)) {
-        crate::log::error(&panic_text(&*panic));
-    }
-}
-
-/// What a panic said.
-pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref().copied());
-    format!("a defect of the library: {}", said.unwrap_or("no message"))
+/// Runs what may have a defect, which becomes a fault.
+pub(crate) fn caught<T>(work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+    crate::panic::listen();
+    // A panic leaves nothing half done that a caller could reach: entries write their results last.
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|panic| Err(Fault::new(ANTHRONET_ERROR_PANIC, crate::panic::describe(&*panic))))
 }
 
 /// Cuts at a character's end and terminates.
-fn write_message(out: &mut [c_char; MESSAGE], message: &str) {
+fn cut(message: &str) -> [c_char; MESSAGE] {
+    let mut out = [0; MESSAGE];
     let mut end = message.len().min(MESSAGE - 1);
     while !message.is_char_boundary(end) {
         end -= 1;
     }
-    for (to, from) in out.iter_mut().zip(message.as_bytes()[..end].iter().chain([&0])) {
+    for (to, from) in out.iter_mut().zip(&message.as_bytes()[..end]) {
         *to = *from as c_char;
     }
+    out
 }

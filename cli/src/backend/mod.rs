@@ -14,7 +14,6 @@ use anthronet::pose::RestPose;
 pub(crate) use anthronet::random::Random;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
-use serde_json::json;
 
 use crate::failure::{Failure, Result};
 use crate::generate::{FileChoice, JointNamesChoice};

@@ -88,6 +88,31 @@ impl Clip {
         Ok(Self { name, rest, frames_per_second, frame_count, rotations, translations })
     }
 
+    /// From poses: `locals` holds, frame by frame, `parent_from_joint` of every joint (frames × joints). Joints that are
+    /// not always where they rest get a translation track.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_poses(
+        name: String,
+        rest: Arc<RestPose>,
+        frames_per_second: f64,
+        locals: &[Local],
+    ) -> Result<Self> {
+        let joints = rest.len();
+        let moving = |joint: &usize| {
+            let at_rest = rest.pose().locals[*joint].translation;
+            locals.iter().skip(*joint).step_by(joints).any(|local| local.translation != at_rest)
+        };
+        let track = |joint: usize| TranslationTrack {
+            joint: joint as u32,
+            values: locals.iter().skip(joint).step_by(joints).map(|local| local.translation).collect(),
+        };
+        let translations = (0..joints).filter(moving).map(track).collect();
+        let rotations = locals.iter().map(|local| local.rotation).collect();
+        Self::new(name, rest, frames_per_second, rotations, translations)
+    }
+
     /// Name, as files say it.
     pub fn name(&self) -> &str {
         &self.name
@@ -174,6 +199,20 @@ mod tests {
         assert_eq!((pose.locals[0].translation, pose.locals[1].translation), (Vec3::X, Vec3::NEG_Y));
         assert!(pose.locals[1].rotation.dot(clip.pose(0).locals[1].rotation) > 0.99, "nearer sign");
         assert_eq!(clip.pose(9), pose);
+    }
+
+    #[test]
+    fn poses_become_rotations_and_the_tracks_that_move() {
+        let turn = Quat::from_rotation_x(1.0);
+        let frame = |at: Vec3| {
+            let hips = Local { rotation: turn, translation: at };
+            [hips, Local { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y }]
+        };
+        let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();
+        let clip = Clip::of_poses("step".into(), rest(), 30.0, &poses).unwrap();
+        assert_eq!(clip.translations().iter().map(|t| t.joint).collect::<Vec<_>>(), [0]);
+        assert_eq!([clip.pose(0).locals, clip.pose(1).locals].concat(), poses);
+        assert!(Clip::of_poses("step".into(), rest(), 30.0, &poses[..3]).is_err());
     }
 
     #[test]

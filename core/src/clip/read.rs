@@ -69,6 +69,24 @@ pub struct Motion {
     pub report: ReadReport,
 }
 
+impl Motion {
+    /// A clip that was made by a program instead of read from a file: metres, +Y up.
+    pub fn of_clip(clip: Clip) -> Self {
+        let report = ReadReport {
+            format: "poses",
+            unit: Unit::Metre,
+            unit_found: Found::Asked,
+            up: Axis::Y,
+            up_found: Found::Asked,
+            frames_per_second: clip.frames_per_second(),
+            rate_found: Found::Asked,
+            stature: 0.0,
+            warnings: Vec::new(),
+        };
+        Self { clips: vec![clip], report }
+    }
+}
+
 /// Reads a motion file in the format of its ending: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the
 /// buffers beside it, `.usda`, `.usdc`, `.usdz`.
 ///

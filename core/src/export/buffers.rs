@@ -46,6 +46,17 @@ pub struct MeshBuffers {
     pub influences: Influences,
 }
 
+/// A surface's way to another shape. A share of it is added to the bind pose, before skinning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlendShape {
+    /// Its name.
+    pub name: String,
+    /// `(V, 3)`, metres, to be added to the positions.
+    pub positions: Vec<[f32; 3]>,
+    /// `(V, 3)`, to be added to the normals, whose sum is then to be brought to unit length.
+    pub normals: Vec<[f32; 3]>,
+}
+
 impl Scene {
     /// The meshes as arrays, in order.
     ///
@@ -72,6 +83,27 @@ impl Scene {
 }
 
 impl MeshBuffers {
+    /// The way from this surface to that of another body, at the same level of detail, in the same layout and space.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the two do not have the same vertices.
+    pub fn blend_shape(&self, name: impl Into<String>, other: &Self) -> Result<BlendShape> {
+        if self.sources != other.sources {
+            let (ours, theirs) = (self.positions.len(), other.positions.len());
+            let message = format!("`{}`: expected the same {ours} vertices, got {theirs}", self.name);
+            return Err(Error::invalid("blend shape", message));
+        }
+        let way = |from: &[[f32; 3]], to: &[[f32; 3]]| {
+            let difference = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| b[i] - a[i]);
+            from.iter().zip(to).map(difference).collect()
+        };
+        Ok(BlendShape {
+            name: name.into(),
+            positions: way(&self.positions, &other.positions),
+            normals: way(&self.normals, &other.normals),
+        })
+    }
+
     fn split(mesh: SceneMesh, material: SceneMaterial) -> Self {
         let split = SplitMesh::new(&mesh);
         let per_vertex = mesh.influences_per_vertex;
@@ -168,6 +200,22 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_blend_shape_leads_to_the_other_body() {
+        let one = arm(4).into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let mut scene = arm(4);
+        scene.meshes[0].positions[1][0] += 0.5;
+        let other = scene.into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let shape = one.blend_shape("wide", &other).unwrap();
+        for (vertex, source) in one.sources.iter().enumerate() {
+            let expected = if *source == 1 { [0.5, 0.0, 0.0] } else { [0.0; 3] };
+            assert_eq!(shape.positions[vertex], expected);
+        }
+        let mut fewer = other;
+        fewer.sources.pop();
+        assert!(one.blend_shape("wide", &fewer).is_err());
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod split;
 pub(crate) mod synthetic;
 pub mod usd;
 
-pub use buffers::{Layout, MeshBuffers};
+pub use buffers::{BlendShape, Layout, MeshBuffers};
 pub use character::SceneOptions;
 pub use file::{WriteOptions, scene_to_bytes, write_atomic, write_scene, write_scene_with};
 pub use gltf::{GltfOptions, VrmMeta, vrm};

@@ -43,6 +43,11 @@ impl Local {
             translation: space.from_ours(self.translation),
         }
     }
+
+    /// A motion with both its spaces in `space`, in ours.
+    pub fn out_of_space(self, space: Space) -> Self {
+        Self { rotation: space.rotation_to_ours(self.rotation), translation: space.to_ours(self.translation) }
+    }
 }
 
 /// How far a squared length may be from 1 for a quaternion to be of unit length: the rounding of normalising one.
@@ -85,6 +90,19 @@ mod tests {
     use std::f32::consts::FRAC_PI_2;
 
     use super::*;
+
+    #[test]
+    fn a_chain_ends_at_the_same_place_in_every_space() {
+        let step =
+            |angle| Local { rotation: Quat::from_rotation_x(angle), translation: Vec3::new(1.0, 2.0, 3.0) };
+        let (first, second) = (step(0.3), step(-1.1));
+        for space in [Space::YUp, Space::ZUp, Space::Unity] {
+            let end = first.in_space(space).then(second.in_space(space));
+            let expected = space.from_ours(first.then(second).translation);
+            assert!(end.translation.distance(expected) < 1e-6, "{space:?}");
+            assert_eq!(first.in_space(space).out_of_space(space), first);
+        }
+    }
 
     #[test]
     fn an_elbow_bent_by_a_right_angle() {
