@@ -270,6 +270,15 @@ pub(crate) mod ffi {
         double_sided: bool,
     }
 
+    /// A surface's way to another shape. A share of it is added to the bind pose, before skinning.
+    struct BlendShape {
+        name: String,
+        /// Three per vertex, metres, to be added to the positions.
+        positions: Vec<f32>,
+        /// Three per vertex, to be added to the normals, whose sum is then to be brought to unit length.
+        normals: Vec<f32>,
+    }
+
     /// One surface to pose. Everything is in the space of the mesh that the skinner was made of.
     struct SkinJob<'a> {
         skinner: &'a Skinner,
@@ -475,6 +484,9 @@ pub(crate) mod ffi {
 
         /// Weights, `influences` per vertex, descending, of sum 1.
         fn weights(self: &MeshPart) -> &[f32];
+
+        /// The way from this surface to that of another body, made with the same options.
+        fn blend_shape(self: &MeshPart, name: &str, other: &MeshPart) -> Result<BlendShape>;
 
         /// A part of a mesh ready to be posed. Immutable; may be used by many threads at once.
         type Skinner;

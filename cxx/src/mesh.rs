@@ -109,4 +109,13 @@ impl MeshPart {
     pub(crate) fn weights(&self) -> &[f32] {
         &self.0.influences.weights
     }
+
+    pub(crate) fn blend_shape(&self, name: &str, other: &Self) -> Result<ffi::BlendShape> {
+        let shape = self.0.blend_shape(name, &other.0)?;
+        Ok(ffi::BlendShape {
+            name: shape.name,
+            positions: shape.positions.into_flattened(),
+            normals: shape.normals.into_flattened(),
+        })
+    }
 }

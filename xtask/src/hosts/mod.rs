@@ -4,6 +4,7 @@
 //! `skipped NAME: why`; all its other lines are for the reader.
 
 mod animation;
+mod cpp;
 mod skin;
 mod tally;
 mod usd;
@@ -33,6 +34,7 @@ pub(crate) fn run() -> Outcome {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    cpp::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
