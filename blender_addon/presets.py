@@ -42,7 +42,8 @@ class ANTHRONET_OT_preset_add(AddPresetBase, bpy.types.Operator):
     @property
     def preset_values(self):
         """What a preset keeps: the request; not detail, names and tone, which are a scene's choice."""
-        names = ["sex", "seed", "fill", "nearest", "identity_by_hand", "identity", *measures.names(), "given"]
+        names = ["sex", "seed", "fill", "nearest", "identity_by_hand", "identity"]
+        names += [name for measure in measures.names() for name in (measure, f"given_{measure}")]
         return [f"settings.{name}" for name in names]
 
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import bpy
 from bpy.props import (
     BoolProperty,
-    BoolVectorProperty,
+    CollectionProperty,
     EnumProperty,
     FloatProperty,
     FloatVectorProperty,
@@ -65,11 +65,11 @@ def _changed(settings, context):
         live.regenerate(settings.id_data, context)
 
 
-def _measure_changed(index):
+def _measure_changed(name):
     def changed(settings, context):
         if not _silent:
             with silent():
-                settings.given[index] = True
+                settings.set_given(name, True)
             _changed(settings, context)
 
     return changed
@@ -103,8 +103,18 @@ def _tone_changed(settings, _context):
         material.set_tone(character.mesh_of(settings.id_data), settings.skin_tone)
 
 
+class AnthroMeasureReport(bpy.types.PropertyGroup):
+    """What came of one measure. Metres."""
+
+    low90: FloatProperty()
+    high90: FloatProperty()
+    percentile: FloatProperty()
+    residual: FloatProperty()
+
+
 class AnthroCharacter(bpy.types.PropertyGroup):
-    """A character's request and report. Lengths in metres."""
+    """A character's request and report. Lengths in metres. Each measure is a property of its name, and ``given_`` before its
+    name whether it is given."""
 
     is_character: BoolProperty(options={"HIDDEN"})
     sex: EnumProperty(name="Sex", items=SEXES, update=_changed)
@@ -120,7 +130,6 @@ class AnthroCharacter(bpy.types.PropertyGroup):
         description="Take the nearest measures that one person can have instead of refusing those that nobody has",
         update=_changed,
     )
-    given: BoolVectorProperty(name="Given", size=36, update=_changed, description="Whether the measure is given")
     identity: FloatVectorProperty(
         name="Identity",
         description="What measures leave open: shape of face, distribution of flesh. 0 is the middle, ±1 is usual",
@@ -157,10 +166,26 @@ class AnthroCharacter(bpy.types.PropertyGroup):
     body_sex: StringProperty(options={"HIDDEN"})
     mass: FloatProperty(name="Mass", unit="MASS", options={"HIDDEN"})
     bmi: FloatProperty(name="Body Mass Index", options={"HIDDEN"})
-    low90: FloatVectorProperty(size=36, options={"HIDDEN"})
-    high90: FloatVectorProperty(size=36, options={"HIDDEN"})
-    percentile: FloatVectorProperty(size=36, options={"HIDDEN"})
-    residual: FloatVectorProperty(size=36, options={"HIDDEN"})
+    report: CollectionProperty(type=AnthroMeasureReport, options={"HIDDEN"})
+
+    def is_given(self, name):
+        """Whether a measure is given."""
+        return getattr(self, f"given_{name}")
+
+    def set_given(self, name, given):
+        """Gives or opens a measure."""
+        setattr(self, f"given_{name}", given)
+
+    def measures(self):
+        """What every measure is: a dictionary of name to (metres, given)."""
+        return {name: (getattr(self, name), self.is_given(name)) for name in measures.names()}
+
+    def set_measures(self, values):
+        """Takes measures from such a dictionary; those that are not in it stay. Regenerates nothing."""
+        with silent():
+            for name, (value, given) in values.items():
+                setattr(self, name, value)
+                self.set_given(name, given)
 
     def request(self):
         """The request that the properties describe."""
@@ -171,9 +196,7 @@ class AnthroCharacter(bpy.types.PropertyGroup):
     def request_fields(self):
         """The request as the fields of its JSON."""
         fields = {
-            "measures": {
-                name: getattr(self, name) for name, given in zip(measures.names(), self.given, strict=True) if given
-            },
+            "measures": {name: value for name, (value, given) in self.measures().items() if given},
             "seed": self.seed,
             "fill": self.fill.lower(),
             "nearest": self.nearest,
@@ -192,7 +215,8 @@ class AnthroCharacter(bpy.types.PropertyGroup):
             self.seed = min(request.seed, 2**31 - 1)
             self.fill = request.fill.upper()
             self.nearest = request.nearest
-            self.given = [name in given for name in measures.names()]
+            for name in measures.names():
+                self.set_given(name, name in given)
             for name, value in given.items():
                 setattr(self, name, value)
             self.identity_by_hand = request.latent is not None
@@ -203,11 +227,13 @@ class AnthroCharacter(bpy.types.PropertyGroup):
         """Takes the filled values and the report from a body; regenerates nothing."""
         reports = body.measure_reports
         with silent():
-            for name, given, obtained in zip(measures.names(), self.given, reports["obtained"], strict=True):
-                if not given:
-                    setattr(self, name, obtained)
-            for field in ("low90", "high90", "percentile", "residual"):
-                setattr(self, field, reports[field].tolist())
+            while len(self.report) < len(reports):
+                self.report.add()
+            for name, told, report in zip(measures.names(), self.report, reports, strict=True):
+                if not self.is_given(name):
+                    setattr(self, name, report["obtained"])
+                for field in ("low90", "high90", "percentile", "residual"):
+                    setattr(told, field, report[field])
             if not self.identity_by_hand:
                 self.identity = list(body.latent)
             self.body_sex = body.sex
@@ -217,7 +243,12 @@ class AnthroCharacter(bpy.types.PropertyGroup):
 
 
 def _add_measures():
-    for index, measure in enumerate(measures.all_measures()):
+    for measure in measures.all_measures():
+        AnthroCharacter.__annotations__[f"given_{measure.name}"] = BoolProperty(
+            name="Given",
+            description="Whether this measure is given; if not, it is filled from those that are",
+            update=_changed,
+        )
         AnthroCharacter.__annotations__[measure.name] = FloatProperty(
             name=f"{measure.label} {measure.side.capitalize()}".strip(),
             description=measure.description,
@@ -230,12 +261,13 @@ def _add_measures():
             soft_min=measure.low,
             soft_max=measure.high,
             default=(measure.low + measure.high) / 2,
-            update=_measure_changed(index),
+            update=_measure_changed(measure.name),
         )
 
 
 def register():
     _add_measures()
+    bpy.utils.register_class(AnthroMeasureReport)
     bpy.utils.register_class(AnthroCharacter)
     bpy.types.Object.anthronet = PointerProperty(type=AnthroCharacter, name="AnthroNet")
 
@@ -243,3 +275,4 @@ def register():
 def unregister():
     del bpy.types.Object.anthronet
     bpy.utils.unregister_class(AnthroCharacter)
+    bpy.utils.unregister_class(AnthroMeasureReport)

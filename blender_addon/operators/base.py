@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What operators share: a poll for characters, and errors that a user can read."""
 
+from functools import wraps
+
 from .. import library
 from ..services import character
 
@@ -17,14 +19,30 @@ class NeedsCharacter:
         return True
 
 
-def reported(execute):
-    """An operator's ``execute`` whose failures become reports in words."""
+def reported(method):
+    """An operator's method whose failures become reports in words."""
 
-    def run(self, context):
-        try:
-            return execute(self, context)
-        except library.failures() as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+    def failed(self, error):
+        self.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
+
+    # Blender counts the arguments, so there is one wrapper for ``execute`` and one for ``invoke`` and ``modal``.
+    if method.__code__.co_argcount == 2:
+
+        @wraps(method)
+        def run(self, context):
+            try:
+                return method(self, context)
+            except library.failures() as error:
+                return failed(self, error)
+
+    else:
+
+        @wraps(method)
+        def run(self, context, event):
+            try:
+                return method(self, context, event)
+            except library.failures() as error:
+                return failed(self, error)
 
     return run

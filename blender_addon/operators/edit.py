@@ -43,7 +43,8 @@ class ANTHRONET_OT_randomise(NeedsCharacter, bpy.types.Operator):
             settings = owner.anthronet
             with properties.silent():
                 if self.what == "IDENTITY":
-                    settings.given = [True] * len(settings.given)
+                    for name in measures.names():
+                        settings.set_given(name, True)
                 else:
                     settings.fill = "SAMPLE"
                 settings.identity_by_hand = False
@@ -65,12 +66,8 @@ class ANTHRONET_OT_mirror(NeedsCharacter, bpy.types.Operator):
     def execute(self, context):
         owner = character.active(context)
         settings = owner.anthronet
-        given = dict(zip(measures.names(), settings.given))
-        values = {name: getattr(settings, name) for name in measures.names()}
-        with properties.silent():
-            for measure in measures.all_measures():
-                setattr(settings, measure.name, values[measure.mirrored])
-            settings.given = [given[measure.mirrored] for measure in measures.all_measures()]
+        before = settings.measures()
+        settings.set_measures({measure.name: before[measure.mirrored] for measure in measures.all_measures()})
         return _regenerate(self, context, owner)
 
 
@@ -87,13 +84,9 @@ class ANTHRONET_OT_symmetrise(NeedsCharacter, bpy.types.Operator):
     def execute(self, context):
         owner = character.active(context)
         settings = owner.anthronet
-        names = measures.names()
-        with properties.silent():
-            for measure in measures.all_measures():
-                if measure.side == self.side:
-                    other = names.index(measure.mirrored)
-                    setattr(settings, measure.mirrored, getattr(settings, measure.name))
-                    settings.given[other] = settings.given[names.index(measure.name)]
+        before = settings.measures()
+        sided = [measure for measure in measures.all_measures() if measure.side == self.side]
+        settings.set_measures({measure.mirrored: before[measure.name] for measure in sided})
         return _regenerate(self, context, owner)
 
 
@@ -107,8 +100,8 @@ class ANTHRONET_OT_open_measures(NeedsCharacter, bpy.types.Operator):
     @reported
     def execute(self, context):
         owner = character.active(context)
-        with properties.silent():
-            owner.anthronet.given = [False] * len(owner.anthronet.given)
+        settings = owner.anthronet
+        settings.set_measures({name: (value, False) for name, (value, _) in settings.measures().items()})
         return _regenerate(self, context, owner)
 
 

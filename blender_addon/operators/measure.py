@@ -4,7 +4,6 @@
 import bpy
 from bpy.props import BoolProperty
 
-from .. import library, measures, properties
 from ..services import character, live, mesh
 from .base import NeedsCharacter, reported
 
@@ -44,19 +43,13 @@ class ANTHRONET_OT_fit_selected(NeedsCharacter, bpy.types.Operator):
         owner = character.active(context)
         settings = owner.anthronet
         found = character.measured(owner).measures
-        before = {name: getattr(settings, name) for name in measures.names()}, tuple(settings.given)
-        with properties.silent():
-            for name, value in found.items():
-                setattr(settings, name, value)
-            settings.given = [True] * len(settings.given)
+        before = settings.measures()
+        settings.set_measures({name: (value, True) for name, value in found.items()})
         mesh.forget_sculpting(character.mesh_of(owner).data)
         if live.regenerate(owner, context):
             return {"FINISHED"}
         message = settings.error
-        with properties.silent():
-            for name, value in before[0].items():
-                setattr(settings, name, value)
-            settings.given = before[1]
+        settings.set_measures(before)
         live.regenerate(owner, context)
         self.report({"ERROR"}, message)
         return {"CANCELLED"}

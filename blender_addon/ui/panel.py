@@ -102,9 +102,9 @@ def _group_panel(group):
     def draw(self, context):
         settings = character.active(context).anthronet
         column = self.layout.column(align=True)
-        for index, measure in enumerate(measures.all_measures()):
+        for measure, report in zip(measures.all_measures(), settings.report):
             if measure.group == group:
-                _measure_row(column, settings, index, measure)
+                _measure_row(column, settings, measure, report)
 
     return type(
         f"ANTHRONET_PT_{group.lower()}",
@@ -119,18 +119,17 @@ def _group_panel(group):
     )
 
 
-def _measure_row(column, settings, index, measure):
-    given = settings.given[index]
+def _measure_row(column, settings, measure, report):
+    given = settings.is_given(measure.name)
     row = column.row(align=True)
-    row.prop(settings, "given", index=index, text="", icon="LOCKED" if given else "UNLOCKED")
+    row.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
     value = row.row(align=True)
     value.active = given
-    side = f" {measure.side[:1].upper()}" if measure.side else ""
-    value.prop(settings, measure.name, text=measure.label + side)
+    value.prop(settings, measure.name, text=_label(measure))
     if given:
-        text = f"{1000 * settings.residual[index]:+.2f} mm  {settings.percentile[index]:.0f} %"
+        text = f"{1000 * report.residual:+.2f} mm  {report.percentile:.0f} %"
     else:
-        text = f"{settings.low90[index]:.3f}–{settings.high90[index]:.3f} m"
+        text = f"{report.low90:.3f}–{report.high90:.3f} m"
     told = row.row()
     told.active = False
     told.label(text=text)
@@ -148,19 +147,16 @@ class ANTHRONET_PT_report(_Panel, bpy.types.Panel):
         layout.label(text=f"{settings.body_sex.capitalize()}, {settings.mass:.1f} kg, BMI {settings.bmi:.1f}")
         for warning in filter(None, settings.warnings.split("\n")):
             _sentences(layout.box(), warning, "INFO")
-        rows = [
-            (measure, index) for index, measure in enumerate(measures.all_measures()) if settings.given[index]
-        ]
+        pairs = zip(measures.all_measures(), settings.report)
+        rows = [(measure, report) for measure, report in pairs if settings.is_given(measure.name)]
         if not rows:
             layout.label(text="No measure is given: the likeliest person")
-        for measure, index in rows:
+        for measure, report in rows:
             row = layout.row()
-            side = f" {measure.side[:1].upper()}" if measure.side else ""
-            row.label(text=measure.label + side)
-            value = getattr(settings, measure.name)
-            row.label(text=f"{value:.4f} m")
-            row.label(text=f"{1000 * settings.residual[index]:+.3f} mm")
-            row.label(text=f"percentile {settings.percentile[index]:.0f}")
+            row.label(text=_label(measure))
+            row.label(text=f"{getattr(settings, measure.name):.4f} m")
+            row.label(text=f"{1000 * report.residual:+.3f} mm")
+            row.label(text=f"percentile {report.percentile:.0f}")
 
 
 class ANTHRONET_PT_body(_Panel, bpy.types.Panel):
@@ -188,6 +184,10 @@ class ANTHRONET_PT_motion(_Panel, bpy.types.Panel):
         column.operator_menu_enum("anthronet.clip_builtin", "name", icon="PLAY")
         column.operator("anthronet.clip_from_armature", icon="ARMATURE_DATA")
         column.operator("anthronet.character_export", text="Export", icon="EXPORT")
+
+
+def _label(measure):
+    return measure.label + (f" {measure.side[0].upper()}" if measure.side else "")
 
 
 def _sentences(layout, text, icon):

@@ -182,7 +182,9 @@ impl Header {
             return Ok((name.to_owned(), "c_void_p".to_owned()));
         }
         let (kind, name) = words.rsplit_once(' ').ok_or_else(unknown)?;
-        let Some((name, count)) = name.split_once('[') else { return Ok((name.to_owned(), self.value(kind)?)) };
+        let Some((name, count)) = name.split_once('[') else {
+            return Ok((name.to_owned(), self.value(kind)?));
+        };
         let count = count.strip_suffix(']').ok_or_else(unknown)?;
         Ok((name.to_owned(), format!("{} * {count}", self.value(kind)?)))
     }
