@@ -3,6 +3,7 @@
 //! ```text
 //! target/dist/cpp/include/anthronet/{anthronet.hpp, bridge.h}   include/rust/cxx.h
 //! target/dist/cpp/lib/libanthronet_cxx.a                        lib/cmake/anthronet/anthronet-config{,-version}.cmake
+//! target/dist/cpp/examples                                      README.md, licences
 //! ```
 //!
 //! The C ABI's header is not in it: the archive does not hold those functions, and two archives of Rust in one program
@@ -36,7 +37,9 @@ pub(crate) fn package_cpp() -> Outcome<PathBuf> {
     copy(&source.join("include/anthronet/anthronet.hpp"), &package.join("include/anthronet/anthronet.hpp"))?;
     copy(&built.include.join("anthronet-cxx/src/bridge.rs.h"), &package.join("include/anthronet/bridge.h"))?;
     copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
-    copy(&source.join("README.md"), &package.join("README.md"))?;
+    for name in ["README.md", "examples/person.cpp", "examples/walk.cpp"] {
+        copy(&source.join(name), &package.join(name))?;
+    }
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
         copy(&tools::root().join(name), &package.join(name))?;
     }
@@ -80,6 +83,7 @@ fn build() -> Outcome<Built> {
                 let said = &message["message"];
                 match said["message"].as_str().unwrap_or_default().strip_prefix("native-static-libs: ") {
                     Some(words) => built.libraries = libraries(words),
+                    None if said["level"] == "note" => {}
                     None => eprint!("{}", said["rendered"].as_str().unwrap_or_default()),
                 }
             }
