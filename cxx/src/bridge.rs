@@ -8,8 +8,9 @@ use crate::request::Request;
 use crate::scene::Scene;
 use crate::skin::{Skinner, skin_many};
 
-// What `cxx` generates calls across the languages, which is what the crate is for, and is `pub` throughout.
-#[allow(unsafe_code, unreachable_pub)]
+// What `cxx` generates calls across the languages, which is what the crate is for, and is `pub` throughout and
+// needs lifetimes by name in results.
+#[allow(unsafe_code, unreachable_pub, clippy::needless_lifetimes)]
 #[cxx::bridge(namespace = "anthronet")]
 pub(crate) mod ffi {
     /// Female or male; of a request also neither.
