@@ -74,15 +74,18 @@ impl Body {
 
     pub(crate) fn joints(&self, space: ffi::Space) -> Result<Vec<ffi::Joint>> {
         let space = space.meaning()?;
-        let matrix = |m: glam::Affine3A| space.matrix_from_ours(m.into()).to_cols_array();
         let joints =
             self.body.joints().iter().zip(&self.rest.pose().locals).map(|(joint, rest)| ffi::Joint {
                 name: joint.name.clone(),
                 parent: joint.parent.map_or(-1, |parent| parent as i32),
                 length: joint.length,
-                parent_from_joint: rest.in_space(space).into(),
-                model_from_joint: matrix(joint.model_from_joint),
-                joint_from_model: matrix(joint.model_from_joint.inverse()),
+                parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
+                model_from_joint: space
+                    .model_from_joint_matrix(joint.model_from_joint.into())
+                    .to_cols_array(),
+                joint_from_model: space
+                    .joint_from_model_matrix(joint.model_from_joint.inverse().into())
+                    .to_cols_array(),
             });
         Ok(joints.collect())
     }

@@ -29,7 +29,7 @@ pub(crate) mod ffi {
         Sample,
     }
 
-    /// Axes and handedness. Lengths are metres in all of them.
+    /// Axes and handedness of the model. Lengths are metres in all of them, and bones run along their joint's +Y.
     enum Space {
         /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
         Gltf,

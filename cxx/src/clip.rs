@@ -128,14 +128,16 @@ impl Clip {
         space: Space,
         out: &mut [ffi::Transform],
     ) {
-        let joints = if to_model {
-            anthronet::pose::model_from_joints(self.clip.rest().parents(), &pose.locals, model);
-            model.as_slice()
+        let parents = self.clip.rest().parents();
+        if to_model {
+            anthronet::pose::model_from_joints(parents, &pose.locals, model);
+            for (out, joint) in out.iter_mut().zip(model) {
+                *out = joint.model_from_joint_in(space).into();
+            }
         } else {
-            &pose.locals
-        };
-        for (out, joint) in out.iter_mut().zip(joints) {
-            *out = joint.in_space(space).into();
+            for ((out, joint), parent) in out.iter_mut().zip(&pose.locals).zip(parents) {
+                *out = joint.parent_from_joint_in(space, *parent).into();
+            }
         }
     }
 }

@@ -27,7 +27,12 @@ impl Mesh {
         let parts = Scene::from_body(&body.body, &looks)?.into_buffers(layout, space)?;
         Ok(Box::new(Self {
             parts: parts.into_iter().map(MeshPart).collect(),
-            bind: body.rest.model_from_joints().iter().map(|joint| joint.in_space(space)).collect(),
+            bind: body
+                .rest
+                .model_from_joints()
+                .iter()
+                .map(|joint| joint.model_from_joint_in(space))
+                .collect(),
         }))
     }
 

@@ -266,6 +266,27 @@ void motion(const Model &model) {
     scene->add_clip(*walk);
     throws({"walk", "unique"}, [&] { scene->add_clip(*walk); });
   });
+  test("a pose moves the same surface in three spaces", [&] {
+    auto body = person(model, 1.70);
+    auto walk = Clip::builtin("walk", *body);
+    std::vector<Transform> pose(walk->joint_count());
+    std::vector<std::vector<float>> skinned;
+    for (const Space space : {Space::Gltf, Space::Blender, Space::Unity}) {
+      MeshOptions options{};
+      options.lod = 1;
+      options.space = space;
+      auto skinner = body->mesh(options)->skinner(0);
+      walk->sample(0.4, Wrap::Loop, Relative::ToModel, space, rust::Slice<Transform>(pose));
+      skinned.emplace_back(3 * skinner->vertex_count());
+      skinner->skin(SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(skinned.back()), {});
+    }
+    for (std::size_t i = 0; i < skinned[0].size(); i += 3) {
+      const float *ours = &skinned[0][i], *blender = &skinned[1][i], *unity = &skinned[2][i];
+      const float off[] = {blender[0] - ours[0], blender[1] + ours[2], blender[2] - ours[1],
+                           unity[0] + ours[0],   unity[1] - ours[1],   unity[2] - ours[2]};
+      check(std::all_of(off, off + 6, [](float v) { return std::abs(v) < 2e-6F; }), "vertex " + std::to_string(i / 3));
+    }
+  });
   test("a motion file of the library's own comes back", [&] {
     auto body = person(model, 1.70);
     auto scene = body->scene({});
