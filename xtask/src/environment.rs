@@ -1,6 +1,7 @@
 //! What the cross-boundary tests need, installed into `target/test-env` with pinned versions.
 //!
-//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module)
+//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
+//!   CMake and Ninja)
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
 //! Godot comes from the system's packages.
@@ -64,6 +65,14 @@ impl Environment {
             all.push((version, found));
         }
         Ok(all)
+    }
+
+    /// A program that the virtual environment brings, such as CMake.
+    pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
+        let python = self.python.as_ref().map_err(String::clone)?;
+        let folder = python.parent().unwrap_or(Path::new("."));
+        let found = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+        if found.is_file() { Ok(found) } else { Err(format!("{name} has no wheel for this platform")) }
     }
 
     /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to

@@ -7,6 +7,7 @@
 //! | `train` | rebuilds the committed model from nothing |
 //! | `bench` | the library's benchmarks |
 //! | `gen`   | rewrites generated files: the C header, the C# bindings, the pictures in `docs/` |
+//! | `package` | puts together what others build upon, under `target/dist` |
 //! | `bless` | rewrites the goldens in `tests/golden/` after an intended change |
 
 mod bench;
@@ -17,6 +18,8 @@ mod environment;
 mod r#gen;
 mod hosts;
 mod layering;
+mod package;
+mod package_cpp;
 mod requests;
 mod test;
 mod tools;
@@ -60,6 +63,12 @@ enum Verb {
         #[arg(long, value_enum)]
         only: Option<r#gen::Kind>,
     },
+    /// Put together what others build upon, under target/dist
+    Package {
+        /// For whom
+        #[arg(value_enum)]
+        kind: package::Kind,
+    },
     /// Rewrite tests/golden/hashes.json; look at the difference before you commit it
     Bless,
 }
@@ -71,6 +80,7 @@ fn main() -> ExitCode {
         Verb::Train { rest } => train::run(&rest),
         Verb::Bench { rest } => bench::run(&rest),
         Verb::Gen { only } => r#gen::run(only),
+        Verb::Package { kind } => package::run(kind),
         Verb::Bless => bless::run(),
     };
     match done {

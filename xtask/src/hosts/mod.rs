@@ -5,6 +5,7 @@
 
 mod animation;
 mod blender;
+mod cpp;
 mod skin;
 mod tally;
 mod usd;
@@ -34,6 +35,7 @@ pub(crate) fn run() -> Outcome {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    cpp::run(&anthronet, &environment, &folder, &mut tally)?;
 
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
