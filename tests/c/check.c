@@ -119,6 +119,15 @@ anthronet_request *person(uint32_t sex, double height) {
     return request;
 }
 
+anthronet_request *nobody(void) {
+    anthronet_request *request = person(ANTHRONET_SEX_FEMALE, 1.50);
+    OK(anthronet_request_set_measure(request, TEXT("arm_length"), 0.40, &fault));
+    OK(anthronet_request_set_measure(request, TEXT("forearm_length"), 0.17, &fault));
+    OK(anthronet_request_set_measure(request, TEXT("waist_circumference"), 1.3, &fault));
+    OK(anthronet_request_set_measure(request, TEXT("neck_circumference"), 0.28, &fault));
+    return request;
+}
+
 anthronet_transform *rest_pose(const fixture *f, const anthronet_body *body, uint32_t space) {
     anthronet_joint *joints = (anthronet_joint *)room(f->joints * sizeof *joints);
     anthronet_transform *pose = (anthronet_transform *)room(f->joints * sizeof *pose);

@@ -80,6 +80,8 @@ void write_file(const char *path, const void *bytes, size_t length);
 const char *path_in(const fixture *f, const char *name);
 /* A request for a sex and height, metres. */
 anthronet_request *person(uint32_t sex, double height);
+/* One whose measures no person has together: refused, unless the nearest are asked for. */
+anthronet_request *nobody(void);
 /* All joints of the fixture's body relative to the model, at rest. */
 anthronet_transform *rest_pose(const fixture *f, const anthronet_body *body, uint32_t space);
 /* A small motion: three frames of a person who walks, as .bvh. */

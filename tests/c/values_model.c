@@ -277,15 +277,11 @@ static void hear(uint32_t level, const char *message, uint64_t length, void *use
 
 /* A request that nobody meets: refused, or replaced with a warning that the callback hears. */
 void test_log(const fixture *f) {
-    anthronet_request *request = person(ANTHRONET_SEX_FEMALE, 1.50);
+    anthronet_request *request = nobody();
     anthronet_body *body = NULL;
     anthronet_body_summary summary;
     heard ours;
     ZERO(ours);
-    OK(anthronet_request_set_measure(request, TEXT("arm_length"), 0.40, &fault));
-    OK(anthronet_request_set_measure(request, TEXT("forearm_length"), 0.17, &fault));
-    OK(anthronet_request_set_measure(request, TEXT("waist_circumference"), 1.3, &fault));
-    OK(anthronet_request_set_measure(request, TEXT("neck_circumference"), 0.28, &fault));
     OK(anthronet_set_log_callback(hear, &ours, &fault));
     REFUSED_OUT(ANTHRONET_ERROR_INFEASIBLE, body, anthronet_generate(f->model, request, &body, &fault));
     OK(anthronet_request_set_nearest(request, 1, &fault));

@@ -239,8 +239,10 @@ void test_motion_of_poses(const fixture *f) {
     if (clip != NULL) {
         again = baked(f, clip, ANTHRONET_RELATIVE_TO_MODEL, &compared);
         places = baked(f, f->walk, ANTHRONET_RELATIVE_TO_MODEL, NULL);
-        /* Twist joints are the retargeter's own, so places are compared, not rotations. */
+        /* Twist joints are the retargeter's own, so places are compared, not rotations; and the pelvis has gone the
+         * way, not the root. */
         for (i = 0; compared == count && i < count; i++) {
+            if (i % f->joints == 0) continue;
             for (k = 0; k < 3; k++) off = fmax(off, fabs((double)again[i].translation[k] - places[i].translation[k]));
         }
         CHECK(compared == count && off < 0.01, "%lu transforms of %lu, off by %f m", (unsigned long)compared,
