@@ -72,6 +72,25 @@ fn the_papers_six_vectors_are_met() {
 }
 
 #[test]
+fn everybody_has_the_same_faces_and_weights() {
+    let scene = |seed| {
+        let body = model().generate(&somebody(Sex::ALL[seed as usize % 2], seed)).unwrap();
+        Scene::from_body(&body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() }).unwrap()
+    };
+    let first = scene(1);
+    for seed in 2..12 {
+        for (one, other) in first.meshes.iter().zip(&scene(seed).meshes) {
+            assert_eq!((&one.name, one.positions.len()), (&other.name, other.positions.len()));
+            assert_eq!((&one.quads, &one.triangles), (&other.quads, &other.triangles), "{}", one.name);
+            assert_eq!(
+                (&one.joint_indices, &one.joint_weights),
+                (&other.joint_indices, &other.joint_weights)
+            );
+        }
+    }
+}
+
+#[test]
 fn derivatives_of_measures_match_finite_differences() {
     let space = model().measured_space();
     let k = space.dim();

@@ -604,7 +604,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_new(anthronet_body* body, anthronet_mesh_options* options, anthronet_mesh** out_mesh, anthronet_error* error);
 
         /// <summary>
-        ///  Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+        ///  Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+        ///  are invalid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_update", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_update(anthronet_mesh* mesh, anthronet_body* body, anthronet_error* error);
@@ -639,6 +640,38 @@ namespace Anthronet.Native
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_read", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_read(anthronet_mesh* mesh, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
+
+        /// <summary>
+        ///  Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
+        ///  the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_add_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_add_blend_shape(anthronet_mesh* mesh, byte* name, ulong name_length, anthronet_body* body, anthronet_error* error);
+
+        /// <summary>
+        ///  Number of blend shapes.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_count(anthronet_mesh* mesh, uint* out_count, anthronet_error* error);
+
+        /// <summary>
+        ///  The name of a blend shape; valid until the mesh is updated or freed.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_name(anthronet_mesh* mesh, uint shape, anthronet_text* out_name, anthronet_error* error);
+
+        /// <summary>
+        ///  Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+        ///  floats per vertex to be added to those of the mesh.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_data", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_blend_shape_data(anthronet_mesh* mesh, uint shape, uint part, uint attribute, anthronet_view* out_view, anthronet_error* error);
+
+        /// <summary>
+        ///  Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_mesh_read_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_mesh_read_blend_shape(anthronet_mesh* mesh, uint shape, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
 
         /// <summary>
         ///  Number of built-in clips.

@@ -852,7 +852,8 @@ anthronet_status anthronet_mesh_new(const struct anthronet_body *body,
                                     struct anthronet_mesh **out_mesh,
                                     struct anthronet_error *error);
 
-// Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+// are invalid.
 anthronet_status anthronet_mesh_update(struct anthronet_mesh *mesh,
                                        const struct anthronet_body *body,
                                        struct anthronet_error *error);
@@ -887,6 +888,44 @@ anthronet_status anthronet_mesh_read(const struct anthronet_mesh *mesh,
                                      uint64_t buffer_bytes,
                                      uint64_t stride,
                                      struct anthronet_error *error);
+
+// Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
+// the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+anthronet_status anthronet_mesh_add_blend_shape(struct anthronet_mesh *mesh,
+                                                const char *name,
+                                                uint64_t name_length,
+                                                const struct anthronet_body *body,
+                                                struct anthronet_error *error);
+
+// Number of blend shapes.
+anthronet_status anthronet_mesh_blend_shape_count(const struct anthronet_mesh *mesh,
+                                                  uint32_t *out_count,
+                                                  struct anthronet_error *error);
+
+// The name of a blend shape; valid until the mesh is updated or freed.
+anthronet_status anthronet_mesh_blend_shape_name(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 struct anthronet_text *out_name,
+                                                 struct anthronet_error *error);
+
+// Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+// floats per vertex to be added to those of the mesh.
+anthronet_status anthronet_mesh_blend_shape_data(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 uint32_t part,
+                                                 uint32_t attribute,
+                                                 struct anthronet_view *out_view,
+                                                 struct anthronet_error *error);
+
+// Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+anthronet_status anthronet_mesh_read_blend_shape(const struct anthronet_mesh *mesh,
+                                                 uint32_t shape,
+                                                 uint32_t part,
+                                                 uint32_t attribute,
+                                                 void *out_rows,
+                                                 uint64_t buffer_bytes,
+                                                 uint64_t stride,
+                                                 struct anthronet_error *error);
 
 // Number of built-in clips.
 uint32_t anthronet_clip_builtin_count(void);

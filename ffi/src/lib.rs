@@ -9,6 +9,7 @@
 // The contract of every entry is the header's preamble; `unsafe` is what this crate is for.
 #![allow(clippy::missing_safety_doc, non_camel_case_types, unsafe_code)]
 
+pub mod blend_shape;
 pub mod body;
 pub mod bytes;
 pub mod clip;

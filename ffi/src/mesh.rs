@@ -2,18 +2,13 @@
 
 use std::ffi::c_void;
 
-use anthronet::export::{Corners, Scene, SceneMesh, SceneOptions, SkinTone, SplitMesh, flip_v};
+use anthronet::export::{BlendShape, Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
 use anthronet::pose::Local;
-use anthronet::rig::Influences;
-use anthronet::space::Space;
-use glam::Vec3;
 
 use crate::body::anthronet_body;
-use crate::options::{Descriptor, DescriptorOut, described, flag, joint_names, lod, space};
+use crate::options::{Descriptor, DescriptorOut, choice, described, flag, joint_names, lod, space};
 use crate::pointer::{Out, anthronet_text, at, buffer, change, free, read, write_rows};
-use crate::status::{
-    ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_INVALID, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{ANTHRONET_ERROR_ENUM, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
 pub const ANTHRONET_LAYOUT_RENDER: u32 = 0;
@@ -117,25 +112,11 @@ pub struct anthronet_view {
 
 /// The surfaces of a body in a space and layout.
 pub struct anthronet_mesh {
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<MeshBuffers>,
     pub(crate) bind: Vec<Local>,
-    options: anthronet_mesh_options,
-}
-
-pub(crate) struct Part {
-    name: String,
-    base_color: [f32; 4],
-    roughness: f32,
-    double_sided: bool,
-    pub(crate) positions: Vec<[f32; 3]>,
-    pub(crate) normals: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    triangles: Vec<[u32; 3]>,
-    triangle_uvs: Vec<[u32; 3]>,
-    quads: Vec<[u32; 4]>,
-    quad_uvs: Vec<[u32; 4]>,
-    sources: Vec<u32>,
-    pub(crate) influences: Influences,
+    /// By shape, then by part.
+    pub(crate) blend_shapes: Vec<Vec<BlendShape>>,
+    pub(crate) options: anthronet_mesh_options,
 }
 
 /// Makes the meshes of a body; `options` may be NULL.
@@ -153,7 +134,8 @@ pub unsafe extern "C" fn anthronet_mesh_new(
     })
 }
 
-/// Makes the mesh that of another body, with the options that it was made with. Views of before are invalid.
+/// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
+/// are invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_update(
     mesh: *mut anthronet_mesh,
@@ -204,9 +186,9 @@ pub unsafe extern "C" fn anthronet_mesh_describe_part(
             triangle_count: part.triangles.len() as u32,
             quad_count: part.quads.len() as u32,
             influences: part.influences.per_vertex as u32,
-            double_sided: part.double_sided.into(),
-            roughness: part.roughness,
-            base_color: part.base_color,
+            double_sided: part.material.double_sided.into(),
+            roughness: part.material.roughness,
+            base_color: part.material.base_color,
             name: anthronet_text::of(&part.name),
         });
         Ok(())
@@ -224,14 +206,8 @@ pub unsafe extern "C" fn anthronet_mesh_data(
 ) -> anthronet_status {
     guard(error, || {
         let out = Out::new(out_view, "out_view")?;
-        let array = at(&read(mesh, "mesh")?.parts, part, "part")?.array(attribute)?;
-        let rows = array.bytes.len() / array.width();
-        out.write(anthronet_view {
-            data: if rows == 0 { std::ptr::null() } else { array.bytes.as_ptr().cast() },
-            rows: rows as u64,
-            columns: array.columns as u32,
-            number_type: array.number_type,
-        });
+        let array = array(at(&read(mesh, "mesh")?.parts, part, "part")?, attribute)?;
+        out.write(array.view());
         Ok(())
     })
 }
@@ -249,48 +225,57 @@ pub unsafe extern "C" fn anthronet_mesh_read(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     guard(error, || {
-        let array = at(&read(mesh, "mesh")?.parts, part, "part")?.array(attribute)?;
+        let array = array(at(&read(mesh, "mesh")?.parts, part, "part")?, attribute)?;
         let out = buffer(out_rows, buffer_bytes, "out_rows")?;
         write_rows(array.bytes, array.width(), out, stride, "out_rows")
     })
 }
 
-struct Array<'a> {
-    bytes: &'a [u8],
-    columns: usize,
-    number_type: u32,
+pub(crate) struct Array<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) columns: usize,
+    pub(crate) number_type: u32,
 }
 
 impl Array<'_> {
     /// Bytes of a row.
-    fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.columns * if self.number_type == ANTHRONET_TYPE_U16 { 2 } else { 4 }
+    }
+
+    pub(crate) fn view(&self) -> anthronet_view {
+        let rows = self.bytes.len() / self.width();
+        anthronet_view {
+            data: if rows == 0 { std::ptr::null() } else { self.bytes.as_ptr().cast() },
+            rows: rows as u64,
+            columns: self.columns as u32,
+            number_type: self.number_type,
+        }
     }
 }
 
-impl Part {
-    fn array(&self, attribute: u32) -> Outcome<Array<'_>> {
-        use bytemuck::cast_slice as bytes;
-        let per_vertex = self.influences.per_vertex;
-        let (bytes, columns, number_type) = match attribute {
-            ANTHRONET_ATTRIBUTE_POSITIONS => (bytes(&self.positions), 3, ANTHRONET_TYPE_F32),
-            ANTHRONET_ATTRIBUTE_NORMALS => (bytes(&self.normals), 3, ANTHRONET_TYPE_F32),
-            ANTHRONET_ATTRIBUTE_UVS => (bytes(&self.uvs), 2, ANTHRONET_TYPE_F32),
-            ANTHRONET_ATTRIBUTE_TRIANGLES => (bytes(&self.triangles), 3, ANTHRONET_TYPE_U32),
-            ANTHRONET_ATTRIBUTE_JOINTS => (bytes(&self.influences.joints), per_vertex, ANTHRONET_TYPE_U16),
-            ANTHRONET_ATTRIBUTE_WEIGHTS => (bytes(&self.influences.weights), per_vertex, ANTHRONET_TYPE_F32),
-            ANTHRONET_ATTRIBUTE_SOURCES => (bytes(&self.sources), 1, ANTHRONET_TYPE_U32),
-            ANTHRONET_ATTRIBUTE_QUADS => (bytes(&self.quads), 4, ANTHRONET_TYPE_U32),
-            ANTHRONET_ATTRIBUTE_QUAD_UVS => (bytes(&self.quad_uvs), 4, ANTHRONET_TYPE_U32),
-            ANTHRONET_ATTRIBUTE_TRIANGLE_UVS => (bytes(&self.triangle_uvs), 3, ANTHRONET_TYPE_U32),
-            _ => {
-                let message =
-                    format!("attribute: expected 0 to {ANTHRONET_ATTRIBUTE_TRIANGLE_UVS}, got {attribute}");
-                return Err(Fault::new(ANTHRONET_ERROR_ENUM, message));
-            }
-        };
-        Ok(Array { bytes, columns, number_type })
-    }
+/// An array of a part.
+fn array(part: &MeshBuffers, attribute: u32) -> Outcome<Array<'_>> {
+    use bytemuck::cast_slice as bytes;
+    let per_vertex = part.influences.per_vertex;
+    let (bytes, columns, number_type) = match attribute {
+        ANTHRONET_ATTRIBUTE_POSITIONS => (bytes(&part.positions), 3, ANTHRONET_TYPE_F32),
+        ANTHRONET_ATTRIBUTE_NORMALS => (bytes(&part.normals), 3, ANTHRONET_TYPE_F32),
+        ANTHRONET_ATTRIBUTE_UVS => (bytes(&part.uvs), 2, ANTHRONET_TYPE_F32),
+        ANTHRONET_ATTRIBUTE_TRIANGLES => (bytes(&part.triangles), 3, ANTHRONET_TYPE_U32),
+        ANTHRONET_ATTRIBUTE_JOINTS => (bytes(&part.influences.joints), per_vertex, ANTHRONET_TYPE_U16),
+        ANTHRONET_ATTRIBUTE_WEIGHTS => (bytes(&part.influences.weights), per_vertex, ANTHRONET_TYPE_F32),
+        ANTHRONET_ATTRIBUTE_SOURCES => (bytes(&part.sources), 1, ANTHRONET_TYPE_U32),
+        ANTHRONET_ATTRIBUTE_QUADS => (bytes(&part.quads), 4, ANTHRONET_TYPE_U32),
+        ANTHRONET_ATTRIBUTE_QUAD_UVS => (bytes(&part.quad_uvs), 4, ANTHRONET_TYPE_U32),
+        ANTHRONET_ATTRIBUTE_TRIANGLE_UVS => (bytes(&part.triangle_uvs), 3, ANTHRONET_TYPE_U32),
+        _ => {
+            let message =
+                format!("attribute: expected 0 to {ANTHRONET_ATTRIBUTE_TRIANGLE_UVS}, got {attribute}");
+            return Err(Fault::new(ANTHRONET_ERROR_ENUM, message));
+        }
+    };
+    Ok(Array { bytes, columns, number_type })
 }
 
 /// The scene options that a caller's descriptor asks for.
@@ -317,95 +302,15 @@ pub(crate) fn scene_options(
 }
 
 impl anthronet_mesh {
-    fn of(body: &anthronet_body, options: anthronet_mesh_options) -> Outcome<Self> {
+    pub(crate) fn of(body: &anthronet_body, options: anthronet_mesh_options) -> Outcome<Self> {
         let space = space(options.space)?;
-        let split = match options.layout {
-            ANTHRONET_LAYOUT_RENDER => true,
-            ANTHRONET_LAYOUT_MODEL => false,
-            other => {
-                return Err(Fault::new(
-                    ANTHRONET_ERROR_ENUM,
-                    format!("layout: expected 0 to 1, got {other}"),
-                ));
-            }
-        };
+        let layout = choice(&[Layout::Render, Layout::Model], options.layout, "layout")?;
         let asked = scene_options(options.lod, options.influences, 0, options.body_only, options.skin_tone)?;
-        let mut scene = Scene::from_body(&body.body, &asked)?;
-        let meshes = std::mem::take(&mut scene.meshes);
-        let parts = meshes.into_iter().map(|mesh| Part::of(mesh, &scene, split, space));
         Ok(Self {
-            parts: parts.collect::<Outcome<_>>()?,
+            parts: Scene::from_body(&body.body, &asked)?.into_buffers(layout, space)?,
             bind: body.rest.model_from_joints().iter().map(|joint| joint.in_space(space)).collect(),
+            blend_shapes: Vec::new(),
             options,
         })
-    }
-}
-
-impl Part {
-    fn of(mesh: SceneMesh, scene: &Scene, split: bool, space: Space) -> Outcome<Self> {
-        let material = scene.materials.get(mesh.material as usize).ok_or_else(|| {
-            Fault::new(ANTHRONET_ERROR_INVALID, format!("mesh `{}` has no material", mesh.name))
-        })?;
-        let influences_per_vertex = mesh.influences_per_vertex;
-        let v_up = space != Space::YUp;
-        let mut part = if split {
-            let split = SplitMesh::new(&mesh);
-            let source = || split.source.iter().map(|v| *v as usize);
-            let rows = || source().map(|v| v * influences_per_vertex..(v + 1) * influences_per_vertex);
-            Self {
-                positions: source().map(|v| mesh.positions[v]).collect(),
-                normals: source().map(|v| mesh.normals[v]).collect(),
-                uvs: split.uvs(&mesh),
-                triangle_uvs: Vec::new(),
-                quads: Vec::new(),
-                quad_uvs: Vec::new(),
-                influences: Influences {
-                    per_vertex: influences_per_vertex,
-                    joints: rows().flat_map(|r| mesh.joint_indices[r].iter().copied()).collect(),
-                    weights: rows().flat_map(|r| mesh.joint_weights[r].iter().copied()).collect(),
-                },
-                triangles: split.triangles,
-                sources: split.source,
-                name: mesh.name,
-                base_color: material.base_color,
-                roughness: material.roughness,
-                double_sided: material.double_sided,
-            }
-        } else {
-            let Corners { positions: quads, uvs: quad_uvs } = mesh.quads;
-            let Corners { positions: triangles, uvs: triangle_uvs } = mesh.triangles;
-            Self {
-                sources: (0..mesh.positions.len() as u32).collect(),
-                positions: mesh.positions,
-                normals: mesh.normals,
-                uvs: mesh.uvs,
-                triangles,
-                triangle_uvs,
-                quads,
-                quad_uvs,
-                influences: Influences {
-                    per_vertex: influences_per_vertex,
-                    joints: mesh.joint_indices,
-                    weights: mesh.joint_weights,
-                },
-                name: mesh.name,
-                base_color: material.base_color,
-                roughness: material.roughness,
-                double_sided: material.double_sided,
-            }
-        };
-        if space != Space::YUp {
-            for vector in part.positions.iter_mut().chain(&mut part.normals) {
-                *vector = space.from_ours(Vec3::from_array(*vector)).to_array();
-            }
-        }
-        if v_up {
-            part.uvs.iter_mut().for_each(|uv| *uv = flip_v(*uv));
-        }
-        if space.flips_winding() {
-            part.triangles.iter_mut().chain(&mut part.triangle_uvs).for_each(|face| face.swap(1, 2));
-            part.quads.iter_mut().chain(&mut part.quad_uvs).for_each(|face| face.swap(1, 3));
-        }
-        Ok(part)
     }
 }

@@ -44,5 +44,8 @@ fn said(panic: &(dyn Any + Send)) -> &str {
 }
 
 fn text(said: &str, place: &str) -> String {
-    format!("a defect of the library at {}: {said}", if place.is_empty() { "an unknown place" } else { place })
+    format!(
+        "a defect of the library at {}: {said}",
+        if place.is_empty() { "an unknown place" } else { place }
+    )
 }

@@ -1,4 +1,6 @@
-//! The C header and the C# bindings, both from the sources of `ffi`.
+//! The C header and the bindings of C# and Python, all of them from the sources of `ffi`.
+
+mod python;
 
 use crate::tools::{self, Outcome};
 use std::path::{Path, PathBuf};
@@ -8,16 +10,41 @@ pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
 /// The declarations that C# calls.
 pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
 
-/// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
-const SOURCES: [&str; 15] = [
-    "version", "status", "pointer", "options", "log", "bytes", "model", "measure", "request", "body", "job",
-    "skeleton", "mesh", "clip", "motion",
-];
-const LAST: [&str; 2] = ["skin", "export"];
+/// The declarations that Python calls.
+pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
-/// Writes both into the source tree.
+/// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
+const SOURCES: [&str; 18] = [
+    "version",
+    "status",
+    "pointer",
+    "options",
+    "log",
+    "bytes",
+    "model",
+    "measure",
+    "request",
+    "body",
+    "job",
+    "skeleton",
+    "mesh",
+    "blend_shape",
+    "clip",
+    "motion",
+    "skin",
+    "export",
+];
+
+/// All of them, with their paths in the source tree.
+fn all() -> Outcome<[(&'static str, String); 3]> {
+    let header = header()?;
+    let python = python::declarations(&header)?;
+    Ok([(HEADER, header), (CSHARP, csharp()?), (PYTHON, python)])
+}
+
+/// Writes them into the source tree.
 pub(crate) fn write() -> Outcome {
-    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+    for (path, text) in all()? {
         tools::write(&tools::root().join(path), &text)?;
     }
     Ok(())
@@ -25,19 +52,19 @@ pub(crate) fn write() -> Outcome {
 
 /// Fails unless the files in the source tree are what the sources make, byte by byte.
 pub(crate) fn check() -> Outcome {
-    for (path, text) in [(HEADER, header()?), (CSHARP, csharp()?)] {
+    for (path, text) in all()? {
         let there = tools::read(&tools::root().join(path))?;
         if there != text {
             return Err(format!("{path}: is not what ffi/src makes: run `cargo xtask gen` and commit it"));
         }
     }
-    println!("bindings: {HEADER} and {CSHARP} are what ffi/src makes");
+    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are what ffi/src makes");
     Ok(())
 }
 
 fn sources() -> impl Iterator<Item = PathBuf> {
     let folder = tools::root().join("ffi/src");
-    SOURCES.into_iter().chain(LAST).map(move |name| folder.join(name).with_extension("rs"))
+    SOURCES.into_iter().map(move |name| folder.join(name).with_extension("rs"))
 }
 
 fn header() -> Outcome<String> {

@@ -7,7 +7,7 @@ use std::process::Command;
 /// What can be generated alone.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Kind {
-    /// The C header and the C# bindings
+    /// The C header and the bindings of C# and Python
     Bindings,
     /// The pictures in docs
     Pictures,

@@ -73,7 +73,11 @@ impl Scene {
             };
             let mut mesh = quad_mesh(title, positions, normals, &accessory.topology);
             skin(&mut mesh, &character.accessory_weights(accessory).influences(options.influences)?);
-            let parts = if accessory.name == "eyes" { split_eyes(&mesh) } else { vec![(mesh, color)] };
+            let parts = if accessory.name == "eyes" {
+                split_eyes(&mesh, character.accessory_mean(accessory))
+            } else {
+                vec![(mesh, color)]
+            };
             for (mut mesh, color) in parts {
                 mesh.material = materials.len() as u32;
                 let mut material = SceneMaterial::dielectric(mesh.name.clone(), color, roughness);
@@ -144,12 +148,12 @@ const EYE_PARTS: [(&str, f32, [f32; 4]); 3] = [
     ("Eyes", 180.0, [0.80, 0.78, 0.75, 1.0]),
 ];
 
-/// Eyeballs as white, iris and pupil, so that they look somewhere in programs that have no texture for them.
-fn split_eyes(eyes: &SceneMesh) -> Vec<(SceneMesh, [f32; 4])> {
-    let at = |v: u32| eyes.positions.get(v as usize).map_or(Vec3::ZERO, |p| Vec3::from_array(*p));
+/// Eyeballs as white, iris and pupil, so that they look somewhere in programs that have no texture for them. Which face is
+/// which is told by the mean body's eyes, so that everybody's parts have the same faces.
+fn split_eyes(eyes: &SceneMesh, mean: &[Vec3]) -> Vec<(SceneMesh, [f32; 4])> {
+    let at = |v: u32| mean.get(v as usize).copied().unwrap_or_default();
     let centre = |left: bool| {
-        let side: Vec<Vec3> =
-            eyes.positions.iter().map(|p| Vec3::from_array(*p)).filter(|p| (p.x > 0.0) == left).collect();
+        let side: Vec<Vec3> = mean.iter().copied().filter(|p| (p.x > 0.0) == left).collect();
         side.iter().sum::<Vec3>() / side.len().max(1) as f32
     };
     let centres = [centre(false), centre(true)];

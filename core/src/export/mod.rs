@@ -4,6 +4,7 @@
 //! the ending of the path and puts the bytes on the disk whole or not at all.
 
 pub(crate) mod accessor;
+mod buffers;
 mod character;
 pub mod file;
 pub mod gltf;
@@ -15,6 +16,7 @@ mod split;
 pub(crate) mod synthetic;
 pub mod usd;
 
+pub use buffers::{BlendShape, Layout, MeshBuffers};
 pub use character::SceneOptions;
 pub use file::{WriteOptions, scene_to_bytes, write_atomic, write_scene, write_scene_with};
 pub use gltf::{GltfOptions, VrmMeta, vrm};

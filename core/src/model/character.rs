@@ -2,6 +2,8 @@
 
 use std::sync::OnceLock;
 
+use glam::Vec3;
+
 use crate::mesh::{Lod, Subdivision, Topology, VertexFaces};
 use crate::rig::{Skeleton, SkinWeights};
 use crate::{Error, Result};
@@ -37,13 +39,15 @@ pub struct Character {
     reduced: [ReducedMesh; 2],
     accessories: Vec<Accessory>,
     skeleton: Skeleton,
+    // Of the mean body: cage, then accessories.
+    mean: Vec<Vec3>,
     // Of the cage, then of the accessories.
     weights: SkinWeights,
     refined_weights: OnceLock<Result<SkinWeights>>,
 }
 
 impl Character {
-    /// Puts the parts together.
+    /// Puts the parts together; `mean` are the points of the mean body, metres: the cage's, then the accessories'.
     ///
     /// # Errors
     /// [`Error::Invalid`] when they do not fit: see each part.
@@ -53,6 +57,7 @@ impl Character {
         accessories: Vec<Accessory>,
         skeleton: Skeleton,
         weights: SkinWeights,
+        mean: Vec<Vec3>,
     ) -> Result<Self> {
         let subdivision = Subdivision::new(&cage)?;
         let mut points = cage.vertex_count;
@@ -69,6 +74,9 @@ impl Character {
                 format!("expected {points} vertices, got {}", weights.len()),
             ));
         }
+        if mean.len() != points {
+            return Err(Error::invalid("mean body", format!("expected {points} points, got {}", mean.len())));
+        }
         for mesh in &reduced {
             let fits = mesh.triangles.len() == mesh.triangle_uvs.len()
                 && mesh.vertices.iter().all(|v| (*v as usize) < cage.vertex_count)
@@ -82,7 +90,17 @@ impl Character {
         let refined = subdivision.refined();
         let faces_around = VertexFaces::new(refined.vertex_count, &refined.quads);
         let refined_weights = OnceLock::new();
-        Ok(Self { cage, subdivision, faces_around, reduced, accessories, skeleton, weights, refined_weights })
+        Ok(Self {
+            cage,
+            subdivision,
+            faces_around,
+            reduced,
+            accessories,
+            skeleton,
+            mean,
+            weights,
+            refined_weights,
+        })
     }
 
     /// The cage, which is also the topology of level 1.
@@ -131,6 +149,12 @@ impl Character {
     /// Number of points that the shape space must have.
     pub fn point_count(&self) -> usize {
         self.weights.len()
+    }
+
+    /// Points of an accessory of the mean body, metres: what decisions are made on that hold for everybody.
+    pub fn accessory_mean(&self, accessory: &Accessory) -> &[Vec3] {
+        let end = accessory.start + accessory.topology.vertex_count;
+        self.mean.get(accessory.start..end).unwrap_or_default()
     }
 
     /// Skin weights of an accessory.

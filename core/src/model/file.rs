@@ -5,6 +5,7 @@
 //! measure definitions, and how the model was made and scored. Sizes in the file are checked against each other
 //! and never trusted.
 
+use glam::Vec3;
 use half::f16;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
@@ -260,7 +261,15 @@ impl ModelParts {
         let skeleton = Skeleton::new(self.joint_names.clone(), self.joint_parents.clone())?;
         let (offsets, joints, weights) = self.skin.clone();
         let weights = SkinWeights::new(offsets, joints, weights, skeleton.len())?;
-        Character::new(self.cage.clone(), self.reduced.clone(), self.accessories.clone(), skeleton, weights)
+        let mean = self.mean.chunks_exact(3).map(Vec3::from_slice).collect();
+        Character::new(
+            self.cage.clone(),
+            self.reduced.clone(),
+            self.accessories.clone(),
+            skeleton,
+            weights,
+            mean,
+        )
     }
 
     /// The shape space.

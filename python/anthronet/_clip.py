@@ -1,0 +1,173 @@
+"""Clips: motions of a body's joints, frame by frame."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
+
+import numpy as np
+
+from . import _arguments, _native
+from ._library import Handle, Owner, call, described, lib, new_handle, text, text_of
+
+if TYPE_CHECKING:
+    from ._body import Body
+
+#: Names of the clips that the library carries.
+BUILTIN_CLIPS: Tuple[str, ...] = tuple(
+    text_of(lib.anthronet_clip_builtin_name, i) for i in range(lib.anthronet_clip_builtin_count())
+)
+
+_WRAPS = {"once": _native.WRAP_ONCE, "loop": _native.WRAP_LOOP, "travel": _native.WRAP_TRAVEL}
+
+
+class Clip(Owner):
+    """A motion of a body's joints, frame by frame. Immutable; may be used by many threads.
+
+    Made by `builtin_clip`, `Motion.retarget` and the methods below. Joints are those of the body, in its order: rows of
+    seven float32, a unit quaternion x, y, z, w and a translation in metres.
+    """
+
+    _info: Any
+    _name: str
+    _report: Optional[Dict[str, Any]]
+
+    @classmethod
+    def _of(cls, handle: Handle, report: Optional[Dict[str, Any]] = None) -> Clip:
+        self = cls.__new__(cls)
+        info = described(_native.ClipInfo)
+        call(lib.anthronet_clip_describe, handle, ctypes.byref(info))
+        self._handle, self._info, self._name, self._report = handle, info, text(info.name), report
+        return self
+
+    @classmethod
+    def _make(cls, make: Any, *arguments: Any) -> Clip:
+        return cls._of(new_handle(make, lib.anthronet_clip_free, *arguments))
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._name
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames."""
+        return self._info.frame_count
+
+    @property
+    def joint_count(self) -> int:
+        """Number of joints."""
+        return self._info.joint_count
+
+    @property
+    def frames_per_second(self) -> float:
+        """Frames per second."""
+        return self._info.frames_per_second
+
+    @property
+    def duration(self) -> float:
+        """From the first frame to the last, seconds."""
+        return self._info.duration
+
+    @property
+    def report(self) -> Optional[Dict[str, Any]]:
+        """How the motion came onto the body: which joint drives which, what drives nothing, how far directions, limits
+        and feet are off. None of a clip that was not retargeted."""
+        return self._report
+
+    def sample(
+        self,
+        seconds: float,
+        wrap: str = "once",
+        relative: str = "parent",
+        space: str = "gltf",
+        out: Optional[np.ndarray] = None,
+    ) -> np.ndarray:
+        """The pose at a time: (joints, 7) float32.
+
+        Args:
+            seconds: the time.
+            wrap: `"once"` holds the first or last frame outside the duration, `"loop"` starts anew, `"travel"` starts
+                anew from where the last round ended.
+            relative: `"parent"`, as animation tracks have it, or `"model"`, as skinning takes it.
+            space: `"gltf"`, `"blender"` or `"unity"`.
+            out: a packed float32 array of that shape, which is filled and returned instead of a new one.
+
+        Raises:
+            RequestError: `seconds` is not finite.
+            TypeError, ValueError: an argument is none of these.
+        """
+        wrapped = _arguments.choice(_WRAPS, wrap, "wrap")
+        to, of = _arguments.choice(_arguments.RELATIVE, relative, "relative"), _space(space)
+        joints = _packed(out, (self.joint_count, 7))
+        seconds = _arguments.number(seconds, "seconds")
+        call(lib.anthronet_clip_sample, self._open, seconds, wrapped, to, of, joints.ctypes.data, self.joint_count)
+        return joints
+
+    def bake(self, relative: str = "parent", space: str = "gltf", out: Optional[np.ndarray] = None) -> np.ndarray:
+        """All frames: (frames, joints, 7) float32. Arguments and errors as of `sample`."""
+        to, of = _arguments.choice(_arguments.RELATIVE, relative, "relative"), _space(space)
+        joints = _packed(out, (self.frame_count, self.joint_count, 7))
+        count = self.frame_count * self.joint_count
+        call(lib.anthronet_clip_bake, self._open, to, of, joints.ctypes.data, count)
+        return joints
+
+    def resample(self, frames_per_second: float) -> Clip:
+        """The clip at another rate."""
+        rate = _arguments.number(frames_per_second, "frames_per_second")
+        return self._make(lib.anthronet_clip_resample, self._open, rate)
+
+    def in_place(self) -> Clip:
+        """The clip without its way over the ground."""
+        return self._make(lib.anthronet_clip_in_place, self._open)
+
+    def looped(self, seconds: float) -> Clip:
+        """The clip with its end going over into its beginning during the last `seconds`."""
+        return self._make(lib.anthronet_clip_looped, self._open, _arguments.number(seconds, "seconds"))
+
+    def crossfade(self, other: Clip, seconds: float) -> Clip:
+        """This clip and another of the same body one after the other, overlapping by `seconds`."""
+        second = _arguments.instance(other, Clip, "other")._open
+        return self._make(lib.anthronet_clip_crossfade, self._open, second, _arguments.number(seconds, "seconds"))
+
+    def blend(self, other: Clip, weight: float) -> Clip:
+        """This clip and another of the same body at once: `weight` 0 is this one, 1 the other."""
+        second = _arguments.instance(other, Clip, "other")._open
+        return self._make(lib.anthronet_clip_blend, self._open, second, _arguments.number(weight, "weight"))
+
+    def __repr__(self) -> str:
+        return f"<Clip {self.name!r}, {self.frame_count} frames at {self.frames_per_second:g}/s>"
+
+
+def builtin_clip(name: str, body: Body) -> Clip:
+    """A clip that the library carries, for a body.
+
+    Args:
+        name: one of `BUILTIN_CLIPS`.
+        body: whose joints move.
+
+    Raises:
+        Error: there is no such clip; the message lists those that there are.
+    """
+    from ._body import Body
+
+    encoded = _arguments.text(name, "name")
+    body = _arguments.instance(body, Body, "body")
+    return Clip._make(lib.anthronet_clip_builtin, encoded, len(encoded), body._open)
+
+
+def _space(space: str) -> int:
+    return _arguments.choice(_arguments.SPACES, space, "space")
+
+
+def _packed(out: Optional[np.ndarray], shape: Tuple[int, ...]) -> np.ndarray:
+    if out is None:
+        return np.empty(shape, np.float32)
+    array = _arguments.instance(out, np.ndarray, "out")
+    if array.dtype != np.float32 or not array.dtype.isnative:
+        raise TypeError(f"out: expected an array of float32, got {array.dtype}")
+    if array.shape != shape:
+        raise ValueError(f"out: expected an array of shape {shape}, got {array.shape}")
+    if not (array.flags.c_contiguous and array.flags.aligned and array.flags.writeable):
+        raise ValueError("out: expected a packed array that can be written")
+    return array

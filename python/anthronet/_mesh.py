@@ -1,0 +1,264 @@
+"""Meshes: the surfaces of a body as arrays."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, Dict, Iterator, Optional, Tuple
+
+import numpy as np
+
+from . import _arguments, _native
+from ._library import Handle, Owner, call, described, lib, new_handle, number_of, text
+
+if TYPE_CHECKING:
+    from ._body import Body
+    from ._skin import Skinner
+
+_LAYOUTS = {"render": _native.LAYOUT_RENDER, "model": _native.LAYOUT_MODEL}
+_ATTRIBUTES = {
+    "positions": _native.ATTRIBUTE_POSITIONS,
+    "normals": _native.ATTRIBUTE_NORMALS,
+    "uvs": _native.ATTRIBUTE_UVS,
+    "triangles": _native.ATTRIBUTE_TRIANGLES,
+    "joints": _native.ATTRIBUTE_JOINTS,
+    "weights": _native.ATTRIBUTE_WEIGHTS,
+    "sources": _native.ATTRIBUTE_SOURCES,
+    "quads": _native.ATTRIBUTE_QUADS,
+    "quad_uvs": _native.ATTRIBUTE_QUAD_UVS,
+    "triangle_uvs": _native.ATTRIBUTE_TRIANGLE_UVS,
+}
+_TYPES = {
+    _native.TYPE_F32: np.dtype(np.float32),
+    _native.TYPE_U32: np.dtype(np.uint32),
+    _native.TYPE_U16: np.dtype(np.uint16),
+}
+
+
+class Mesh(Owner):
+    """The surfaces of a body: `parts`, the body first, then eyes, teeth, tongue and lashes.
+
+    Made by `Body.mesh`. May be used by many threads.
+    """
+
+    _options: Any
+    _parts: Tuple[Part, ...]
+
+    @classmethod
+    def _new(
+        cls, body: Body, lod: int, influences: int, space: str, layout: str, body_only: bool, skin_tone: int
+    ) -> Mesh:
+        self = cls.__new__(cls)
+        self._options = described(
+            _native.MeshOptions,
+            lod=_arguments.whole(lod, "lod"),
+            influences=_arguments.whole(influences, "influences"),
+            space=_arguments.choice(_arguments.SPACES, space, "space"),
+            layout=_arguments.choice(_LAYOUTS, layout, "layout"),
+            body_only=_arguments.flag(body_only, "body_only"),
+            skin_tone=_arguments.whole(skin_tone, "skin_tone"),
+        )
+        self._handle = self._surfaces(body)
+        count = number_of(lib.anthronet_mesh_part_count, self._handle)
+        self._parts = tuple(Part(self, i) for i in range(count))
+        return self
+
+    def _surfaces(self, body: Body) -> Handle:
+        return new_handle(lib.anthronet_mesh_new, lib.anthronet_mesh_free, body._open, ctypes.byref(self._options))
+
+    def update(self, body: Body) -> None:
+        """Makes the mesh that of another body, with the options that it was made with.
+
+        Arrays got before keep the surface of before and stay valid: the new surface has memory of its own, so that
+        threads which are reading the old one are not in its way. Get the arrays again to see it.
+        """
+        from ._body import Body
+
+        body = _arguments.instance(body, Body, "body")
+        self._open
+        self._handle = self._surfaces(body)
+
+    @property
+    def parts(self) -> Tuple[Part, ...]:
+        """The surfaces, the body first."""
+        return self._parts
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+    def __getitem__(self, index: int) -> Part:
+        return self._parts[index]
+
+    def __iter__(self) -> Iterator[Part]:
+        return iter(self._parts)
+
+    def skinner(self, part: int = 0) -> Skinner:
+        """Makes a part ready to be posed; what was made of the mesh before stays as it is when the mesh changes.
+
+        Args:
+            part: its place in `parts`.
+        """
+        from ._skin import Skinner
+
+        return Skinner._new(self._open, _arguments.whole(part, "part"))
+
+    def __repr__(self) -> str:
+        return f"<Mesh of {', '.join(part.name for part in self._parts)}>"
+
+
+class Part:
+    """One surface with one material: a part of a mesh.
+
+    Its arrays are read-only views of the library's memory. They keep that memory alive by themselves, after the mesh
+    was closed and updated too. `triangles`, `quads` and the like count from 0 within the part.
+    """
+
+    __slots__ = ("_mesh", "_index", "_described", "_name")
+
+    def __init__(self, mesh: Mesh, index: int) -> None:
+        part = described(_native.MeshPart)
+        call(lib.anthronet_mesh_describe_part, mesh._open, index, ctypes.byref(part))
+        self._mesh, self._index, self._described, self._name = mesh, index, part, text(part.name)
+
+    @property
+    def name(self) -> str:
+        """Its name, such as `Body`."""
+        return self._name
+
+    @property
+    def base_color(self) -> Tuple[float, float, float, float]:
+        """Colour of the material: linear red, green, blue and alpha, 0 to 1."""
+        return tuple(self._described.base_color)
+
+    @property
+    def roughness(self) -> float:
+        """Perceptual roughness of the material, 0 to 1."""
+        return self._described.roughness
+
+    @property
+    def double_sided(self) -> bool:
+        """Whether back faces are drawn too."""
+        return bool(self._described.double_sided)
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+        return self._described.vertex_count
+
+    @property
+    def positions(self) -> np.ndarray:
+        """(vertices, 3) float32, metres."""
+        return self._view("positions")
+
+    @property
+    def normals(self) -> np.ndarray:
+        """(vertices, 3) float32, unit length."""
+        return self._view("normals")
+
+    @property
+    def uvs(self) -> np.ndarray:
+        """(vertices, 2) float32 in the render layout, (texture coordinates, 2) in the model layout; v grows downwards in
+        glTF space and upwards in the others."""
+        return self._view("uvs")
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(triangles, 3) uint32: vertices. In the model layout the faces that are no quads: none at levels 0 and 1."""
+        return self._view("triangles")
+
+    @property
+    def quads(self) -> np.ndarray:
+        """(quads, 4) uint32: vertices. Model layout alone."""
+        return self._view("quads")
+
+    @property
+    def quad_uvs(self) -> np.ndarray:
+        """(quads, 4) uint32: texture coordinates of the corners. Model layout alone."""
+        return self._view("quad_uvs")
+
+    @property
+    def triangle_uvs(self) -> np.ndarray:
+        """(triangles, 3) uint32: texture coordinates of the corners. Model layout alone."""
+        return self._view("triangle_uvs")
+
+    @property
+    def joints(self) -> np.ndarray:
+        """(vertices, influences) uint16: joints of the body."""
+        return self._view("joints")
+
+    @property
+    def weights(self) -> np.ndarray:
+        """(vertices, influences) float32: weights of those joints, descending, of sum 1."""
+        return self._view("weights")
+
+    @property
+    def sources(self) -> np.ndarray:
+        """(vertices,) uint32: which vertex of the model each one is."""
+        return self._view("sources")
+
+    def read(self, attribute: str, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Copies an array of the part.
+
+        Args:
+            attribute: its name, such as `"positions"`.
+            out: where to: an array of the same shape and type, of any strides, such as a field of a structured array;
+                None for a new one. Returned.
+
+        Raises:
+            TypeError, ValueError: there is no such array, or `out` is of another shape or type, or read-only.
+        """
+        number = _arguments.choice(_ATTRIBUTES, attribute, "attribute")
+        handle = self._mesh._open
+        view, dtype, shape = self._where(handle, attribute)
+        if out is None:
+            out = np.empty(shape, dtype)
+        array = _arguments.instance(out, np.ndarray, "out")
+        if array.dtype != dtype:
+            raise TypeError(f"out: expected an array of {dtype}, got {array.dtype}")
+        if array.shape != shape:
+            raise ValueError(f"out: expected an array of shape {shape}, got {array.shape}")
+        if not array.flags.writeable:
+            raise ValueError("out: expected an array that can be written, got one that is read-only")
+        if not _arguments.packed_rows(array):
+            array[...] = _array(view, dtype, shape, handle)
+        elif view.rows:
+            stride = array.strides[0] if len(array) > 1 else 0
+            bytes_ = _arguments.extent(array)
+            call(lib.anthronet_mesh_read, handle, self._index, number, array.ctypes.data, bytes_, stride)
+        return array
+
+    def _where(self, handle: Handle, attribute: str) -> Tuple[Any, np.dtype, Tuple[int, ...]]:
+        view = _native.View()
+        call(lib.anthronet_mesh_data, handle, self._index, _ATTRIBUTES[attribute], ctypes.byref(view))
+        shape = (view.rows,) if attribute == "sources" else (view.rows, view.columns)
+        return view, _TYPES[view.number_type], shape
+
+    def _view(self, attribute: str) -> np.ndarray:
+        handle = self._mesh._open
+        return _array(*self._where(handle, attribute), handle)
+
+    def __repr__(self) -> str:
+        return f"<Part {self.name!r}, {self.vertex_count} vertices>"
+
+
+class _Memory:
+    """Memory of the library's, in the words of numpy; arrays over it hold this, and this holds the handle."""
+
+    __slots__ = ("__array_interface__", "handle")
+
+    def __init__(self, address: int, dtype: np.dtype, shape: Tuple[int, ...], handle: Handle) -> None:
+        read_only = True
+        self.handle = handle
+        self.__array_interface__: Dict[str, Any] = {
+            "data": (address, read_only),
+            "shape": shape,
+            "typestr": dtype.str,
+            "version": 3,
+        }
+
+
+def _array(view: Any, dtype: np.dtype, shape: Tuple[int, ...], handle: Handle) -> np.ndarray:
+    if view.rows:
+        return np.asarray(_Memory(view.data, dtype, shape, handle))
+    array = np.empty(shape, dtype)
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,180 @@
+"""Motions: files of animation as they were read, before they come onto a body."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple
+
+from . import _arguments, _native
+from ._arguments import Path
+from ._clip import Clip
+from ._library import Handle, Owner, call, described, json_of, lib, new_handle, number_of, take_bytes, text_of
+
+if TYPE_CHECKING:
+    from ._body import Body
+
+_FINGERS = {
+    "source": _native.FINGERS_SOURCE,
+    "relaxed": _native.FINGERS_RELAXED,
+    "rest": _native.FINGERS_REST,
+}
+_UPS = {None: _native.UP_FOUND, "y": _native.UP_Y, "z": _native.UP_Z}
+
+
+class Motion(Owner):
+    """A motion file as it was read: at least one clip of the file's own skeleton. Immutable; may be used by many threads.
+
+    Made by `open_motion` and `Motion.from_bytes`.
+    """
+
+    @classmethod
+    def _make(cls, make: Any, *arguments: Any) -> Motion:
+        self = cls.__new__(cls)
+        self._handle = new_handle(make, lib.anthronet_motion_free, *arguments)
+        return self
+
+    @classmethod
+    def from_bytes(
+        cls,
+        data: Any,
+        name: str,
+        metres_per_unit: Optional[float] = None,
+        up: Optional[str] = None,
+        frames_per_second: Optional[float] = None,
+    ) -> Motion:
+        """Reads a motion file from memory.
+
+        Args:
+            data: bytes, or anything that has some.
+            name: the file's: its ending tells the format, and a clip without a name gets it.
+            metres_per_unit, up, frames_per_second: as of `open_motion`.
+        """
+        options = _options(metres_per_unit, up, frames_per_second)
+        content, encoded = _arguments.data(data, "data"), _arguments.text(name, "name")
+        return cls._make(
+            lib.anthronet_motion_open_memory,
+            content.ctypes.data,
+            len(content),
+            encoded,
+            len(encoded),
+            ctypes.byref(options),
+        )
+
+    @property
+    def clip_names(self) -> Tuple[str, ...]:
+        """The names of its clips."""
+        handle = self._open
+        count = number_of(lib.anthronet_motion_clip_count, handle)
+        return tuple(text_of(lib.anthronet_motion_clip_name, handle, i) for i in range(count))
+
+    @property
+    def report(self) -> Dict[str, Any]:
+        """How the file was understood: format, unit, axis, rate, how each was found, warnings. A copy."""
+        return json_of(lib.anthronet_motion_report, self._open)
+
+    def retarget(
+        self,
+        body: Body,
+        clip: int = 0,
+        fingers: str = "source",
+        limits: bool = True,
+        feet: bool = True,
+        in_place: bool = False,
+        looped: bool = False,
+        root_motion: bool = False,
+        mapping: Optional[Mapping[str, Optional[str]]] = None,
+        frames_per_second: Optional[float] = None,
+    ) -> Clip:
+        """Brings one clip onto a body.
+
+        Args:
+            body: whose joints move.
+            clip: its place in `clip_names`.
+            fingers: `"source"` for the file's where it has any, `"relaxed"` for hands at ease, `"rest"` for the bind pose.
+            limits: keeps joints within what people's joints do.
+            feet: keeps feet on the floor, without sliding.
+            in_place: leaves out the way over the ground.
+            looped: makes the end meet the beginning.
+            root_motion: gives the way over the ground to the joint `Root` instead of the pelvis.
+            mapping: which joint of the source drives which of ours, `{"upperarm_l": "LeftArm", "jaw": None}`; the rest is
+                found.
+            frames_per_second: rate of the result; None for the motion's.
+
+        Returns:
+            A clip whose `report` says how it went.
+
+        Raises:
+            ArgumentError: there is no such clip.
+            Error: the joints cannot be matched, or the mapping names what there is not.
+        """
+        from ._body import Body
+
+        body = _arguments.instance(body, Body, "body")
+        said = b"" if mapping is None else json.dumps(dict(mapping)).encode()
+        kept = ctypes.create_string_buffer(said, max(len(said), 1))
+        options = described(
+            _native.RetargetOptions,
+            fingers=_arguments.choice(_FINGERS, fingers, "fingers"),
+            no_limits=1 - _arguments.flag(limits, "limits"),
+            no_feet=1 - _arguments.flag(feet, "feet"),
+            in_place=_arguments.flag(in_place, "in_place"),
+            looped=_arguments.flag(looped, "looped"),
+            root_motion=_arguments.flag(root_motion, "root_motion"),
+            mapping_length=len(said),
+            mapping_json=ctypes.addressof(kept) if said else None,
+            frames_per_second=_rate(frames_per_second),
+        )
+        made, report = Handle(), Handle()
+        call(
+            lib.anthronet_motion_retarget,
+            self._open,
+            _arguments.whole(clip, "clip"),
+            body._open,
+            ctypes.byref(options),
+            ctypes.byref(made),
+            ctypes.byref(report),
+        )
+        made.kept(lib.anthronet_clip_free)
+        return Clip._of(made, json.loads(take_bytes(report.kept(lib.anthronet_bytes_free))))
+
+    def __repr__(self) -> str:
+        return f"<Motion {', '.join(map(repr, self.clip_names))}>" if not self.closed else "<Motion, closed>"
+
+
+def open_motion(
+    path: Path,
+    metres_per_unit: Optional[float] = None,
+    up: Optional[str] = None,
+    frames_per_second: Optional[float] = None,
+) -> Motion:
+    """Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc or .usdz.
+
+    Args:
+        path: of the file.
+        metres_per_unit: such as 0.01 for centimetres; None for what the file says, or its skeleton's size.
+        up: `"y"` or `"z"`; None for what the file says, or its skeleton's stance.
+        frames_per_second: the rate that frames were recorded at, and that curves are sampled at.
+
+    Raises:
+        FileError: the file is not what its ending says.
+        IoError: the system does not let it be read.
+        TypeError, ValueError: an argument does not fit.
+    """
+    options = _options(metres_per_unit, up, frames_per_second)
+    encoded = _arguments.path(path)
+    return Motion._make(lib.anthronet_motion_open_path, encoded, len(encoded), ctypes.byref(options))
+
+
+def _options(metres_per_unit: Optional[float], up: Optional[str], frames_per_second: Optional[float]) -> Any:
+    return described(
+        _native.MotionOptions,
+        up=_arguments.choice(_UPS, up, "up"),
+        metres_per_unit=0.0 if metres_per_unit is None else _arguments.positive(metres_per_unit, "metres_per_unit"),
+        frames_per_second=_rate(frames_per_second),
+    )
+
+
+def _rate(frames_per_second: Optional[float]) -> float:
+    # 0 asks the library for the default, which None does here.
+    return 0.0 if frames_per_second is None else _arguments.positive(frames_per_second, "frames_per_second")
