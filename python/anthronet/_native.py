@@ -237,6 +237,21 @@ class MotionOptions(Structure):
     ]
 
 
+class MotionSource(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("space", c_uint32),
+        ("joint_count", c_uint32),
+        ("frame_count", c_uint32),
+        ("frames_per_second", c_double),
+        ("name", Text),
+        ("joint_names", c_void_p),
+        ("parents", c_void_p),
+        ("rest", c_void_p),
+        ("frames", c_void_p),
+    ]
+
+
 class RetargetOptions(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -342,9 +357,15 @@ FUNCTIONS = {
     "anthronet_mesh_describe_part": (c_int32, [c_void_p, c_uint32, POINTER(MeshPart), POINTER(Error)]),
     "anthronet_mesh_data": (c_int32, [c_void_p, c_uint32, c_uint32, POINTER(View), POINTER(Error)]),
     "anthronet_mesh_read": (c_int32, [c_void_p, c_uint32, c_uint32, c_void_p, c_uint64, c_uint64, POINTER(Error)]),
+    "anthronet_mesh_add_blend_shape": (c_int32, [c_void_p, c_char_p, c_uint64, c_void_p, POINTER(Error)]),
+    "anthronet_mesh_blend_shape_count": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),
+    "anthronet_mesh_blend_shape_name": (c_int32, [c_void_p, c_uint32, POINTER(Text), POINTER(Error)]),
+    "anthronet_mesh_blend_shape_data": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, POINTER(View), POINTER(Error)]),
+    "anthronet_mesh_read_blend_shape": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, c_void_p, c_uint64, c_uint64, POINTER(Error)]),
     "anthronet_clip_builtin_count": (c_uint32, []),
     "anthronet_clip_builtin_name": (c_int32, [c_uint32, POINTER(Text), POINTER(Error)]),
     "anthronet_clip_builtin": (c_int32, [c_char_p, c_uint64, c_void_p, c_void_p, POINTER(Error)]),
+    "anthronet_clip_new": (c_int32, [c_void_p, c_char_p, c_uint64, c_double, c_uint32, c_void_p, c_uint64, c_void_p, POINTER(Error)]),
     "anthronet_clip_free": (None, [c_void_p]),
     "anthronet_clip_describe": (c_int32, [c_void_p, POINTER(ClipInfo), POINTER(Error)]),
     "anthronet_clip_sample": (c_int32, [c_void_p, c_double, c_uint32, c_uint32, c_uint32, c_void_p, c_uint32, POINTER(Error)]),
@@ -356,6 +377,7 @@ FUNCTIONS = {
     "anthronet_clip_crossfade": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, POINTER(Error)]),
     "anthronet_motion_open_path": (c_int32, [c_char_p, c_uint64, POINTER(MotionOptions), c_void_p, POINTER(Error)]),
     "anthronet_motion_open_memory": (c_int32, [c_void_p, c_uint64, c_char_p, c_uint64, POINTER(MotionOptions), c_void_p, POINTER(Error)]),
+    "anthronet_motion_new": (c_int32, [POINTER(MotionSource), c_void_p, POINTER(Error)]),
     "anthronet_motion_free": (None, [c_void_p]),
     "anthronet_motion_clip_count": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),
     "anthronet_motion_clip_name": (c_int32, [c_void_p, c_uint32, POINTER(Text), POINTER(Error)]),
