@@ -9,8 +9,8 @@ use std::ffi::{c_char, c_void};
 use std::process::Command;
 use std::sync::Mutex;
 
-use library::{Error, ErrorOut, beside};
 use libloading::Library;
+use library::{Error, ErrorOut, beside};
 
 const PANIC: i32 = 901;
 const LEVEL_ERROR: u32 = 2;

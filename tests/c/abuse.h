@@ -22,6 +22,7 @@ void test_null_in_makers(const fixture *f);
 void test_null_in_requests(const fixture *f);
 void test_null_in_bodies(const fixture *f);
 void test_null_in_meshes(const fixture *f);
+void test_blend_shape_arguments(const fixture *f);
 void test_null_in_clips(const fixture *f);
 void test_null_in_motions(const fixture *f);
 void test_crooked_pointers(const fixture *f);

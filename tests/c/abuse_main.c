@@ -14,6 +14,7 @@ int main(int argc, char **argv) {
         {"NULL in requests", test_null_in_requests},
         {"NULL in bodies and joints", test_null_in_bodies},
         {"NULL in meshes, skinners and files", test_null_in_meshes},
+        {"NULL and wrong numbers for blend shapes", test_blend_shape_arguments},
         {"NULL in clips", test_null_in_clips},
         {"NULL in motions", test_null_in_motions},
         {"pointers that are not aligned", test_crooked_pointers},

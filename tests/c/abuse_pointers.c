@@ -184,6 +184,42 @@ void test_null_in_meshes(const fixture *f) {
     REFUSED_OUT(NONE, bytes, anthronet_export_memory(f->body, &options, TEXT("glb"), &bytes, &fault));
 }
 
+void test_blend_shape_arguments(const fixture *f) {
+    anthronet_mesh_options options;
+    anthronet_mesh *mesh = NULL;
+    anthronet_text text;
+    anthronet_view view;
+    uint32_t number;
+    char row[12];
+    SIZED(options);
+    options.lod = 3;
+    OK(anthronet_mesh_new(f->body, &options, &mesh, &fault));
+    REFUSED(NONE, anthronet_mesh_add_blend_shape(NULL, TEXT("a"), f->body, &fault));
+    REFUSED(NONE, anthronet_mesh_add_blend_shape(mesh, NULL, 1, f->body, &fault));
+    REFUSED(NONE, anthronet_mesh_add_blend_shape(mesh, TEXT("a"), NULL, &fault));
+    REFUSED(ANTHRONET_ERROR_TEXT, anthronet_mesh_add_blend_shape(mesh, TEXT("\xFF"), f->body, &fault));
+    REFUSED(ANTHRONET_ERROR_SIZE, anthronet_mesh_add_blend_shape(mesh, "a", UINT64_MAX, f->body, &fault));
+    REFUSED_OUT(NONE, number, anthronet_mesh_blend_shape_count(NULL, &number, &fault));
+    OK(anthronet_mesh_blend_shape_count(mesh, &number, &fault));
+    CHECK(number == 0, "what was refused is there");
+    OK(anthronet_mesh_add_blend_shape(mesh, TEXT("a"), f->body, &fault));
+    REFUSED(NONE, anthronet_mesh_blend_shape_count(mesh, NULL, &fault));
+    REFUSED_OUT(NONE, text, anthronet_mesh_blend_shape_name(NULL, 0, &text, &fault));
+    REFUSED(NONE, anthronet_mesh_blend_shape_name(mesh, 0, NULL, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_INDEX, text, anthronet_mesh_blend_shape_name(mesh, 1, &text, &fault));
+    REFUSED_OUT(NONE, view, anthronet_mesh_blend_shape_data(NULL, 0, 0, 0, &view, &fault));
+    REFUSED(NONE, anthronet_mesh_blend_shape_data(mesh, 0, 0, 0, NULL, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_INDEX, view, anthronet_mesh_blend_shape_data(mesh, 1, 0, 0, &view, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_INDEX, view, anthronet_mesh_blend_shape_data(mesh, 0, 99, 0, &view, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_ENUM, view, anthronet_mesh_blend_shape_data(mesh, 0, 0, 2, &view, &fault));
+    REFUSED_OUT(NONE, row, anthronet_mesh_read_blend_shape(NULL, 0, 0, 0, row, 12, 0, &fault));
+    REFUSED(NONE, anthronet_mesh_read_blend_shape(mesh, 0, 0, 0, NULL, 1 << 24, 0, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_SIZE, row, anthronet_mesh_read_blend_shape(mesh, 0, 0, 0, row, 12, 0, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_SIZE, row, anthronet_mesh_read_blend_shape(mesh, 0, 0, 0, row, 12, 11, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_INDEX, row, anthronet_mesh_read_blend_shape(mesh, 7, 0, 0, row, 12, 0, &fault));
+    anthronet_mesh_free(mesh);
+}
+
 void test_null_in_clips(const fixture *f) {
     anthronet_clip *clip;
     anthronet_clip_info info;

@@ -19,6 +19,7 @@ void test_meshes(const fixture *f);
 void test_mesh_options(const fixture *f);
 void test_mesh_read(const fixture *f);
 void test_mesh_update(const fixture *f);
+void test_blend_shapes(const fixture *f);
 void test_joints(const fixture *f);
 void test_humanoid(const fixture *f);
 

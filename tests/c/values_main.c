@@ -17,6 +17,7 @@ int main(int argc, char **argv) {
         {"mesh options", test_mesh_options},
         {"rows with a stride", test_mesh_read},
         {"a mesh made another body's", test_mesh_update},
+        {"blend shapes lead to another body", test_blend_shapes},
         {"joints of every space", test_joints},
         {"humanoid bones", test_humanoid},
         {"skinned at rest nothing moves", test_skin_at_rest},

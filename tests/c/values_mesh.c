@@ -226,6 +226,61 @@ void test_mesh_update(const fixture *f) {
     anthronet_request_free(request);
 }
 
+/* A mesh and its way to a man's is that man's mesh; updated, it has no ways left. */
+void test_blend_shapes(const fixture *f) {
+    anthronet_request *request = person(ANTHRONET_SEX_MALE, 1.72);
+    anthronet_body *man = NULL;
+    anthronet_mesh *mesh = NULL, *his = NULL;
+    anthronet_mesh_options options;
+    anthronet_view from, way, to;
+    anthronet_text name;
+    uint32_t count = 0, part, attribute;
+    uint64_t i;
+    double off = 0, far = 0;
+    float *copied;
+    SIZED(options);
+    options.lod = 1;
+    options.space = ANTHRONET_SPACE_BLENDER;
+    OK(anthronet_generate(f->model, request, &man, &fault));
+    OK(anthronet_mesh_new(f->body, &options, &mesh, &fault));
+    OK(anthronet_mesh_new(man, &options, &his, &fault));
+    OK(anthronet_mesh_add_blend_shape(mesh, TEXT("him"), man, &fault));
+    OK(anthronet_mesh_add_blend_shape(mesh, TEXT("herself"), f->body, &fault));
+    OK(anthronet_mesh_blend_shape_count(mesh, &count, &fault));
+    CHECK(count == 2, "%u blend shapes", count);
+    OK(anthronet_mesh_blend_shape_name(mesh, 0, &name, &fault));
+    CHECK(is_text(name, "him"), "the first has another name");
+    OK(anthronet_mesh_part_count(mesh, &count, &fault));
+    for (part = 0; part < count; part++) {
+        for (attribute = ANTHRONET_ATTRIBUTE_POSITIONS; attribute <= ANTHRONET_ATTRIBUTE_NORMALS; attribute++) {
+            OK(anthronet_mesh_data(mesh, part, attribute, &from, &fault));
+            OK(anthronet_mesh_data(his, part, attribute, &to, &fault));
+            OK(anthronet_mesh_blend_shape_data(mesh, 0, part, attribute, &way, &fault));
+            if (!CHECK(way.rows == from.rows && to.rows == from.rows && way.columns == 3, "part %u", part)) continue;
+            copied = (float *)room(12 * (size_t)way.rows);
+            OK(anthronet_mesh_read_blend_shape(mesh, 0, part, attribute, copied, 12 * way.rows, 0, &fault));
+            for (i = 0; i < 3 * from.rows; i++) {
+                double at = (double)((const float *)from.data)[i] + copied[i];
+                off = fmax(off, fabs(at - ((const float *)to.data)[i]));
+                if (attribute == ANTHRONET_ATTRIBUTE_POSITIONS) far = fmax(far, fabs((double)copied[i]));
+            }
+            CHECK(memcmp(copied, way.data, 12 * (size_t)way.rows) == 0, "copied and looked at differ");
+            free(copied);
+        }
+    }
+    CHECK(off < 1e-5, "at weight 1 the mesh is off by %g", off);
+    CHECK(far > 0.01, "the way is at most %g m", far);
+    REFUSED(ANTHRONET_ERROR_INVALID, anthronet_mesh_add_blend_shape(mesh, TEXT("him"), man, &fault));
+    REFUSED(ANTHRONET_ERROR_INVALID, anthronet_mesh_add_blend_shape(mesh, NULL, 0, man, &fault));
+    OK(anthronet_mesh_update(mesh, man, &fault));
+    OK(anthronet_mesh_blend_shape_count(mesh, &count, &fault));
+    CHECK(count == 0, "%u blend shapes after an update", count);
+    anthronet_mesh_free(mesh);
+    anthronet_mesh_free(his);
+    anthronet_body_free(man);
+    anthronet_request_free(request);
+}
+
 /* The largest difference of a product of two column-major matrices from the identity. */
 static double off_identity(const float *a, const float *b) {
     double worst = 0;
