@@ -4,7 +4,7 @@
 //!   CMake and Ninja)
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
-//! Godot comes from the system's packages.
+//! Godot and the compilers of C and C++ with valgrind come from the system's packages.
 //!
 //! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
 
@@ -31,6 +31,9 @@ const BLENDER_LIBRARIES: &[&str] = &[
 const BLENDER: &str = "5.0.1";
 /// The older ones that the extension supports, each in a virtual environment of its own.
 const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
+/// What builds and watches the consumers of the C ABI, and the packages of Debian and Ubuntu that have it.
+const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
+const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
 
 /// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
 pub(crate) struct Environment {
@@ -42,6 +45,8 @@ pub(crate) struct Environment {
     pub(crate) node: Result<(PathBuf, PathBuf), String>,
     /// The headless Godot 3.
     pub(crate) godot: Result<PathBuf, String>,
+    /// Compilers of C and C++ with sanitizers, valgrind and binutils.
+    pub(crate) c: Result<(), String>,
 }
 
 impl Environment {
@@ -105,6 +110,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
                 blender: Err(reason.clone()),
                 node: Err(reason),
                 godot: godot(),
+                c: c_programs(),
             });
         }
     };
@@ -114,7 +120,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
         (major, minor) => Err(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}")),
     };
     let node = node_packages(&home.join("node"), &python)?;
-    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot() })
+    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot(), c: c_programs() })
 }
 
 /// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
@@ -204,6 +210,18 @@ fn godot() -> Result<PathBuf, String> {
         starts()?;
     }
     Ok(program.into())
+}
+
+/// Compilers, valgrind and binutils, installed where that is needed and allowed.
+pub(crate) fn c_programs() -> Result<(), String> {
+    if !cfg!(target_os = "linux") {
+        return Err("the consumers in C are built and watched on Linux alone".to_owned());
+    }
+    let missing =
+        || C_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
+    let Some(name) = missing() else { return Ok(()) };
+    apt_install(C_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
+    missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
 }
 
 /// Installs system packages where that is possible without asking anybody.
