@@ -151,8 +151,8 @@ class Motion(Owner):
             in_place: leaves out the way over the ground.
             looped: makes the end meet the beginning.
             root_motion: gives the way over the ground to the joint `Root` instead of the pelvis.
-            mapping: which joint of the source drives which of ours, `{"upperarm_l": "LeftArm", "jaw": None}`; the rest is
-                found.
+            mapping: which joint of the source drives which of ours, or nothing: `{"LeftArm": "upperarm_l", "Jaw": None}`;
+                the rest is found.
             frames_per_second: rate of the result; None for the motion's.
 
         Returns:

@@ -2,6 +2,8 @@
 //!
 //! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
 //!   CMake and Ninja)
+//! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
+//! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
 //! Godot and the compilers of C and C++ with valgrind come from the system's packages.
@@ -170,6 +172,57 @@ fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
         tools::run(Command::new(&python).args(pip).arg(&requirements))
     })?;
     Ok(python)
+}
+
+/// The versions of Python that the Python package is tested with: first the one that Blender 5.0 has.
+pub(crate) const PYTHONS: [&str; 5] = ["3.11", "3.9", "3.10", "3.12", "3.13"];
+
+/// Any Python new enough for the tests; nothing is installed for it.
+pub(crate) fn python() -> Outcome<PathBuf> {
+    Ok(find_python()?.0)
+}
+
+/// Python of a version in an environment with a wheel of ours and numpy, and nothing else. The outer error is a failure,
+/// the inner a reason to skip.
+pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf, String>> {
+    let Some(base) = python_of(version) else {
+        return Ok(Err(format!("there is no Python {version}: neither in the path nor of pyenv")));
+    };
+    let venv = tools::target().join("test-env").join(format!("python{version}"));
+    let python = program(&venv, "python");
+    let requirements = tools::root().join("tests/requirements.txt");
+    let pip = |arguments: &[&str]| {
+        let mut command = Command::new(&python);
+        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(arguments);
+        command
+    };
+    let made_from = format!("{}\n{}", base.display(), tools::read(&requirements)?);
+    installed_once(&venv, &made_from, || {
+        tools::run(Command::new(&base).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        tools::run(pip(&["numpy", "--constraint"]).arg(&requirements))
+    })?;
+    // The wheel is another one each time, its number is not.
+    tools::run(pip(&["--force-reinstall", "--no-deps"]).arg(wheel))?;
+    Ok(Ok(python))
+}
+
+/// A Python of exactly this version, from the path or among those of pyenv.
+fn python_of(version: &str) -> Option<PathBuf> {
+    let is = |python: &Path| {
+        let script = "import sys; print('%d.%d' % sys.version_info[:2])";
+        tools::output(Command::new(python).args(["-c", script])).is_ok_and(|found| found.trim() == version)
+    };
+    let named = PathBuf::from(format!("python{version}"));
+    if is(&named) {
+        return Some(named);
+    }
+    let pyenv = std::env::var_os("PYENV_ROOT").map(PathBuf::from);
+    let pyenv = pyenv.or_else(|| Some(std::env::home_dir()?.join(".pyenv")))?;
+    let mut installed: Vec<_> = std::fs::read_dir(pyenv.join("versions")).ok()?.flatten().collect();
+    installed.sort_by_key(std::fs::DirEntry::file_name);
+    let of_version = |name: &str| name.strip_prefix(version).is_some_and(|rest| rest.starts_with('.'));
+    installed.retain(|entry| of_version(&entry.file_name().to_string_lossy()));
+    installed.into_iter().map(|entry| program(&entry.path(), "python")).find(|python| is(python))
 }
 
 /// Imports Blender, installing its shared libraries where that is needed and allowed.

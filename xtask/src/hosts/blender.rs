@@ -2,20 +2,13 @@
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::package_blender::package_blender;
+use crate::package::package_blender;
 use crate::tools::{self, Outcome};
 use std::path::Path;
 use std::process::Command;
 
-/// Runs `tests/blender_addon.py` in each Blender; `wheel` is the Python package.
-pub(crate) fn extension(
-    anthronet: &Path,
-    wheel: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Outcome {
-    let archive = match package_blender(environment, anthronet, wheel)? {
+pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+    let archive = match package_blender(environment, anthronet)? {
         Ok(archive) => archive,
         Err(reason) => {
             tally.skip("Blender extension", &reason);

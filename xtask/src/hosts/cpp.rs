@@ -5,7 +5,7 @@ use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::package_cpp::package_cpp;
+use crate::package::package_cpp;
 use crate::tools::{self, Outcome};
 
 /// A person with something given and something drawn.

@@ -7,6 +7,7 @@ mod animation;
 mod blender;
 mod c;
 mod cpp;
+mod python;
 mod skin;
 mod tally;
 mod usd;
@@ -38,6 +39,8 @@ pub(crate) fn run() -> Outcome {
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
     c::run(&environment.c, &folder, &mut tally)?;
     cpp::run(&anthronet, &environment, &folder, &mut tally)?;
+    python::run(&anthronet, &environment, &folder, &mut tally)?;
+    blender::run(&anthronet, &environment, &folder, &mut tally)?;
     close(&tally)
 }
 

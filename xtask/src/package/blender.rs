@@ -1,5 +1,6 @@
 //! `cargo xtask package blender`: the extension with its wheel, built and validated by Blender's own tool.
 
+use super::python::package_python;
 use crate::environment::Environment;
 use crate::tools::{self, Outcome};
 use std::path::{Path, PathBuf};
@@ -8,17 +9,17 @@ use std::process::Command;
 /// Where the wheel lies in the extension, as `blender_manifest.toml` names it.
 const WHEELS: &str = "wheels";
 
-/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, a wheel and the command line, which tells what
-/// the model's measures are.
+/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the command line, which tells
+/// what the model's measures are. The inner error is a reason for which this machine cannot.
 pub(crate) fn package_blender(
     environment: &Environment,
     anthronet: &Path,
-    wheel: &Path,
 ) -> Outcome<Result<PathBuf, String>> {
     let python = match (&environment.python, &environment.blender) {
         (Ok(python), Ok(())) => python,
         (Err(reason), _) | (_, Err(reason)) => return Ok(Err(reason.clone())),
     };
+    let wheel = package_python(python)?;
     let source = tools::root().join("blender_addon");
     let stage = tools::target().join("dist/stage/anthronet");
     if stage.exists() {
@@ -32,7 +33,7 @@ pub(crate) fn package_blender(
     }
     let wheels = stage.join(WHEELS);
     std::fs::create_dir_all(&wheels).map_err(|e| format!("{}: cannot create: {e}", wheels.display()))?;
-    std::fs::copy(wheel, wheels.join(name)).map_err(|e| format!("{}: cannot copy: {e}", wheel.display()))?;
+    std::fs::copy(&wheel, wheels.join(name)).map_err(|e| format!("{}: cannot copy: {e}", wheel.display()))?;
     tools::write(&stage.join("data/measures.json"), &measures(anthronet)?)?;
 
     let archive =
@@ -49,7 +50,6 @@ pub(crate) fn package_blender(
         archive.as_ref(),
     ])?;
     run(&["validate".as_ref(), archive.as_ref()])?;
-    println!("{}", archive.display());
     Ok(Ok(archive))
 }
 
