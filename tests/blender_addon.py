@@ -442,7 +442,7 @@ def picturing():
     people = (
         (dict(sex="FEMALE", height=1.62, hip_circumference=1.08, skin_tone=7), "WALK", 9, -0.95),
         (dict(sex="MALE", height=1.90, chest_circumference=1.12, skin_tone=3), "WAVE", 40, 0.0),
-        (dict(sex="FEMALE", height=1.78, waist_circumference=0.68, skin_tone=9), "SQUAT", 32, 0.95),
+        (dict(sex="FEMALE", height=1.78, waist_circumference=0.68, skin_tone=9), "SQUAT", 24, 0.95),
     )
     for fields, clip, frame, place in people:
         character = add(**fields)
@@ -461,10 +461,10 @@ def picturing():
     world = bpy.data.worlds.new("sky")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs[0].default_value = (0.85, 0.88, 0.92, 1)
-    world.node_tree.nodes["Background"].inputs[1].default_value = 0.8
+    world.node_tree.nodes["Background"].inputs[1].default_value = 0.45
     scene.world = world
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.rotation_euler, sun.data.energy, sun.data.angle = (0.75, 0.1, 0.5), 3, 0.1
+    sun.rotation_euler, sun.data.energy, sun.data.angle = (0.75, 0.1, 0.5), 1.7, 0.1
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location, camera.rotation_euler = (0.0, -6.2, 1.35), (1.515, 0, 0)
     camera.data.lens = 62
@@ -474,7 +474,7 @@ def picturing():
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples, scene.cycles.seed = "CPU", 24, 1
     scene.cycles.use_denoising = False
-    scene.render.resolution_x, scene.render.resolution_y = 900, 620
+    scene.render.resolution_x, scene.render.resolution_y = 660, 455
     scene.view_settings.view_transform = "Standard"
     path = pictures / "blender_people.png"
     scene.render.filepath = str(path)

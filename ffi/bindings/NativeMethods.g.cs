@@ -618,7 +618,7 @@ namespace Anthronet.Native
         internal static extern void anthronet_mesh_free(anthronet_mesh* mesh);
 
         /// <summary>
-        ///  Number of parts: the body, then eyes, teeth, tongue and lashes.
+        ///  Number of parts: the body, then eyes and, at levels 0 and 1, teeth, tongue and lashes.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_part_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_part_count(anthronet_mesh* mesh, uint* out_count, anthronet_error* error);
@@ -712,7 +712,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_describe(anthronet_clip* clip, anthronet_clip_info* out_info, anthronet_error* error);
 
         /// <summary>
-        ///  The pose of a clip at a time, seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+        ///  The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
         ///  `ANTHRONET_RELATIVE_TO_…`.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_sample", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -1368,8 +1368,8 @@ namespace Anthronet.Native
         /// </summary>
         public uint mapping_length;
         /// <summary>
-        ///  Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Jaw": null}`; NULL
-        ///  to find all of them.
+        ///  Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+        ///  those that it does not name are found. NULL to find all of them.
         /// </summary>
         public byte* mapping_json;
         /// <summary>

@@ -516,8 +516,8 @@ typedef struct anthronet_retarget_options {
     uint32_t root_motion;
     // Bytes of `mapping_json`.
     uint32_t mapping_length;
-    // Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Jaw": null}`; NULL
-    // to find all of them.
+    // Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+    // those that it does not name are found. NULL to find all of them.
     const char *mapping_json;
     // Frames per second of the result; 0 keeps those of the motion.
     double frames_per_second;
@@ -862,7 +862,7 @@ anthronet_status anthronet_mesh_update(struct anthronet_mesh *mesh,
 // Frees a mesh; NULL is nothing.
 void anthronet_mesh_free(struct anthronet_mesh *mesh);
 
-// Number of parts: the body, then eyes, teeth, tongue and lashes.
+// Number of parts: the body, then eyes and, at levels 0 and 1, teeth, tongue and lashes.
 anthronet_status anthronet_mesh_part_count(const struct anthronet_mesh *mesh,
                                            uint32_t *out_count,
                                            struct anthronet_error *error);
@@ -963,7 +963,7 @@ anthronet_status anthronet_clip_describe(const struct anthronet_clip *clip,
                                          struct anthronet_clip_info *out_info,
                                          struct anthronet_error *error);
 
-// The pose of a clip at a time, seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+// The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
 // `ANTHRONET_RELATIVE_TO_…`.
 anthronet_status anthronet_clip_sample(const struct anthronet_clip *clip,
                                        double seconds,

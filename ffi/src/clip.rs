@@ -145,7 +145,7 @@ pub unsafe extern "C" fn anthronet_clip_describe(
     })
 }
 
-/// The pose of a clip at a time, seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+/// The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
 /// `ANTHRONET_RELATIVE_TO_…`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_sample(
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn anthronet_clip_sample(
     guard(error, || {
         let wrap = choice(&[Wrap::Once, Wrap::Loop, Wrap::Travel], wrap, "wrap")?;
         let (to_model, space) = (to_model(relative)?, space(in_space)?);
-        finite("seconds", seconds)?;
+        time(seconds)?;
         let clip = &read(clip, "clip")?.0;
         exactly("count", clip.rest().len(), count.into())?;
         let out = slice_mut(out_joints, count.into(), "out_joints")?;
@@ -262,6 +262,16 @@ pub unsafe extern "C" fn anthronet_clip_crossfade(
 /// Whether transforms are asked for relative to the model.
 fn to_model(relative: u32) -> Outcome<bool> {
     choice(&[false, true], relative, "relative")
+}
+
+/// A walk that goes on for longer than this leaves what a float holds.
+fn time(seconds: f64) -> Outcome {
+    const LONGEST: f64 = 1e9;
+    if seconds.abs() <= LONGEST {
+        return Ok(());
+    }
+    let message = format!("seconds: expected a number from -{LONGEST} to {LONGEST}, got {seconds}");
+    Err(Fault::new(ANTHRONET_ERROR_REQUEST, message))
 }
 
 fn finite(what: &str, value: f64) -> Outcome {

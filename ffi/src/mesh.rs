@@ -155,7 +155,7 @@ pub unsafe extern "C" fn anthronet_mesh_free(mesh: *mut anthronet_mesh) {
     free(mesh);
 }
 
-/// Number of parts: the body, then eyes, teeth, tongue and lashes.
+/// Number of parts: the body, then eyes and, at levels 0 and 1, teeth, tongue and lashes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_part_count(
     mesh: *const anthronet_mesh,

@@ -70,8 +70,8 @@ pub struct anthronet_retarget_options {
     pub root_motion: u32,
     /// Bytes of `mapping_json`.
     pub mapping_length: u32,
-    /// Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Jaw": null}`; NULL
-    /// to find all of them.
+    /// Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+    /// those that it does not name are found. NULL to find all of them.
     pub mapping_json: *const c_char,
     /// Frames per second of the result; 0 keeps those of the motion.
     pub frames_per_second: f64,

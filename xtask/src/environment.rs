@@ -1,10 +1,12 @@
 //! What the cross-boundary tests need, installed into `target/test-env` with pinned versions.
 //!
-//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module)
+//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
+//!   CMake and Ninja)
+//! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
 //! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
-//! Godot comes from the system's packages.
+//! Godot and the compilers of C and C++ with valgrind come from the system's packages.
 //!
 //! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
 
@@ -27,6 +29,14 @@ const BLENDER_LIBRARIES: &[&str] = &[
     "libxkbcommon0",
 ];
 
+/// The Blender that every test runs in; its version is that of `tests/requirements.txt`.
+const BLENDER: &str = "5.0.1";
+/// The older ones that the extension supports, each in a virtual environment of its own.
+const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
+/// What builds and watches the consumers of the C ABI, and the packages of Debian and Ubuntu that have it.
+const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
+const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
+
 /// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
 pub(crate) struct Environment {
     /// Python with numpy and scipy.
@@ -37,6 +47,8 @@ pub(crate) struct Environment {
     pub(crate) node: Result<(PathBuf, PathBuf), String>,
     /// The headless Godot 3.
     pub(crate) godot: Result<PathBuf, String>,
+    /// Compilers of C and C++ with sanitizers, valgrind and binutils.
+    pub(crate) c: Result<(), String>,
 }
 
 impl Environment {
@@ -46,6 +58,28 @@ impl Environment {
         let mut command = Command::new(program);
         command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
         Ok(command)
+    }
+
+    /// Python of every Blender that the extension supports, with its version, or why it is not there.
+    pub(crate) fn blenders(&self) -> Outcome<Vec<(&'static str, Result<PathBuf, String>)>> {
+        let newest = self.blender.clone().and_then(|()| self.python.clone());
+        let mut all = vec![(BLENDER, newest.clone())];
+        for version in OLDER_BLENDERS {
+            let found = match &newest {
+                Ok(python) => older_blender(python, version)?,
+                Err(reason) => Err(reason.clone()),
+            };
+            all.push((version, found));
+        }
+        Ok(all)
+    }
+
+    /// A program that the virtual environment brings, such as CMake.
+    pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
+        let python = self.python.as_ref().map_err(String::clone)?;
+        let folder = python.parent().unwrap_or(Path::new("."));
+        let found = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+        if found.is_file() { Ok(found) } else { Err(format!("{name} has no wheel for this platform")) }
     }
 
     /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to
@@ -78,6 +112,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
                 blender: Err(reason.clone()),
                 node: Err(reason),
                 godot: godot(),
+                c: c_programs(),
             });
         }
     };
@@ -87,7 +122,7 @@ pub(crate) fn prepare() -> Outcome<Environment> {
         (major, minor) => Err(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}")),
     };
     let node = node_packages(&home.join("node"), &python)?;
-    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot() })
+    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot(), c: c_programs() })
 }
 
 /// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
@@ -204,6 +239,20 @@ fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
     }
 }
 
+/// Python of an older Blender, in a virtual environment beside the others.
+fn older_blender(python: &Path, version: &str) -> Outcome<Result<PathBuf, String>> {
+    let venv = tools::target().join("test-env").join(format!("blender-{version}"));
+    let module = format!("bpy=={version}");
+    let blender = program(&venv, "python");
+    let needs = tools::root().join("tests/requirements-blender.txt");
+    installed_once(&venv, &format!("{module}\n{}", tools::read(&needs)?), || {
+        tools::run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"];
+        tools::run(Command::new(&blender).args(pip).arg(&module).arg("--requirement").arg(&needs))
+    })?;
+    Ok(import_blender(&blender)?.map(|()| blender))
+}
+
 /// Debian's Godot 3 without a window, installed where that is needed and allowed.
 fn godot() -> Result<PathBuf, String> {
     let program = "godot3-server";
@@ -214,6 +263,18 @@ fn godot() -> Result<PathBuf, String> {
         starts()?;
     }
     Ok(program.into())
+}
+
+/// Compilers, valgrind and binutils, installed where that is needed and allowed.
+pub(crate) fn c_programs() -> Result<(), String> {
+    if !cfg!(target_os = "linux") {
+        return Err("the consumers in C are built and watched on Linux alone".to_owned());
+    }
+    let missing =
+        || C_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
+    let Some(name) = missing() else { return Ok(()) };
+    apt_install(C_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
+    missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
 }
 
 /// Installs system packages where that is possible without asking anybody.

@@ -12,6 +12,8 @@ pub(crate) enum Part {
     Rust,
     /// Cross-boundary tests: the files in programs that are not ours
     Hosts,
+    /// Of those, the consumers of the C ABI alone
+    C,
 }
 
 /// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
@@ -22,10 +24,16 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
         failures.extend(check::run().err());
     }
     if wanted(Part::Rust) {
-        failures.extend(tools::run(cargo("test").args(["--workspace", "--all-features"])).err());
+        // Tests open the C library as a file, which cargo does not build for them.
+        let everything = ["--workspace", "--all-features"];
+        failures.extend(tools::run(cargo("build").args(everything).arg("--lib")).err());
+        failures.extend(tools::run(cargo("test").args(everything)).err());
     }
     if wanted(Part::Hosts) {
         failures.extend(hosts::run().err());
+    }
+    if only == Some(Part::C) {
+        failures.extend(hosts::run_c().err());
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
 }

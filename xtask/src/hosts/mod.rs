@@ -4,6 +4,9 @@
 //! `skipped NAME: why`; all its other lines are for the reader.
 
 mod animation;
+mod blender;
+mod c;
+mod cpp;
 mod python;
 mod skin;
 mod tally;
@@ -34,8 +37,22 @@ pub(crate) fn run() -> Outcome {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    c::run(&environment.c, &folder, &mut tally)?;
+    cpp::run(&anthronet, &environment, &folder, &mut tally)?;
     python::run(&anthronet, &environment, &folder, &mut tally)?;
+    blender::run(&anthronet, &environment, &folder, &mut tally)?;
+    close(&tally)
+}
 
+/// The consumers of the C ABI alone.
+pub(crate) fn run_c() -> Outcome {
+    let mut tally = Tally::default();
+    c::run(&environment::c_programs(), &tools::target().join("test-env/out"), &mut tally)?;
+    close(&tally)
+}
+
+/// Prints the counts.
+fn close(tally: &Tally) -> Outcome {
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
         0 => Ok(()),

@@ -17,7 +17,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             return Ok(());
         }
     };
-    let wheel = match package::python(python) {
+    let wheel = match package::package_python(python) {
         Ok(wheel) => wheel,
         Err(why) => {
             tally.case("the Python wheel", Err(why));

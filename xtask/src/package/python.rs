@@ -1,25 +1,8 @@
-//! `cargo xtask package`: what is handed to users, in `target/dist`.
+//! `cargo xtask package python`: the wheel, made by pip as a user would.
 
+use crate::tools::{self, Outcome, cargo};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-use crate::environment;
-use crate::tools::{self, Outcome, cargo};
-
-/// What can be packaged.
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Kind {
-    /// The wheel of the Python package, with the library inside
-    Python,
-}
-
-pub(crate) fn run(kind: Kind) -> Outcome {
-    let made = match kind {
-        Kind::Python => python(&environment::python()?)?,
-    };
-    println!("{}", made.display());
-    Ok(())
-}
 
 /// Builds the shared library as users get it and returns its path.
 pub(crate) fn library() -> Outcome<PathBuf> {
@@ -30,7 +13,7 @@ pub(crate) fn library() -> Outcome<PathBuf> {
 }
 
 /// The wheel of the Python package, made by pip as a user would.
-pub(crate) fn python(python: &Path) -> Outcome<PathBuf> {
+pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
     let library = library()?;
     let dist = tools::target().join("dist");
     let wheels = || -> Outcome<Vec<PathBuf>> {

@@ -1,0 +1,34 @@
+//! The library as a program finds it: a file that is opened.
+
+use std::path::PathBuf;
+
+use libloading::Library;
+
+/// `anthronet_error *`.
+pub type ErrorOut = *mut Error;
+
+/// `anthronet_error`.
+#[repr(C)]
+pub struct Error {
+    pub code: i32,
+    pub message: [u8; 512],
+}
+
+/// The file that the environment variable `ANTHRONET_LIBRARY` names, or what cargo has built beside the test.
+pub fn library() -> Library {
+    let path = std::env::var_os("ANTHRONET_LIBRARY").map_or_else(beside, PathBuf::from);
+    // SAFETY: it runs nothing when it is opened.
+    unsafe { Library::new(&path) }.unwrap_or_else(|e| {
+        panic!(
+            "{}: {e}; build it with `cargo build --workspace --all-features --lib --ignore-rust-version` \
+             or name another with ANTHRONET_LIBRARY",
+            path.display()
+        )
+    })
+}
+
+/// In the folder of the profile that the test was built with.
+pub fn beside() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.ancestors().nth(2).unwrap().join(libloading::library_filename("anthronet"))
+}

@@ -1,0 +1,174 @@
+//! The same request gives the same bytes through every door: this crate's library opened as any program opens it, and
+//! the Rust library itself; and a list for all other hosts to compare themselves with.
+//!
+//! The list lies in `target/tmp/same_bytes` after the test has run:
+//!
+//! - `requests.jsonl`: one request a line, as `anthronet_request_from_json` reads it.
+//! - `sha256.txt`: one line for each. Line i, counted from 0, is the SHA-256 in hexadecimal of the body as `glb` in
+//!   memory at level of detail i mod 4 and otherwise default options; or `error` and the code of the call that failed.
+//!
+//! A host reads the first, prints lines like those of the second, and is right when they are equal:
+//! `tests/c/same_bytes.c` is the shortest example.
+
+#![expect(unsafe_code, reason = "calls a C ABI")]
+
+mod library;
+
+use std::ffi::{c_char, c_void};
+use std::fmt::Write;
+use std::path::Path;
+
+use anthronet::condition::{Fill, Request};
+use anthronet::export::{Scene, SceneOptions, WriteOptions, scene_to_bytes};
+use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
+use anthronet::mesh::Lod;
+use anthronet::model::Model;
+use anthronet::random::Random;
+use libloading::{Library, Symbol};
+use library::{ErrorOut, library};
+use sha2::{Digest, Sha256};
+
+const COUNT: usize = 200;
+
+/// Both sexes and neither, from no measure to all of them, of somebody there could be and of nobody.
+fn requests(model: &Model) -> Vec<Request> {
+    let mut random = Random::new(4, 200);
+    (0..COUNT)
+        .map(|i| {
+            let sex = [Some(Sex::Female), Some(Sex::Male), None][i % 3];
+            let someone = Request { sex, seed: 1000 + i as u64, fill: Fill::Sample, ..Request::default() };
+            let body = model.generate(&someone).unwrap();
+            let mut request = Request { sex, nearest: i % 5 == 0, ..Request::default() };
+            let given = if i == COUNT - 1 { MEASURE_COUNT } else { i % 9 };
+            for _ in 0..given {
+                let place = random.bits() as usize % MEASURE_COUNT;
+                // In millimetres, as a tape says it. Every seventh request mixes its measures up, by up to two fifths.
+                let mixed = if i % 7 == 6 { 0.6 + 0.8 * random.uniform() } else { 1.0 };
+                let metres = (body.measurements()[place] * mixed * 1000.0).round() / 1000.0;
+                request.measures[MeasureId::from_index(place).unwrap().index()] = Some(metres);
+            }
+            if i % 2 == 1 {
+                request.seed = random.bits() >> 12;
+            }
+            if i % 4 >= 2 {
+                request.fill = Fill::Sample;
+            }
+            request
+        })
+        .collect()
+}
+
+fn hash(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").unwrap();
+        text
+    })
+}
+
+/// Through the Rust library.
+fn direct(model: &Model, request: &Request, lod: Lod) -> anthronet::Result<String> {
+    let body = model.generate(request)?;
+    let scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() })?;
+    Ok(hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?))
+}
+
+/// `anthronet_export_options` as far as this test goes: to the library the rest is zeros.
+#[repr(C)]
+struct ExportOptions {
+    struct_size: u32,
+    lod: u32,
+}
+
+type Handle = *mut c_void;
+type Open = unsafe extern "C" fn(*mut Handle, ErrorOut) -> i32;
+type FromJson = unsafe extern "C" fn(*const c_char, u64, *mut Handle, ErrorOut) -> i32;
+type Generate = unsafe extern "C" fn(Handle, Handle, *mut Handle, ErrorOut) -> i32;
+type Export =
+    unsafe extern "C" fn(Handle, *const ExportOptions, *const c_char, u64, *mut Handle, ErrorOut) -> i32;
+type Data = unsafe extern "C" fn(Handle, *mut *const u8, *mut u64, ErrorOut) -> i32;
+type Free = unsafe extern "C" fn(Handle);
+
+const NOBODY: ErrorOut = std::ptr::null_mut();
+
+/// The shared library with its model.
+struct Shared {
+    library: Library,
+    model: Handle,
+}
+
+impl Shared {
+    fn open() -> Self {
+        let library = library();
+        let mut model = std::ptr::null_mut();
+        // SAFETY: here and below, the types are those of the header, which the tests in C are compiled with.
+        let code = unsafe {
+            let open: Symbol<Open> = library.get("anthronet_model_open_embedded").unwrap();
+            open(&raw mut model, NOBODY)
+        };
+        assert_eq!(code, 0);
+        Self { library, model }
+    }
+
+    /// A hash, or the code of the call that failed.
+    fn hash(&self, json: &str, lod: u32) -> Result<String, i32> {
+        let done = |code| if code == 0 { Ok(()) } else { Err(code) };
+        let [mut request, mut body, mut bytes] = [std::ptr::null_mut(); 3];
+        let mut make = || unsafe {
+            let from_json: Symbol<FromJson> = self.library.get("anthronet_request_from_json").unwrap();
+            let generate: Symbol<Generate> = self.library.get("anthronet_generate").unwrap();
+            let export: Symbol<Export> = self.library.get("anthronet_export_memory").unwrap();
+            let data: Symbol<Data> = self.library.get("anthronet_bytes_data").unwrap();
+            done(from_json(json.as_ptr().cast(), json.len() as u64, &raw mut request, NOBODY))?;
+            done(generate(self.model, request, &raw mut body, NOBODY))?;
+            let options = ExportOptions { struct_size: size_of::<ExportOptions>() as u32, lod };
+            done(export(body, &raw const options, c"glb".as_ptr(), 3, &raw mut bytes, NOBODY))?;
+            let (mut start, mut length) = (std::ptr::null(), 0);
+            done(data(bytes, &raw mut start, &raw mut length, NOBODY))?;
+            Ok(hash(std::slice::from_raw_parts(start, length as usize)))
+        };
+        let made = make();
+        self.free("anthronet_request_free", request);
+        self.free("anthronet_body_free", body);
+        self.free("anthronet_bytes_free", bytes);
+        made
+    }
+
+    fn free(&self, function: &str, handle: Handle) {
+        // SAFETY: as above; each handle once.
+        unsafe { self.library.get::<Free>(function).unwrap()(handle) };
+    }
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        self.free("anthronet_model_free", self.model);
+    }
+}
+
+#[test]
+fn the_shared_library_gives_the_bytes_of_the_crate() {
+    let (shared, model) = (Shared::open(), Model::embedded().unwrap());
+    let (mut list, mut hashes, mut refused) = (String::new(), String::new(), 0);
+    for (i, request) in requests(&model).iter().enumerate() {
+        let json = request.to_json();
+        assert!(!json.contains('\n'), "a request of more than one line");
+        let line = match (direct(&model, request, Lod::ALL[i % 4]), shared.hash(&json, i as u32 % 4)) {
+            (Ok(ours), Ok(theirs)) => {
+                assert_eq!(ours, theirs, "request {i}: {json}");
+                ours
+            }
+            (Err(_), Err(code)) => {
+                refused += 1;
+                format!("error {code}")
+            }
+            (ours, theirs) => panic!("request {i}: {ours:?} here, {theirs:?} there: {json}"),
+        };
+        list += &(json + "\n");
+        hashes += &(line + "\n");
+    }
+    assert!((1..COUNT / 4).contains(&refused), "{refused} requests are refused");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("same_bytes");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("requests.jsonl"), list).unwrap();
+    std::fs::write(folder.join("sha256.txt"), hashes).unwrap();
+}

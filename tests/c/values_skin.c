@@ -1,0 +1,149 @@
+/* Skinning against its formula, computed here from the arrays of the mesh. */
+
+#include "values.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static anthronet_skin_job job_of(const fixture *f, const anthronet_transform *pose, float *positions, uint64_t bytes) {
+    anthronet_skin_job job;
+    SIZED(job);
+    job.skinner = f->skinner;
+    job.joints = pose;
+    job.joint_count = f->joints;
+    job.positions = positions;
+    job.position_bytes = bytes;
+    return job;
+}
+
+static double largest_difference(const float *a, const float *b, uint64_t count) {
+    double worst = 0;
+    uint64_t i;
+    for (i = 0; i < count; i++) worst = fmax(worst, fabs((double)a[i] - b[i]));
+    return worst;
+}
+
+/* Positions of the fixture's mesh, and their number. */
+static const float *bind_positions(const fixture *f, uint32_t *count) {
+    anthronet_view view;
+    uint32_t vertices = 0;
+    OK(anthronet_mesh_data(f->mesh, 0, ANTHRONET_ATTRIBUTE_POSITIONS, &view, &fault));
+    OK(anthronet_skinner_vertex_count(f->skinner, &vertices, &fault));
+    CHECK(vertices == view.rows, "the skinner writes %u vertices, the mesh has %lu", vertices, (unsigned long)view.rows);
+    *count = vertices;
+    return (const float *)view.data;
+}
+
+void test_skin_at_rest(const fixture *f) {
+    anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
+    uint32_t count = 0, method;
+    const float *bind = bind_positions(f, &count);
+    float *posed = (float *)room(12 * (size_t)count);
+    for (method = ANTHRONET_SKIN_LINEAR; method <= ANTHRONET_SKIN_JOINT_TRANSLATION; method++) {
+        anthronet_skin_job job = job_of(f, pose, posed, 12 * (uint64_t)count);
+        job.method = method;
+        memset(posed, 0xFF, 12 * (size_t)count);
+        OK(anthronet_skin(&job, 1, &fault));
+        CHECK(largest_difference(posed, bind, 3 * (uint64_t)count) < 2e-6, "method %u moves by %g m", method,
+              largest_difference(posed, bind, 3 * (uint64_t)count));
+    }
+    free(posed);
+    free(pose);
+}
+
+/* A transform's matrix times a vector of four, w being 1. */
+static void move(const anthronet_transform *t, const double *v, double *out) {
+    const float *q = t->rotation;
+    double cross[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        cross[k] = 2 * (q[(k + 1) % 3] * v[(k + 2) % 3] - q[(k + 2) % 3] * v[(k + 1) % 3]);
+    }
+    for (k = 0; k < 3; k++) {
+        out[k] = v[k] + q[3] * cross[k] + (q[(k + 1) % 3] * cross[(k + 2) % 3] - q[(k + 2) % 3] * cross[(k + 1) % 3]) +
+                 t->translation[k];
+    }
+}
+
+void test_skin_posed(const fixture *f) {
+    uint32_t count = 0, v;
+    const float *bind = bind_positions(f, &count);
+    anthronet_transform *pose = (anthronet_transform *)room(f->joints * sizeof *pose);
+    anthronet_joint *joints = (anthronet_joint *)room(f->joints * sizeof *joints);
+    float *linear = (float *)room(12 * (size_t)count), *dual = (float *)room(12 * (size_t)count);
+    anthronet_skin_job jobs[2];
+    anthronet_view slots, weights;
+    double worst = 0, far = 0;
+    int i, k;
+    OK(anthronet_clip_sample(f->walk, 0.3, ANTHRONET_WRAP_LOOP, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, pose,
+                             f->joints, &fault));
+    OK(anthronet_body_joints(f->body, ANTHRONET_SPACE_GLTF, joints, f->joints, &fault));
+    OK(anthronet_mesh_data(f->mesh, 0, ANTHRONET_ATTRIBUTE_JOINTS, &slots, &fault));
+    OK(anthronet_mesh_data(f->mesh, 0, ANTHRONET_ATTRIBUTE_WEIGHTS, &weights, &fault));
+    /* Two surfaces in one call. */
+    jobs[0] = job_of(f, pose, linear, 12 * (uint64_t)count);
+    jobs[1] = job_of(f, pose, dual, 12 * (uint64_t)count);
+    jobs[1].method = ANTHRONET_SKIN_DUAL_QUATERNION;
+    OK(anthronet_skin(jobs, 2, &fault));
+    for (v = 0; v < count; v++) {
+        double sum[3] = {0, 0, 0};
+        for (i = 0; i < 4; i++) {
+            uint32_t j = ((const uint16_t *)slots.data)[4 * v + (uint32_t)i];
+            double w = ((const float *)weights.data)[4 * v + (uint32_t)i], local[3], moved[3];
+            const float *m = joints[j].joint_from_model, *p = bind + 3 * (size_t)v;
+            for (k = 0; k < 3; k++) local[k] = (double)m[k] * p[0] + (double)m[4 + k] * p[1] + (double)m[8 + k] * p[2] + m[12 + k];
+            move(&pose[j], local, moved);
+            for (k = 0; k < 3; k++) sum[k] += w * moved[k];
+        }
+        for (k = 0; k < 3; k++) {
+            worst = fmax(worst, fabs(sum[k] - linear[3 * v + (uint32_t)k]));
+            far = fmax(far, fabs((double)bind[3 * v + (uint32_t)k] - linear[3 * v + (uint32_t)k]));
+        }
+    }
+    CHECK(worst < 1e-5, "linear skinning is off by %g m", worst);
+    CHECK(far > 0.3, "nobody walks who moves by %g m at most", far);
+    worst = largest_difference(linear, dual, 3 * (uint64_t)count);
+    CHECK(worst > 1e-4 && worst < 0.05, "dual quaternions differ from matrices by %g m", worst);
+    free(pose);
+    free(joints);
+    free(linear);
+    free(dual);
+}
+
+/* Offsets, normals, strides, and one buffer for both as vertex buffers are laid out. */
+void test_skin_buffers(const fixture *f) {
+    anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
+    uint32_t count = 0, v;
+    const float *bind = bind_positions(f, &count);
+    anthronet_view normals;
+    float *offsets = (float *)room(12 * (size_t)count), *both = (float *)room(32 * (size_t)count);
+    anthronet_skin_job job = job_of(f, pose, both, 32 * (uint64_t)count);
+    int k;
+    OK(anthronet_mesh_data(f->mesh, 0, ANTHRONET_ATTRIBUTE_NORMALS, &normals, &fault));
+    for (v = 0; v < 3 * count; v++) offsets[v] = v % 3 == 1 ? 0.25f : 0.0f;
+    job.offsets = offsets;
+    job.offset_count = count;
+    job.position_stride = 32;
+    job.normals = both + 3;
+    job.normal_bytes = 32 * (uint64_t)count - 12;
+    job.normal_stride = 32;
+    fill(both, 32 * (size_t)count);
+    OK(anthronet_skin(&job, 1, &fault));
+    for (v = 0; v < count; v++) {
+        const float *row = both + 8 * (size_t)v, *n = (const float *)normals.data + 3 * (size_t)v;
+        for (k = 0; k < 3; k++) {
+            if (!CHECK(fabsf(row[k] - bind[3 * v + (uint32_t)k] - (k == 1 ? 0.25f : 0)) < 1e-5f, "offset of vertex %u", v) ||
+                !CHECK(fabsf(row[3 + k] - n[k]) < 1e-4f, "normal of vertex %u", v)) {
+                v = count - 1;
+                break;
+            }
+        }
+        if (!CHECK(is_filled(row + 6, 8), "what is between the rows is written over, vertex %u", v)) break;
+    }
+    /* None at all. */
+    OK(anthronet_skin(NULL, 0, &fault));
+    free(pose);
+    free(offsets);
+    free(both);
+}

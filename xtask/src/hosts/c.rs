@@ -1,0 +1,336 @@
+//! The C ABI from C99 and C++17: what it returns, what it refuses, what it leaves behind, what it exports.
+//!
+//! The consumers lie in `tests/c`. gcc, and clang where there is one, compile them without a warning; the sanitizers and
+//! valgrind look on. The library itself is not instrumented: no stable Rust compiler does that.
+
+use super::Tally;
+use crate::bindings::HEADER;
+use crate::tools::{self, Outcome, cargo};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Strict, and as far as the consumers go beyond C99, POSIX: threads, clocks.
+const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-D_POSIX_C_SOURCE=200809L"];
+const C99: [&str; 1] = ["-std=c99"];
+const CPP17: [&str; 3] = ["-std=c++17", "-x", "c++"];
+const SANITIZERS: [&str; 3] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"];
+/// What the static library needs of the system.
+const SYSTEM: [&str; 4] = ["-lgcc_s", "-lpthread", "-ldl", "-lm"];
+
+const VALUES: [&str; 7] = [
+    "check.c",
+    "values_main.c",
+    "values_model.c",
+    "values_mesh.c",
+    "values_skin.c",
+    "values_motion.c",
+    "values_export.c",
+];
+const ABUSE: [&str; 7] = [
+    "check.c",
+    "abuse_main.c",
+    "abuse_pointers.c",
+    "abuse_numbers.c",
+    "abuse_jobs.c",
+    "abuse_files.c",
+    "abuse_threads.c",
+];
+
+/// Cycles of generate and free in a run of the tests; `ANTHRONET_CYCLES` asks for another number, such as 10000.
+const CYCLES: &str = "1500";
+/// What the resident set may grow by meanwhile, MiB: less than three bodies.
+const GROWTH: &str = "4";
+
+const MEBIBYTE: u64 = 1 << 20;
+/// The bar of the stripped library.
+const LARGEST: u64 = 40 * MEBIBYTE;
+/// Part of glibc, and the unwinder that every system with a C++ program has.
+const NEEDED: [&str; 4] = ["libc.so", "libm.so", "libgcc_s.so", "ld-linux"];
+/// What the project's wheels promise: manylinux_2_34.
+const GLIBC: (u32, u32) = (2, 34);
+
+pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tally) -> Outcome {
+    let folder = folder.join("c");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))?;
+    tally.case("every function has a test in C", every_function_is_called());
+    if let Err(reason) = programs {
+        for name in [
+            "the C ABI from C and C++",
+            "the C ABI under sanitizers and valgrind",
+            "what the library exports",
+        ] {
+            tally.skip(name, reason);
+        }
+        return Ok(());
+    }
+    let bench = Bench { folder, library: tools::target().join("release") };
+    exports(&bench, tally);
+    values(&bench, tally);
+    abuse(&bench, tally);
+    same_bytes(&bench, tally)?;
+    leaks(&bench, tally);
+    if let Some(program) = bench.build(tally, "speed", "gcc", &[&C99[..], &["-O2"]].concat(), &["speed.c"]) {
+        tools::run(&mut Command::new(program))?;
+    }
+    Ok(())
+}
+
+/// Where consumers are built, and against what.
+struct Bench {
+    folder: PathBuf,
+    library: PathBuf,
+}
+
+impl Bench {
+    /// Compiles a program against the shared library; a program that does not build is a failed case.
+    fn build(
+        &self,
+        tally: &mut Tally,
+        name: &str,
+        compiler: &str,
+        flags: &[&str],
+        sources: &[&str],
+    ) -> Option<PathBuf> {
+        let mut command = self.compiler(compiler, flags, sources, &self.folder.join(name));
+        command.arg("-L").arg(&self.library).arg("-lanthronet");
+        command.arg(format!("-Wl,-rpath,{}", self.library.display())).args(["-lm", "-lpthread"]);
+        self.built(tally, name, &mut command)
+    }
+
+    /// Compiles a program that carries the library.
+    fn build_static(
+        &self,
+        tally: &mut Tally,
+        name: &str,
+        flags: &[&str],
+        sources: &[&str],
+    ) -> Option<PathBuf> {
+        let mut command = self.compiler("gcc", flags, sources, &self.folder.join(name));
+        command.arg(self.library.join("libanthronet.a")).args(SYSTEM);
+        self.built(tally, name, &mut command)
+    }
+
+    fn compiler(&self, compiler: &str, flags: &[&str], sources: &[&str], program: &Path) -> Command {
+        let mut command = Command::new(compiler);
+        let sources = sources.iter().map(|source| tools::root().join("tests/c").join(source));
+        // Not to be taken for C++, too.
+        command.args(WARNINGS).args(flags).args(sources).args(["-x", "none"]).arg("-o").arg(program);
+        command
+    }
+
+    fn built(&self, tally: &mut Tally, name: &str, command: &mut Command) -> Option<PathBuf> {
+        let built = tools::output(command);
+        let program = built.is_ok().then(|| self.folder.join(name));
+        tally.case(&format!("{name} compiles without a warning"), built.map(drop));
+        program
+    }
+
+    /// A program with the arguments that `run_tests` of tests/c/check.h takes.
+    fn tests(&self, program: &Path, before: &[&str]) -> Command {
+        let mut command = match before.split_first() {
+            None => Command::new(program),
+            Some((first, rest)) => {
+                let mut command = Command::new(first);
+                command.args(rest).arg(program);
+                command
+            }
+        };
+        command.arg(tools::root().join("model/anthronet.safetensors")).arg(&self.folder);
+        command
+    }
+}
+
+/// What every function returns: C99 and C++17, both libraries, both compilers, and once with the sanitizers.
+fn values(bench: &Bench, tally: &mut Tally) {
+    let clang = tools::output(Command::new("clang").arg("--version")).is_ok();
+    let sanitized = [&C99[..], &SANITIZERS].concat();
+    let mut programs = vec![
+        bench.build(tally, "values in C99", "gcc", &C99, &VALUES),
+        bench.build(tally, "values in C++17", "g++", &CPP17, &VALUES),
+        bench.build_static(tally, "values, linked statically", &C99, &VALUES),
+        bench.build(tally, "values under sanitizers", "gcc", &sanitized, &VALUES),
+    ];
+    if clang {
+        programs.push(bench.build(tally, "values in clang's C99", "clang", &C99, &VALUES));
+        programs.push(bench.build(tally, "values in clang's C++17", "clang++", &CPP17, &VALUES));
+    } else {
+        tally.skip("values by clang", "there is no clang");
+    }
+    for program in programs.into_iter().flatten() {
+        let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        tally.script(&name, &mut bench.tests(&program, &[]));
+    }
+}
+
+/// What every function refuses, watched by the sanitizers and, with fewer rounds, by valgrind, which sees into the
+/// library, too.
+fn abuse(bench: &Bench, tally: &mut Tally) {
+    let sanitized = [&C99[..], &SANITIZERS].concat();
+    if let Some(program) = bench.build(tally, "abuse under sanitizers", "gcc", &sanitized, &ABUSE) {
+        tally.script("abuse under sanitizers", &mut bench.tests(&program, &[]));
+    }
+    if let Some(program) = bench.build(tally, "abuse", "gcc", &[&C99[..], &["-g"]].concat(), &ABUSE) {
+        tally.script("abuse under valgrind", bench.tests(&program, &VALGRIND).arg("few"));
+    }
+}
+
+/// Fails on reads and writes where nobody may, and on memory that nobody knows of any more.
+const VALGRIND: [&str; 6] = [
+    "valgrind",
+    "--quiet",
+    "--error-exitcode=9",
+    "--leak-check=full",
+    "--show-leak-kinds=definite,indirect",
+    "--errors-for-leak-kinds=definite,indirect",
+];
+
+/// Many bodies made and freed: the resident set stays, and valgrind finds nothing lost after a few.
+fn leaks(bench: &Bench, tally: &mut Tally) {
+    let flags = [&C99[..], &["-O1", "-g"]].concat();
+    let Some(program) = bench.build(tally, "cycles", "gcc", &flags, &["cycles.c"]) else { return };
+    let cycles = std::env::var("ANTHRONET_CYCLES").unwrap_or_else(|_| CYCLES.to_owned());
+    tally.script("generate and free", Command::new(&program).args([&cycles, GROWTH]));
+    let mut few = Command::new(VALGRIND[0]);
+    // Valgrind holds freed memory back, so the resident set says nothing.
+    few.args(&VALGRIND[1..]).arg(&program).args(["12", "1000000"]);
+    let lost = tools::output(&mut few).map(drop);
+    tally.case("valgrind finds nothing lost in 12 cycles of generate and free", lost);
+}
+
+/// The same requests through the crate, the library opened by a Rust program, C and C++.
+fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
+    let library = bench.library.join("libanthronet.so");
+    // With the packages, features and profile of the unit tests, which have built it by now: that the profile differs
+    // from the library's makes the test the harder.
+    let mut test = cargo("test");
+    test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", library);
+    tally.case("same bytes: 200 requests through the crate and through the library", tools::run(&mut test));
+    let list = tools::target().join("tmp/same_bytes");
+    let expected = tools::read(&list.join("sha256.txt"))?;
+    for (name, compiler, flags, source) in [
+        ("same bytes in C", "gcc", &["-std=c99", "-O2"], "same_bytes.c"),
+        ("same bytes in C++", "g++", &["-std=c++17", "-O2"], "same_bytes.cpp"),
+    ] {
+        let Some(program) = bench.build(tally, name, compiler, flags, &[source]) else { continue };
+        let got = tools::output(Command::new(program).arg(list.join("requests.jsonl")));
+        tally.case(&format!("{name}: 200 requests"), got.and_then(|got| same_lines(&expected, &got)));
+    }
+    Ok(())
+}
+
+/// Fails with the first line that differs.
+fn same_lines(expected: &str, got: &str) -> Outcome {
+    let (expected, got): (Vec<_>, Vec<_>) = (expected.lines().collect(), got.lines().collect());
+    if expected.len() != got.len() {
+        return Err(format!("expected {} lines, got {}", expected.len(), got.len()));
+    }
+    match expected.iter().zip(&got).enumerate().find(|(_, (a, b))| a != b) {
+        None => Ok(()),
+        Some((i, (a, b))) => Err(format!("request {i}: expected {a}, got {b}")),
+    }
+}
+
+/// What a stripped library shows, weighs and needs.
+fn exports(bench: &Bench, tally: &mut Tally) {
+    let stripped = bench.folder.join("libanthronet.so");
+    let made = bench.library.join("libanthronet.so");
+    if let Err(why) = tools::output(Command::new("strip").arg("-o").arg(&stripped).arg(&made)) {
+        return tally.case("the library is stripped", Err(why));
+    }
+    let symbols = tools::output(Command::new("nm").args(["-D", "--defined-only"]).arg(&stripped));
+    let shown = symbols.and_then(|text| {
+        let shown: BTreeSet<_> = text.lines().filter_map(|line| line.split(' ').next_back()).collect();
+        let header = tools::read(&tools::root().join(HEADER))?;
+        let promised = functions(&header);
+        let differ: Vec<_> = shown.symmetric_difference(&promised).copied().collect();
+        none("not in both library and header", &differ)
+    });
+    tally.case("the library exports the functions of the header and nothing else", shown);
+
+    let size = std::fs::metadata(&stripped).map_err(|e| e.to_string()).map(|file| file.len());
+    let name = format!(
+        "stripped it weighs {} MiB of {}",
+        size.as_ref().map_or(0, |s| s / MEBIBYTE),
+        LARGEST / MEBIBYTE
+    );
+    tally.case(
+        &name,
+        size.and_then(|size| if size < LARGEST { Ok(()) } else { Err(format!("{size} bytes")) }),
+    );
+
+    let dynamic = tools::output(Command::new("readelf").args(["--wide", "--dynamic"]).arg(&stripped));
+    let foreign = dynamic.and_then(|text| {
+        let needed = text.lines().filter(|line| line.contains("(NEEDED)"));
+        let names = needed.filter_map(|line| line.split(['[', ']']).nth(1));
+        none(
+            "needed",
+            &names.filter(|name| !NEEDED.iter().any(|known| name.starts_with(known))).collect::<Vec<_>>(),
+        )
+    });
+    tally.case("it needs glibc and the unwinder alone", foreign);
+
+    let versions = tools::output(Command::new("readelf").args(["--wide", "--version-info"]).arg(&stripped));
+    let newest = versions.map(|text| {
+        let of = |word: &str| {
+            let (major, minor) = word.strip_prefix("GLIBC_")?.split_once('.')?;
+            Some((major.parse().ok()?, minor.split('.').next()?.parse().ok()?))
+        };
+        text.split_whitespace().filter_map(of).max().unwrap_or_default()
+    });
+    let (major, minor) = GLIBC;
+    let old_enough = newest.and_then(|newest: (u32, u32)| match newest <= GLIBC {
+        true => Ok(()),
+        false => Err(format!("needs {}.{}", newest.0, newest.1)),
+    });
+    tally.case(&format!("it runs with glibc {major}.{minor}"), old_enough);
+}
+
+fn none(what: &str, found: &[&str]) -> Outcome {
+    if found.is_empty() { Ok(()) } else { Err(format!("{what}: {}", found.join(", "))) }
+}
+
+/// Every function of the header is called by the tests of values, and by those of abuse unless it cannot be misused.
+fn every_function_is_called() -> Outcome {
+    let header = tools::read(&tools::root().join(HEADER))?;
+    let read = |names: &[&str]| -> Outcome<String> {
+        names.iter().map(|name| tools::read(&tools::root().join("tests/c").join(name))).collect()
+    };
+    let (values, abuse) = (read(&VALUES)?, read(&ABUSE)?);
+    let (values, abuse) = (functions(&values), functions(&abuse));
+    let functions = functions(&header);
+    if functions.len() < 50 {
+        return Err(format!("{HEADER}: found {} functions", functions.len()));
+    }
+    let takes_nothing = |name: &str| name.ends_with("_count") || name == "anthronet_abi_version";
+    let untested = functions.iter().filter(|name| !values.contains(*name));
+    let unharmed = functions.iter().filter(|name| !abuse.contains(*name) && !takes_nothing(name));
+    none("without a test", &untested.chain(unharmed).copied().collect::<Vec<_>>())
+}
+
+/// The words `anthronet_…(` of a text in C, comments left out.
+fn functions(text: &str) -> BTreeSet<&str> {
+    let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    code.flat_map(|line| {
+        line.match_indices("anthronet_").filter_map(|(start, _)| {
+            let word = &line[start..];
+            let end = word.find(|c: char| !c.is_ascii_alphanumeric() && c != '_')?;
+            let whole = !line[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+            (whole && word[end..].starts_with('(')).then_some(&word[..end])
+        })
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::functions;
+
+    #[test]
+    fn functions_are_words_before_a_parenthesis() {
+        let text =
+            "anthronet_status anthronet_a_b(int anthronet_c); // anthronet_d(\nx_anthronet_e(anthronet_f());";
+        assert_eq!(functions(text).into_iter().collect::<Vec<_>>(), ["anthronet_a_b", "anthronet_f"]);
+    }
+}
