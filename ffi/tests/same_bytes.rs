@@ -10,6 +10,8 @@
 //! A host reads the first, prints lines like those of the second, and is right when they are equal:
 //! `tests/c/same_bytes.c` is the shortest example.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 #![expect(unsafe_code, reason = "calls a C ABI")]
 
 mod library;
