@@ -5,17 +5,17 @@ use std::path::PathBuf;
 use libloading::Library;
 
 /// `anthronet_error *`.
-pub type ErrorOut = *mut Error;
+pub(crate) type ErrorOut = *mut Error;
 
 /// `anthronet_error`.
 #[repr(C)]
-pub struct Error {
-    pub code: i32,
-    pub message: [u8; 512],
+pub(crate) struct Error {
+    pub(crate) code: i32,
+    pub(crate) message: [u8; 512],
 }
 
 /// The file that the environment variable `ANTHRONET_LIBRARY` names, or what cargo has built beside the test.
-pub fn library() -> Library {
+pub(crate) fn library() -> Library {
     let path = std::env::var_os("ANTHRONET_LIBRARY").map_or_else(beside, PathBuf::from);
     // SAFETY: it runs nothing when it is opened.
     unsafe { Library::new(&path) }.unwrap_or_else(|e| {
@@ -28,7 +28,7 @@ pub fn library() -> Library {
 }
 
 /// In the folder of the profile that the test was built with.
-pub fn beside() -> PathBuf {
+pub(crate) fn beside() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     test.ancestors().nth(2).unwrap().join(libloading::library_filename("anthronet"))
 }
