@@ -43,16 +43,14 @@ class ANTHRONET_OT_character_add(bpy.types.Operator):
             **given,
         )
         body = library.model().generate(request)
-        made = character.add(
+        (made,) = character.add(
             context,
-            body,
-            request,
+            [(body, request, context.scene.cursor.location)],
             lod=int(self.lod),
             accessories=self.accessories,
             names=self.joint_names.lower(),
-            skin_tone=self.skin_tone,
-            location=context.scene.cursor.location,
         )
+        made.anthronet.skin_tone = self.skin_tone
         character.select_only(context, made)
         for warning in body.report["warnings"]:
             self.report({"WARNING"}, warning)
@@ -102,81 +100,79 @@ class ANTHRONET_OT_crowd_add(bpy.types.Operator):
 
     @reported
     def execute(self, context):
-        with library.model().start(self._requests()) as job:
-            for index in range(self.count):
-                while True:
-                    body = _take(job, index)
-                    if body is not None:
-                        break
-                self._place(context, index, body)
+        crowd = _Crowd(self)
+        with crowd.job:
+            bodies = list(crowd.job.results())
+        crowd.place(context, bodies)
         return {"FINISHED"}
 
     @reported
     def invoke(self, context, _event):
-        self._asked = self._requests()
-        self._job = library.model().start(self._asked)
-        self._next = 0
-        self._timer = context.window_manager.event_timer_add(0.02, window=context.window)
+        self._crowd = _Crowd(self)
+        self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.progress_begin(0, self.count)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         if event.type == "ESC":
-            self._finish(context)
-            self.report({"INFO"}, f"Stopped after {self._next} of {self.count} people")
-            return {"FINISHED"} if self._next else {"CANCELLED"}
+            return self._finish(context)
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         try:
-            body = _take(self._job, self._next)
-            if body is not None:
-                self._place(context, self._next, body)
-                self._next += 1
-                context.window_manager.progress_update(self._next)
+            self._crowd.place(context, self._crowd.ready())
         except library.failures() as error:
-            self._finish(context)
             self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        if self._next < self.count:
-            return {"RUNNING_MODAL"}
+            return self._finish(context)
+        context.window_manager.progress_update(self._crowd.placed)
+        return {"RUNNING_MODAL"} if self._crowd.placed < self.count else self._finish(context)
+
+    def cancel(self, context):
+        """Blender ends: stop the work."""
         self._finish(context)
-        return {"FINISHED"}
 
     def _finish(self, context):
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        self._job.close()
+        self._crowd.job.close()
+        placed = self._crowd.placed
+        if placed < self.count:
+            self.report({"INFO"}, f"Stopped after {placed} of {self.count} people")
+        return {"FINISHED"} if placed else {"CANCELLED"}
 
-    def _requests(self):
+
+class _Crowd:
+    """People that are being made, and how many of them stand in the scene."""
+
+    def __init__(self, asked):
         request = library.anthronet().Request
         sexes = ("female", "male")
-        return [request(sex=sexes[i % 2], seed=self.seed + i, fill="sample") for i in range(self.count)]
+        self._requests = [
+            request(sex=sexes[i % 2], seed=asked.seed + i, fill="sample") for i in range(asked.count)
+        ]
+        self._columns = max(1, round(asked.count**0.5))
+        self._spacing, self._lod, self._tones = asked.spacing, int(asked.lod), asked.skin_tones
+        self.placed = 0
+        self.job = library.model().start(self._requests)
 
-    def _place(self, context, index, body):
-        columns = max(1, round(self.count**0.5))
-        row, column = divmod(index, columns)
-        location = context.scene.cursor.location.copy()
-        location.x += (column - (columns - 1) / 2) * self.spacing
-        location.y += row * self.spacing
-        character.add(
-            context,
-            body,
-            self._requests()[index] if not hasattr(self, "_asked") else self._asked[index],
-            lod=int(self.lod),
-            accessories=True,
-            names="blender",
-            skin_tone=index % 10 + 1 if self.skin_tones else 0,
-            location=location,
-        )
+    def ready(self):
+        """Bodies that are made and do not stand yet."""
+        return [self.job.take(index) for index in range(self.placed, self.job.progress.done)]
 
-
-def _take(job, index):
-    """The body, or None while it is being made."""
-    try:
-        return job.take(index)
-    except library.anthronet().BusyError:
-        return None
+    def place(self, context, bodies):
+        """Stands bodies in the next places of the grid."""
+        if not bodies:
+            return
+        people = []
+        for index, body in enumerate(bodies, self.placed):
+            row, column = divmod(index, self._columns)
+            place = context.scene.cursor.location.copy()
+            place.x += (column - (self._columns - 1) / 2) * self._spacing
+            place.y += row * self._spacing
+            people.append((body, self._requests[index], place))
+        for index, made in enumerate(character.add(context, people, lod=self._lod), self.placed):
+            made.anthronet.skin_tone = index % 10 + 1 if self._tones else 0
+        self.placed += len(bodies)
 
 
 _add_measures()

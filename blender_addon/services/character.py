@@ -4,7 +4,7 @@
 import bpy
 
 from .. import library, properties
-from . import material, mesh, rig
+from . import mesh, rig
 
 _MESH = "anthronet_body"
 
@@ -34,34 +34,34 @@ def mesh_of(character):
     return next((ob for ob in character.children if ob.type == "MESH" and _MESH in ob), None)
 
 
-def add(context, body, request, *, lod, accessories, names, skin_tone, location, name="AnthroNet"):
-    """A new character in the scene's active collection; its armature's object."""
-    collection, view_layer = context.collection, context.view_layer
-    character = rig.new(body, names, collection, view_layer, name)
-    character.location = location
-    data = mesh.new(body, lod, accessories, body.joint_names(names), f"{name} Body")
-    surface = bpy.data.objects.new(f"{name} Body", data)
+def add(context, people, *, lod, accessories=True, names="blender", name="AnthroNet"):
+    """New characters in the scene's active collection: their armatures' objects. ``people`` are triples of a body, the
+    request that it came of and a place."""
+    bodies = [body for body, _, _ in people]
+    rigs = rig.new(bodies, names, context.collection, context.view_layer, name)
+    for owner, (body, request, place) in zip(rigs, people):
+        owner.location = place
+        owner.show_in_front = True
+        _add_surface(context, owner, body, lod, accessories, names)
+        settings = owner.anthronet
+        settings.set_request(request)
+        settings.set_report(body)
+        with properties.silent():
+            settings.is_character = True
+            settings.lod = str(lod)
+            settings.accessories = accessories
+            settings.joint_names = names.upper()
+    return rigs
+
+
+def _add_surface(context, owner, body, lod, accessories, names):
+    title = f"{owner.name} Body"
+    bone_names = body.joint_names(names)
+    surface = bpy.data.objects.new(title, mesh.new(body, lod, accessories, bone_names, title))
     surface[_MESH] = True
-    collection.objects.link(surface)
-    surface.parent = character
-    for bone_name in body.joint_names(names):
-        surface.vertex_groups.new(name=bone_name)
-    modifier = surface.modifiers.new("Armature", "ARMATURE")
-    modifier.object = character
-    modifier.use_deform_preserve_volume = False
-    character.show_in_front = True
-    settings = character.anthronet
-    settings.set_request(request)
-    settings.set_report(body)
-    with properties.silent():
-        settings.is_character = True
-        settings.lod = str(lod)
-        settings.accessories = accessories
-        settings.joint_names = names.upper()
-        settings.skin_tone = skin_tone
-    if skin_tone:
-        material.set_tone(surface, skin_tone)
-    return character
+    context.collection.objects.link(surface)
+    surface.parent = owner
+    surface.modifiers.new("Armature", "ARMATURE").object = owner
 
 
 def select_only(context, character):

@@ -24,7 +24,7 @@ def apply(owner, body, context):
     if surface is not None:
         positions, _ = mesh.arrays(body, int(settings.lod), settings.accessories)
         mesh.move(surface.data, positions)
-    rig.move(owner, body, context.view_layer)
+    rig.move([owner], [body], context.view_layer)
     settings.set_report(body)
 
 
@@ -40,9 +40,6 @@ def rebuild(owner, context):
         old = surface.data
         data = mesh.new(body, int(settings.lod), settings.accessories, names, old.name)
         surface.data = data
-        surface.vertex_groups.clear()
-        for name in names:
-            surface.vertex_groups.new(name=name)
         material.set_tone(surface, settings.skin_tone)
         if old.users == 0:
             import bpy

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials, shared by all characters of a colour."""
 
+from functools import lru_cache
+
 import bpy
 
 _SKIN = "Body"
@@ -42,6 +44,7 @@ def set_tone(mesh_object, step):
     mesh_object.data.materials[0] = _find_or_new("Skin", color, roughness, False)
 
 
+@lru_cache(maxsize=None)
 def _tone(step):
     from .. import library
 

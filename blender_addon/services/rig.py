@@ -10,6 +10,8 @@ from mathutils import Matrix
 #: The bone's joint in the library, on every bone.
 JOINT = "anthronet_joint"
 _KEY = "anthronet_template"
+#: Blender removes bones without length.
+_SHORTEST = 0.01
 _COLLECTIONS = (
     ("Twist", lambda joint: "twist" in joint),
     ("Face", lambda joint: joint in ("jaw", "eye_l", "eye_r")),
@@ -20,35 +22,41 @@ _COLLECTIONS = (
 )
 
 
-def new(body, names, scene_collection, view_layer, name):
-    """An armature's object for a body, linked to a collection; ``names``: vocabulary of the bones."""
-    armature = _template(names)
-    fresh = armature is None
-    armature = bpy.data.armatures.new(name) if fresh else armature.copy()
-    armature.name = name
-    rig = bpy.data.objects.new(name, armature)
-    scene_collection.objects.link(rig)
-    with edit_bones(rig, view_layer) as bones:
-        if fresh:
-            for joint_name in body.joint_names(names):
-                bones.new(joint_name)
-        _place(bones, body, names)
-        if fresh:
-            joint_names = body.joint_names(names)
-            for joint_name, parent in zip(joint_names, body.parents):
-                bone = bones[joint_name]
-                bone.use_connect = False
-                bone.parent = bones[joint_names[parent]] if parent >= 0 else None
-    if fresh:
-        _describe(armature, body, names)
-        copy = armature.copy()
-        copy.name = ".AnthroNet Template"
-        copy[_KEY] = names
-    elif _KEY in armature:
+def new(bodies, names, scene_collection, view_layer, name):
+    """An armature's object for each body, linked to a collection; ``names``: vocabulary of the bones."""
+    template = _template(names) or _make_template(bodies[0], names, scene_collection, view_layer)
+    rigs = []
+    for _ in bodies:
+        armature = template.copy()
         del armature[_KEY]
-    for pose_bone in rig.pose.bones:
-        pose_bone.rotation_mode = "QUATERNION"
-    return rig
+        armature.name = name
+        rig = bpy.data.objects.new(name, armature)
+        scene_collection.objects.link(rig)
+        rigs.append(rig)
+    move(rigs, bodies, view_layer)
+    for rig in rigs:
+        for pose_bone in rig.pose.bones:
+            pose_bone.rotation_mode = "QUATERNION"
+    return rigs
+
+
+def _make_template(body, names, scene_collection, view_layer):
+    armature = bpy.data.armatures.new(".AnthroNet Template")
+    carrier = bpy.data.objects.new(".AnthroNet Template", armature)
+    scene_collection.objects.link(carrier)
+    bone_names = body.joint_names(names)
+    with edit_bones([carrier], view_layer):
+        bones = armature.edit_bones
+        for bone_name in bone_names:
+            bones.new(bone_name)
+        _place([bones[bone_name] for bone_name in bone_names], body)
+        for bone_name, parent in zip(bone_names, body.parents):
+            if parent >= 0:
+                bones[bone_name].parent = bones[bone_names[parent]]
+    bpy.data.objects.remove(carrier)
+    _describe(armature, body, names)
+    armature[_KEY] = names
+    return armature
 
 
 def _template(names):
@@ -58,11 +66,12 @@ def _template(names):
     return None
 
 
-def move(rig, body, view_layer):
-    """Gives the bones of a rig the rest places of another body's joints."""
-    with edit_bones(rig, view_layer) as bones:
-        by_joint = {bone.get(JOINT): bone for bone in bones}
-        _place_each(((by_joint.get(name), joint) for name, joint in zip(body.joint_names(), body.joints("blender"))))
+def move(rigs, bodies, view_layer):
+    """Gives the bones of rigs the rest places of other bodies' joints, all rigs in one go."""
+    with edit_bones(rigs, view_layer):
+        for rig, body in zip(rigs, bodies):
+            by_joint = {bone.get(JOINT): bone for bone in rig.data.edit_bones}
+            _place([by_joint.get(joint) for joint in body.joint_names()], body)
 
 
 def rename(rig, names):
@@ -100,44 +109,48 @@ def rest_matrices(bones):
 
 
 @contextmanager
-def edit_bones(rig, view_layer):
-    """The edit bones of a rig, whatever mode the user is in; mode, active object, selection and visibility come back."""
+def edit_bones(rigs, view_layer):
+    """Edit mode of rigs, whatever mode the user is in; mode, active object, selection and visibility come back."""
     active = view_layer.objects.active
     mode = active.mode if active else "OBJECT"
-    hidden = rig.hide_get(view_layer=view_layer), rig.hide_viewport
-    if active and mode != "OBJECT":
+    if mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    rig.hide_set(False, view_layer=view_layer)
-    rig.hide_viewport = False
+    hidden = [(rig, rig.hide_get(view_layer=view_layer), rig.hide_viewport) for rig in rigs]
     selected = [ob for ob in view_layer.objects if ob.select_get(view_layer=view_layer)]
     for ob in selected:
         ob.select_set(False, view_layer=view_layer)
-    view_layer.objects.active = rig
-    mirror, rig.data.use_mirror_x = rig.data.use_mirror_x, False
+    mirrored = [rig.data for rig in rigs if rig.data.use_mirror_x]
+    for armature in mirrored:
+        armature.use_mirror_x = False
+    for rig in rigs:
+        rig.hide_set(False, view_layer=view_layer)
+        rig.hide_viewport = False
+        rig.select_set(True, view_layer=view_layer)
+    view_layer.objects.active = rigs[0]
     try:
         bpy.ops.object.mode_set(mode="EDIT")
-        yield rig.data.edit_bones
+        yield
     finally:
-        if rig.mode == "EDIT":
+        if rigs[0].mode == "EDIT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        rig.data.use_mirror_x = mirror
-        rig.hide_set(hidden[0], view_layer=view_layer)
-        rig.hide_viewport = hidden[1]
-        view_layer.objects.active = active
+        for armature in mirrored:
+            armature.use_mirror_x = True
+        for rig, hide, hide_viewport in hidden:
+            rig.select_set(False, view_layer=view_layer)
+            rig.hide_set(hide, view_layer=view_layer)
+            rig.hide_viewport = hide_viewport
         for ob in selected:
             ob.select_set(True, view_layer=view_layer)
-        if active and mode != "OBJECT":
+        view_layer.objects.active = active
+        if mode != "OBJECT":
             bpy.ops.object.mode_set(mode=mode)
 
 
-def _place(bones, body, names):
-    _place_each(((bones.get(name), joint) for name, joint in zip(body.joint_names(names), body.joints("blender"))))
-
-
-def _place_each(pairs):
-    for bone, joint in pairs:
+def _place(bones, body):
+    """Lays edit bones into a body's joints; None for a bone that is gone."""
+    for bone, joint in zip(bones, body.joints("blender")):
         if bone is not None:
-            bone.length = max(float(joint["length"]), 0.01)
+            bone.length = max(float(joint["length"]), _SHORTEST)
             bone.matrix = Matrix(joint["model_from_joint"].tolist())
 
 

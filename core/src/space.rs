@@ -9,7 +9,7 @@
 //! | `ZUp` (Blender, AMASS) | +Z | −Y | +X | right | (x, −z, y) |
 //! | `Unity` | +Y | +Z | −X | left | (−x, y, z) |
 
-use std::{fmt, str::FromStr};
+use std::{f32::consts::FRAC_1_SQRT_2, fmt, str::FromStr};
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 use serde::{Serialize, Serializer};
@@ -131,7 +131,7 @@ impl Axis {
     pub fn ours_from_file(self) -> Quat {
         match self {
             Self::Y => Quat::IDENTITY,
-            Self::Z => Quat::from_xyzw(-HALF_SQRT, 0.0, 0.0, HALF_SQRT),
+            Self::Z => STAND_UP,
         }
     }
 
@@ -157,8 +157,13 @@ impl Axis {
     }
 }
 
-/// sin 45°.
-const HALF_SQRT: f32 = std::f32::consts::FRAC_1_SQRT_2;
+/// −90° about X: what lies along +Z stands along +Y.
+const STAND_UP: Quat = Quat::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
+
+/// A rotation as seen in a mirror across X.
+fn mirrored(q: Quat) -> Quat {
+    Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
+}
 
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -213,29 +218,44 @@ impl Space {
         }
     }
 
-    /// A rotation of ours in this space: what turned `v` now turns the converted `v`. A mirror turns the axis' image
-    /// the other way.
-    pub fn rotation_from_ours(self, q: Quat) -> Quat {
-        let axis = self.from_ours(Vec3::new(q.x, q.y, q.z)) * self.handedness();
-        Quat::from_xyzw(axis.x, axis.y, axis.z, q.w)
+    /// A joint's rotation and translation to the model, ours, in this space: the model's axes change, the joint's own stay,
+    /// so that +Y runs along its bone everywhere; a mirror mirrors them too.
+    pub fn model_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+        let rotation = match self {
+            Self::YUp => rotation,
+            Self::ZUp => STAND_UP.conjugate() * rotation,
+            Self::Unity => mirrored(rotation),
+        };
+        (rotation, self.from_ours(translation))
     }
 
-    /// A rotation of this space in ours.
-    pub fn rotation_to_ours(self, q: Quat) -> Quat {
-        let axis = self.to_ours(Vec3::new(q.x, q.y, q.z)) * self.handedness();
-        Quat::from_xyzw(axis.x, axis.y, axis.z, q.w)
+    /// A joint's rotation and translation to the model, in this space, as ours.
+    pub fn model_from_joint_to_ours(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+        let rotation = match self {
+            Self::YUp => rotation,
+            Self::ZUp => STAND_UP * rotation,
+            Self::Unity => mirrored(rotation),
+        };
+        (rotation, self.to_ours(translation))
     }
 
-    /// A transform of ours between two spaces, such as `parent_from_joint`, with both in this space.
-    pub fn matrix_from_ours(self, m: Mat4) -> Mat4 {
-        let change = Mat4::from_mat3(self.change());
-        change * m * change.transpose()
+    /// A joint's rotation and translation to another joint: the same in every right-handed space, mirrored in the other;
+    /// from ours to this space and back alike.
+    pub fn parent_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+        match self {
+            Self::YUp | Self::ZUp => (rotation, translation),
+            Self::Unity => (mirrored(rotation), self.from_ours(translation)),
+        }
     }
 
-    /// A transform of this space with both its spaces in ours.
-    pub fn matrix_to_ours(self, m: Mat4) -> Mat4 {
-        let change = Mat4::from_mat3(self.change());
-        change.transpose() * m * change
+    /// [`model_from_joint`](Self::model_from_joint) as a matrix, exactly.
+    pub fn model_from_joint_matrix(self, model_from_joint: Mat4) -> Mat4 {
+        Mat4::from_mat3(self.change()) * model_from_joint * Mat4::from_mat3(self.joint_change())
+    }
+
+    /// The inverse of such a matrix, ours, in this space, exactly.
+    pub fn joint_from_model_matrix(self, joint_from_model: Mat4) -> Mat4 {
+        Mat4::from_mat3(self.joint_change()) * joint_from_model * Mat4::from_mat3(self.change().transpose())
     }
 
     /// Whether corners of triangles go round the other way, as they do in a left-handed space.
@@ -243,13 +263,13 @@ impl Space {
         self == Self::Unity
     }
 
-    /// The determinant of the change of axes.
-    fn handedness(self) -> f32 {
-        if self.flips_winding() { -1.0 } else { 1.0 }
-    }
-
     fn change(self) -> Mat3 {
         Mat3::from_cols(self.from_ours(Vec3::X), self.from_ours(Vec3::Y), self.from_ours(Vec3::Z))
+    }
+
+    /// What becomes of a joint's own axes; its own inverse.
+    fn joint_change(self) -> Mat3 {
+        if self.flips_winding() { self.change() } else { Mat3::IDENTITY }
     }
 }
 
@@ -269,28 +289,45 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_is_exact() {
-        let (v, q) = (Vec3::new(0.1, -2.0, 3.0), Quat::from_xyzw(0.1, -0.3, 0.7, 0.64));
-        let m = Mat4::from_rotation_translation(q.normalize(), v);
+    fn there_and_back_is_exact_but_for_rotations() {
+        let (v, q) = (Vec3::new(0.1, -2.0, 3.0), Quat::from_xyzw(0.1, -0.3, 0.7, 0.64).normalize());
         for space in SPACES {
             assert_eq!(space.to_ours(space.from_ours(v)), v);
-            assert_eq!(space.rotation_to_ours(space.rotation_from_ours(q)), q);
-            assert_eq!(space.matrix_to_ours(space.matrix_from_ours(m)), m);
+            let (turn, step) = space.parent_from_joint(q, v);
+            assert_eq!(space.parent_from_joint(turn, step), (q, v));
+            let (turn, step) = space.model_from_joint(q, v);
+            let (turn, step) = space.model_from_joint_to_ours(turn, step);
+            // The products with a quarter turn round.
+            assert!(step == v && turn.dot(q) > 1.0 - 1e-6, "{space:?}");
         }
     }
 
     #[test]
-    fn rotations_and_matrices_move_what_points_show() {
+    fn what_hangs_on_a_joint_is_carried_along() {
         let q = Quat::from_axis_angle(Vec3::new(0.48, -0.6, 0.64), 1.1);
-        let (v, step) = (Vec3::new(0.3, 1.7, -0.2), Vec3::new(4.0, 5.0, -6.0));
+        let (step, point) = (Vec3::new(4.0, 5.0, -6.0), Vec3::new(0.3, 1.7, -0.2));
+        let matrix = Mat4::from_rotation_translation(q, step);
         for space in SPACES {
-            let turned = space.rotation_from_ours(q) * space.from_ours(v);
-            // A few roundings of numbers near 2.
-            assert!(turned.distance(space.from_ours(q * v)) < 1e-6, "{space:?}");
-            let m = Mat4::from_rotation_translation(q, step);
-            let moved = space.matrix_from_ours(m).transform_point3(space.from_ours(v));
-            // Of numbers near 8.
-            assert!(moved.distance(space.from_ours(m.transform_point3(v))) < 4e-6, "{space:?}");
+            // The joint's own axes, and what hangs on it, change only in a mirror.
+            let hanging = if space == Space::Unity { space.from_ours(point) } else { point };
+            let expected = space.from_ours(q * point + step);
+            let (turn, shift) = space.model_from_joint(q, step);
+            // A few roundings of numbers near 8.
+            assert!((turn * hanging + shift).distance(expected) < 4e-6, "{space:?}");
+            let model_from_joint = space.model_from_joint_matrix(matrix);
+            assert!(model_from_joint.transform_point3(hanging).distance(expected) < 4e-6, "{space:?}");
+            let joint_from_model = space.joint_from_model_matrix(matrix.inverse());
+            assert!(joint_from_model.transform_point3(expected).distance(hanging) < 4e-6, "{space:?}");
+        }
+    }
+
+    #[test]
+    fn bones_run_along_y_everywhere() {
+        // An upper arm of the T-pose: its bone runs to the left.
+        let q = Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2);
+        for space in SPACES {
+            let (turn, _) = space.model_from_joint(q, Vec3::ZERO);
+            assert!((turn * Vec3::Y).distance(space.from_ours(Vec3::X)) < 1e-6, "{space:?}");
         }
     }
 

@@ -96,11 +96,12 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_SPACE_GLTF = 0;
         /// <summary>
-        ///  Right-handed, +Z up, the character faces −Y and has its left at +X: Blender.
+        ///  Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
         /// </summary>
         internal const uint ANTHRONET_SPACE_BLENDER = 1;
         /// <summary>
-        ///  Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way.
+        ///  Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
+        ///  and joints' own axes are mirrored at X, too.
         /// </summary>
         internal const uint ANTHRONET_SPACE_UNITY = 2;
         /// <summary>
@@ -1077,7 +1078,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  A joint in the bind pose. Matrices are column-major and multiply column vectors.
+    ///  A joint in the bind pose. Its +Y axis runs along its bone in every space. Matrices are column-major and multiply column vectors.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_joint

@@ -83,10 +83,11 @@
 // Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 #define ANTHRONET_SPACE_GLTF 0
 
-// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender.
+// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
 #define ANTHRONET_SPACE_BLENDER 1
 
-// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way.
+// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
+// and joints' own axes are mirrored at X, too.
 #define ANTHRONET_SPACE_UNITY 2
 
 // The rig's own names, such as `upperarm_l`.
@@ -355,7 +356,7 @@ typedef struct anthronet_transform {
     float translation[3];
 } anthronet_transform;
 
-// A joint in the bind pose. Matrices are column-major and multiply column vectors.
+// A joint in the bind pose. Its +Y axis runs along its bone in every space. Matrices are column-major and multiply column vectors.
 typedef struct anthronet_joint {
     // Place of the parent, before this joint's own; −1 of the root.
     int32_t parent;

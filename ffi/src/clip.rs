@@ -110,8 +110,9 @@ pub unsafe extern "C" fn anthronet_clip_new(
 ) -> anthronet_status {
     make(out_clip, error, || {
         let name = text(name, name_length, "name")?.to_owned();
-        let poses = crate::motion::locals(slice(frames, count, "frames")?, space(in_space)?);
-        Ok(Clip::of_poses(name, read(body, "body")?.rest.clone(), frames_per_second, &poses)?)
+        let rest = &read(body, "body")?.rest;
+        let poses = crate::motion::locals(slice(frames, count, "frames")?, rest.parents(), space(in_space)?);
+        Ok(Clip::of_poses(name, rest.clone(), frames_per_second, &poses)?)
     })
 }
 
@@ -297,13 +298,15 @@ fn write(
     space: Space,
     out: &mut [anthronet_transform],
 ) {
-    let joints = if to_model {
-        anthronet::pose::model_from_joints(clip.rest().parents(), locals, model);
-        model.as_slice()
+    let parents = clip.rest().parents();
+    if to_model {
+        anthronet::pose::model_from_joints(parents, locals, model);
+        for (out, joint) in out.iter_mut().zip(model) {
+            *out = joint.model_from_joint_in(space).into();
+        }
     } else {
-        locals
-    };
-    for (out, joint) in out.iter_mut().zip(joints) {
-        *out = joint.in_space(space).into();
+        for ((out, joint), parent) in out.iter_mut().zip(locals).zip(parents) {
+            *out = joint.parent_from_joint_in(space, *parent).into();
+        }
     }
 }

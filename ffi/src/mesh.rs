@@ -308,7 +308,12 @@ impl anthronet_mesh {
         let asked = scene_options(options.lod, options.influences, 0, options.body_only, options.skin_tone)?;
         Ok(Self {
             parts: Scene::from_body(&body.body, &asked)?.into_buffers(layout, space)?,
-            bind: body.rest.model_from_joints().iter().map(|joint| joint.in_space(space)).collect(),
+            bind: body
+                .rest
+                .model_from_joints()
+                .iter()
+                .map(|joint| joint.model_from_joint_in(space))
+                .collect(),
             blend_shapes: Vec::new(),
             options,
         })

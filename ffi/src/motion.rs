@@ -192,24 +192,31 @@ pub unsafe extern "C" fn anthronet_motion_new(
             0.. => Ok(Some(*p as u32)),
             _ => Err(Fault::new(ANTHRONET_ERROR_INDEX, format!("parents: expected -1 or more, got {p}"))),
         });
-        let rest = locals(slice(source.rest, joints, "rest")?, space);
+        let parents = parents.collect::<Outcome<Vec<_>>>()?;
+        let rest = locals(slice(source.rest, joints, "rest")?, &parents, space);
         let rest = RestPose::new(
             names.collect::<Outcome<_>>()?,
-            parents.collect::<Outcome<_>>()?,
+            parents,
             rest,
             vec![None; source.joint_count as usize],
         )?;
         let frames = slice(source.frames, joints * u64::from(source.frame_count), "frames")?;
+        let frames = locals(frames, rest.parents(), space);
         let name = text(source.name.data, source.name.length, "name")?.to_owned();
-        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &locals(frames, space))?;
+        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &frames)?;
         give(out, Motion::of_clip(clip));
         Ok(())
     })
 }
 
-/// Transforms of a space as the library's own.
-pub(crate) fn locals(transforms: &[anthronet_transform], space: Space) -> Vec<Local> {
-    transforms.iter().map(|transform| Local::from(transform).out_of_space(space)).collect()
+/// Joints relative to their parents, frame by frame, in a space, as the library's own.
+pub(crate) fn locals(
+    transforms: &[anthronet_transform],
+    parents: &[Option<u32>],
+    space: Space,
+) -> Vec<Local> {
+    let joints = transforms.iter().zip(parents.iter().cycle());
+    joints.map(|(joint, parent)| Local::from(joint).parent_from_joint_out_of(space, *parent)).collect()
 }
 
 /// Frees a motion; NULL is nothing.

@@ -12,9 +12,10 @@ use crate::status::{ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_POINTER, ANTHRONET_ERR
 
 /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 pub const ANTHRONET_SPACE_GLTF: u32 = 0;
-/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender.
+/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
 pub const ANTHRONET_SPACE_BLENDER: u32 = 1;
-/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way.
+/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
+/// and joints' own axes are mirrored at X, too.
 pub const ANTHRONET_SPACE_UNITY: u32 = 2;
 
 /// The rig's own names, such as `upperarm_l`.

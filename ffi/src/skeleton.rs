@@ -17,7 +17,7 @@ pub struct anthronet_transform {
     pub translation: [f32; 3],
 }
 
-/// A joint in the bind pose. Matrices are column-major and multiply column vectors.
+/// A joint in the bind pose. Its +Y axis runs along its bone in every space. Matrices are column-major and multiply column vectors.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_joint {
@@ -75,15 +75,14 @@ pub unsafe extern "C" fn anthronet_body_joints(
         exactly("count", joints.len(), count.into())?;
         let out = slice_mut(out_joints, count.into(), "out_joints")?;
         for ((out, joint), rest) in out.iter_mut().zip(joints).zip(&body.rest.pose().locals) {
-            let model_from_joint = space.matrix_from_ours(joint.model_from_joint.into());
-            let rest = rest.in_space(space);
+            let model_from_joint = joint.model_from_joint;
             *out = anthronet_joint {
                 parent: joint.parent.map_or(-1, |parent| parent as i32),
                 length: joint.length,
-                parent_from_joint: rest.into(),
-                model_from_joint: model_from_joint.to_cols_array(),
+                parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
+                model_from_joint: space.model_from_joint_matrix(model_from_joint.into()).to_cols_array(),
                 joint_from_model: space
-                    .matrix_from_ours(joint.model_from_joint.inverse().into())
+                    .joint_from_model_matrix(model_from_joint.inverse().into())
                     .to_cols_array(),
             };
         }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import Any, Mapping, Optional, Type, TypeVar, Union
+from typing import Any, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def choice(table: Mapping[Any, int], value: Any, name: str) -> int:
     try:
         return table[value]
     except (KeyError, TypeError):
-        known = ", ".join(map(repr, table))
+        known = ", ".join(map(repr, table)) or "none"
         kind = ValueError if isinstance(value, (str, type(None))) else TypeError
         raise kind(f"{name}: expected one of {known}, got {value!r}") from None
 
@@ -65,6 +65,11 @@ def whole(value: Any, name: str, bits: int = 32) -> int:
     if not 0 <= found < 1 << bits:
         raise ValueError(f"{name}: expected 0 to {(1 << bits) - 1}, got {found}")
     return found
+
+
+def place(value: Any, name: str) -> int:
+    """The place of a parent: −1 for none."""
+    return -1 if not isinstance(value, str) and value == -1 else whole(value, name, 31)
 
 
 def flag(value: Any, name: str) -> int:
@@ -107,25 +112,25 @@ def instance(value: Any, kind: Type[T], name: str) -> T:
     return value
 
 
-def rows(value: Any, name: str, columns: int, count: Optional[int] = None) -> np.ndarray:
-    """Rows of 32-bit floats, packed; copied only where they are something else."""
+def floats(value: Any, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
+    """A packed array of 32-bit floats; copied only where it is something else. None in `shape` is any number."""
     try:
-        array = np.asarray(value)
-        array = np.ascontiguousarray(array, np.float32) if array.dtype.kind in "fiu" else None
+        given = np.asarray(value)
     except (TypeError, ValueError):
-        array = None
-    if array is None:
-        raise TypeError(f"{name}: expected numbers, got {type(value).__name__}")
-    _shape(array, name, columns, count)
+        given = np.empty(0, object)
+    if given.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: expected an array of numbers, got {type(value).__name__}")
+    array = np.ascontiguousarray(given, np.float32)
+    shaped(array, name, shape)
     return array if array.flags.aligned else array.copy()
 
 
-def filled(out: Any, name: str, columns: int, count: int) -> np.ndarray:
+def filled(out: Any, name: str, shape: Tuple[int, ...]) -> np.ndarray:
     """Rows of 32-bit floats that are written: any stride from row to row, each row packed."""
     array = instance(out, np.ndarray, name)
     if array.dtype != np.float32 or not array.dtype.isnative:
         raise TypeError(f"{name}: expected an array of float32, got {array.dtype}")
-    _shape(array, name, columns, count)
+    shaped(array, name, shape)
     if not array.flags.writeable:
         raise ValueError(f"{name}: expected an array that can be written, got one that is read-only")
     if not packed_rows(array):
@@ -146,8 +151,8 @@ def extent(array: np.ndarray) -> int:
     return (len(array) - 1) * array.strides[0] + width if len(array) else 0
 
 
-def _shape(array: np.ndarray, name: str, columns: int, count: Optional[int]) -> None:
-    good = array.ndim == 2 and array.shape[1] == columns and count in (None, len(array))
-    if not good:
-        expected = f"({'n' if count is None else count}, {columns})"
-        raise ValueError(f"{name}: expected an array of shape {expected}, got {array.shape}")
+def shaped(array: np.ndarray, name: str, shape: Tuple[Optional[int], ...]) -> None:
+    """Refuses an array of another shape; None in `shape` is any number."""
+    if array.ndim != len(shape) or any(want not in (None, got) for want, got in zip(shape, array.shape)):
+        expected = ", ".join("n" if want is None else str(want) for want in shape)
+        raise ValueError(f"{name}: expected an array of shape ({expected}), got {array.shape}")

@@ -44,6 +44,33 @@ class Clip(Owner):
     def _make(cls, make: Any, *arguments: Any) -> Clip:
         return cls._of(new_handle(make, lib.anthronet_clip_free, *arguments))
 
+    @classmethod
+    def from_poses(
+        cls, body: Body, name: str, frames_per_second: float, frames: np.ndarray, space: str = "gltf"
+    ) -> Clip:
+        """A clip of poses that a program has, such as an action of an armature.
+
+        Args:
+            body: whose joints move.
+            name: of the clip.
+            frames_per_second: its rate.
+            frames: (frames, joints, 7) float32, each joint relative to its parent: a unit quaternion x, y, z, w and a
+                translation in metres. Other numbers are converted.
+            space: of `frames`: `"gltf"`, `"blender"` or `"unity"`.
+
+        Raises:
+            Error: numbers are not finite, quaternions not of unit length, or the rate is not positive.
+            TypeError, ValueError: `frames` is of another shape, or an argument of another kind.
+        """
+        from ._body import Body
+
+        body = _arguments.instance(body, Body, "body")
+        encoded, rate = _arguments.text(name, "name"), _arguments.number(frames_per_second, "frames_per_second")
+        array = _arguments.floats(frames, "frames", (None, body.joint_count, 7))
+        count = len(array) * body.joint_count
+        poses = (_space(space), array.ctypes.data, count)
+        return cls._make(lib.anthronet_clip_new, body._open, encoded, len(encoded), rate, *poses)
+
     @property
     def name(self) -> str:
         """Its name."""

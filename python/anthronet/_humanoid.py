@@ -31,8 +31,8 @@ class HumanoidBone(NamedTuple):
 def _bone(index: int) -> HumanoidBone:
     bone = described(_native.HumanoidBone)
     call(lib.anthronet_humanoid_bone_at, index, ctypes.byref(bone))
-    names = [text(getattr(bone, name)) for name in HumanoidBone._fields[:-1]]
-    return HumanoidBone(*names, required=bool(bone.required))
+    names = {name: text(getattr(bone, name)) for name in HumanoidBone._fields if name != "required"}
+    return HumanoidBone(required=bool(bone.required), **names)
 
 
 #: All of them.

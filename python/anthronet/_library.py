@@ -132,7 +132,8 @@ class Owner:
         self._handle = None
 
     def __enter__(self) -> Any:
-        self._open
+        if self._handle is None:
+            raise ValueError(f"{type(self).__name__}: is closed")
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -172,7 +173,7 @@ def take_bytes(handle: Handle) -> bytes:
     """What a handle of bytes holds."""
     data, length = ctypes.c_void_p(), ctypes.c_uint64()
     call(lib.anthronet_bytes_data, handle, ctypes.byref(data), ctypes.byref(length))
-    if not length.value:
+    if not data.value:
         return b""
     # `string_at` counts in a C int.
     return bytes(memoryview((ctypes.c_char * length.value).from_address(data.value)))
@@ -209,6 +210,14 @@ def set_log_callback(callback: Optional[Callable[[int, str], None]]) -> None:
     if callback is not None and not callable(callback):
         raise TypeError(f"callback: expected a function or None, got {type(callback).__name__}")
 
+    with _log_lock:
+        wrapped = _native.LogCallback() if callback is None else _native.LogCallback(_hearing(callback))
+        call(lib.anthronet_set_log_callback, wrapped, None)
+        # The former one may go only now.
+        _log_callback = wrapped
+
+
+def _hearing(callback: Callable[[int, str], None]) -> Callable[[int, int, int, object], None]:
     def hear(level: int, data: int, length: int, _user: object) -> None:
         _per_thread.hears = True
         try:
@@ -216,11 +225,7 @@ def set_log_callback(callback: Optional[Callable[[int, str], None]]) -> None:
         finally:
             _per_thread.hears = False
 
-    with _log_lock:
-        wrapped = _native.LogCallback() if callback is None else _native.LogCallback(hear)
-        call(lib.anthronet_set_log_callback, wrapped, None)
-        # The former one may go only now.
-        _log_callback = wrapped
+    return hear
 
 
 # A thread of the library must not come into an interpreter that is gone.

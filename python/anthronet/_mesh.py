@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Dict, Iterator, Optional, Tuple
+import threading
+from typing import TYPE_CHECKING, Any, Dict, Iterator, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _arguments, _native
-from ._library import Handle, Owner, call, described, lib, new_handle, number_of, text
+from ._library import Handle, Owner, call, described, lib, new_handle, number_of, text, text_of
 
 if TYPE_CHECKING:
     from ._body import Body
@@ -27,7 +28,9 @@ _ATTRIBUTES = {
     "quad_uvs": _native.ATTRIBUTE_QUAD_UVS,
     "triangle_uvs": _native.ATTRIBUTE_TRIANGLE_UVS,
 }
-_TYPES = {
+# What a blend shape moves.
+_MOVED = {name: _ATTRIBUTES[name] for name in ("positions", "normals")}
+_TYPES: Dict[int, np.dtype] = {
     _native.TYPE_F32: np.dtype(np.float32),
     _native.TYPE_U32: np.dtype(np.uint32),
     _native.TYPE_U16: np.dtype(np.uint16),
@@ -37,10 +40,11 @@ _TYPES = {
 class Mesh(Owner):
     """The surfaces of a body: `parts`, the body first, then eyes, teeth, tongue and lashes.
 
-    Made by `Body.mesh`. May be used by many threads.
+    Made by `Body.mesh`. May be used by many threads, one of which at a time is at its memory.
     """
 
     _options: Any
+    _lock: threading.Lock
     _parts: Tuple[Part, ...]
 
     @classmethod
@@ -57,6 +61,7 @@ class Mesh(Owner):
             body_only=_arguments.flag(body_only, "body_only"),
             skin_tone=_arguments.whole(skin_tone, "skin_tone"),
         )
+        self._lock = threading.Lock()
         self._handle = self._surfaces(body)
         count = number_of(lib.anthronet_mesh_part_count, self._handle)
         self._parts = tuple(Part(self, i) for i in range(count))
@@ -66,7 +71,7 @@ class Mesh(Owner):
         return new_handle(lib.anthronet_mesh_new, lib.anthronet_mesh_free, body._open, ctypes.byref(self._options))
 
     def update(self, body: Body) -> None:
-        """Makes the mesh that of another body, with the options that it was made with.
+        """Makes the mesh that of another body, with the options that it was made with and without blend shapes.
 
         Arrays got before keep the surface of before and stay valid: the new surface has memory of its own, so that
         threads which are reading the old one are not in its way. Get the arrays again to see it.
@@ -74,8 +79,34 @@ class Mesh(Owner):
         from ._body import Body
 
         body = _arguments.instance(body, Body, "body")
-        self._open
+        if self.closed:
+            raise ValueError("Mesh: is closed")
         self._handle = self._surfaces(body)
+
+    def add_blend_shape(self, name: str, body: Body) -> None:
+        """Adds a blend shape that leads to the surface of another body: at weight 1 the mesh has that body's shape in the
+        bind pose. Bones stay where they are, so bodies should be of about the same stature.
+
+        Args:
+            name: its name, not taken by another.
+            body: of the same model.
+
+        Raises:
+            InvalidError: the name is empty or taken.
+        """
+        from ._body import Body
+
+        encoded, body = _arguments.text(name, "name"), _arguments.instance(body, Body, "body")
+        with self._lock:
+            call(lib.anthronet_mesh_add_blend_shape, self._open, encoded, len(encoded), body._open)
+
+    @property
+    def blend_shapes(self) -> Tuple[str, ...]:
+        """The names of its blend shapes, in their order; `Part.blend_shape` has the arrays."""
+        with self._lock:
+            handle = self._open
+            count = number_of(lib.anthronet_mesh_blend_shape_count, handle)
+            return tuple(text_of(lib.anthronet_mesh_blend_shape_name, handle, i) for i in range(count))
 
     @property
     def parts(self) -> Tuple[Part, ...]:
@@ -99,7 +130,9 @@ class Mesh(Owner):
         """
         from ._skin import Skinner
 
-        return Skinner._new(self._open, _arguments.whole(part, "part"))
+        place = _arguments.whole(part, "part")
+        with self._lock:
+            return Skinner._new(self._open, place)
 
     def __repr__(self) -> str:
         return f"<Mesh of {', '.join(part.name for part in self._parts)}>"
@@ -195,6 +228,15 @@ class Part:
         """(vertices,) uint32: which vertex of the model each one is."""
         return self._view("sources")
 
+    def blend_shape(self, shape: Union[str, int], attribute: str = "positions") -> np.ndarray:
+        """The way of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view, as the others.
+
+        Args:
+            shape: its name or place in `Mesh.blend_shapes`.
+            attribute: `"positions"` or `"normals"`.
+        """
+        return self._view(attribute, self._shape(shape))
+
     def read(self, attribute: str, out: Optional[np.ndarray] = None) -> np.ndarray:
         """Copies an array of the part.
 
@@ -206,35 +248,53 @@ class Part:
         Raises:
             TypeError, ValueError: there is no such array, or `out` is of another shape or type, or read-only.
         """
-        number = _arguments.choice(_ATTRIBUTES, attribute, "attribute")
-        handle = self._mesh._open
-        view, dtype, shape = self._where(handle, attribute)
-        if out is None:
-            out = np.empty(shape, dtype)
-        array = _arguments.instance(out, np.ndarray, "out")
-        if array.dtype != dtype:
-            raise TypeError(f"out: expected an array of {dtype}, got {array.dtype}")
-        if array.shape != shape:
-            raise ValueError(f"out: expected an array of shape {shape}, got {array.shape}")
-        if not array.flags.writeable:
-            raise ValueError("out: expected an array that can be written, got one that is read-only")
-        if not _arguments.packed_rows(array):
-            array[...] = _array(view, dtype, shape, handle)
-        elif view.rows:
-            stride = array.strides[0] if len(array) > 1 else 0
-            bytes_ = _arguments.extent(array)
-            call(lib.anthronet_mesh_read, handle, self._index, number, array.ctypes.data, bytes_, stride)
-        return array
+        return self._read(attribute, None, out)
 
-    def _where(self, handle: Handle, attribute: str) -> Tuple[Any, np.dtype, Tuple[int, ...]]:
+    def read_blend_shape(
+        self, shape: Union[str, int], attribute: str = "positions", out: Optional[np.ndarray] = None
+    ) -> np.ndarray:
+        """Copies the way of a blend shape. Arguments and errors as of `blend_shape` and `read`."""
+        return self._read(attribute, self._shape(shape), out)
+
+    def _shape(self, shape: Union[str, int]) -> int:
+        if not isinstance(shape, str):
+            return _arguments.whole(shape, "shape")
+        names = self._mesh.blend_shapes
+        return _arguments.choice({name: i for i, name in enumerate(names)}, shape, "shape")
+
+    def _read(self, attribute: str, shape: Optional[int], out: Optional[np.ndarray]) -> np.ndarray:
+        with self._mesh._lock:
+            source = self._source(attribute, shape)
+            array = np.empty(source.shape, source.dtype) if out is None else _arguments.instance(out, np.ndarray, "out")
+            if array.dtype != source.dtype:
+                raise TypeError(f"out: expected an array of {source.dtype}, got {array.dtype}")
+            if array.shape != source.shape:
+                raise ValueError(f"out: expected an array of shape {source.shape}, got {array.shape}")
+            if not array.flags.writeable:
+                raise ValueError("out: expected an array that can be written, got one that is read-only")
+            if not _arguments.packed_rows(array):
+                array[...] = source.array()
+            elif len(array):
+                stride = array.strides[0] if len(array) > 1 else 0
+                call(source.read, *source.place, array.ctypes.data, _arguments.extent(array), stride)
+            return array
+
+    def _view(self, attribute: str, shape: Optional[int] = None) -> np.ndarray:
+        with self._mesh._lock:
+            return self._source(attribute, shape).array()
+
+    def _source(self, attribute: str, shape: Optional[int]) -> _Source:
+        handle = self._mesh._open
+        if shape is None:
+            place: Tuple[Any, ...] = (handle, self._index, _arguments.choice(_ATTRIBUTES, attribute, "attribute"))
+            data, read = lib.anthronet_mesh_data, lib.anthronet_mesh_read
+        else:
+            place = (handle, shape, self._index, _arguments.choice(_MOVED, attribute, "attribute"))
+            data, read = lib.anthronet_mesh_blend_shape_data, lib.anthronet_mesh_read_blend_shape
         view = _native.View()
-        call(lib.anthronet_mesh_data, handle, self._index, _ATTRIBUTES[attribute], ctypes.byref(view))
-        shape = (view.rows,) if attribute == "sources" else (view.rows, view.columns)
-        return view, _TYPES[view.number_type], shape
-
-    def _view(self, attribute: str) -> np.ndarray:
-        handle = self._mesh._open
-        return _array(*self._where(handle, attribute), handle)
+        call(data, *place, ctypes.byref(view))
+        rows = (view.rows,) if attribute == "sources" else (view.rows, view.columns)
+        return _Source(place, read, view.data, _TYPES[view.number_type], rows)
 
     def __repr__(self) -> str:
         return f"<Part {self.name!r}, {self.vertex_count} vertices>"
@@ -245,20 +305,33 @@ class _Memory:
 
     __slots__ = ("__array_interface__", "handle")
 
-    def __init__(self, address: int, dtype: np.dtype, shape: Tuple[int, ...], handle: Handle) -> None:
+    def __init__(self, source: _Source) -> None:
         read_only = True
-        self.handle = handle
+        self.handle = source.place[0]
         self.__array_interface__: Dict[str, Any] = {
-            "data": (address, read_only),
-            "shape": shape,
-            "typestr": dtype.str,
+            "data": (source.address, read_only),
+            "shape": source.shape,
+            "typestr": source.dtype.str,
             "version": 3,
         }
 
 
-def _array(view: Any, dtype: np.dtype, shape: Tuple[int, ...], handle: Handle) -> np.ndarray:
-    if view.rows:
-        return np.asarray(_Memory(view.data, dtype, shape, handle))
-    array = np.empty(shape, dtype)
-    array.flags.writeable = False
-    return array
+class _Source(NamedTuple):
+    """Where an array of a mesh is."""
+
+    #: The handle, and what of it.
+    place: Tuple[Any, ...]
+    #: The entry that copies it.
+    read: Any
+    #: Of its first number; None of an empty one.
+    address: Optional[int]
+    dtype: np.dtype
+    shape: Tuple[int, ...]
+
+    def array(self) -> np.ndarray:
+        """A view of it."""
+        if self.address:
+            return np.asarray(_Memory(self))
+        array = np.empty(self.shape, self.dtype)
+        array.flags.writeable = False
+        return array

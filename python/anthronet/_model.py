@@ -12,7 +12,7 @@ from . import _arguments, _native
 from ._arguments import Path
 from ._body import Body
 from ._job import Job
-from ._library import Handle, Owner, call, described, json_of, lib, new_handle, number_of
+from ._library import Owner, call, described, json_of, lib, new_handle, number_of
 from ._request import MEASURES, Request
 
 
@@ -145,7 +145,7 @@ class Model(Owner):
         array = positions
         direct = isinstance(array, np.ndarray) and array.dtype == np.float32 and array.dtype.isnative
         if not (direct and array.ndim == 2 and array.shape[1] == 3 and _arguments.packed_rows(array)):
-            array = _arguments.rows(positions, "positions", 3)
+            array = _arguments.floats(positions, "positions", (None, 3))
         count = _arguments.whole(len(array), "positions")
         stride = array.strides[0] if count > 1 else 0
         return self._measured(lib.anthronet_measure_mesh, array.ctypes.data, count, stride, number)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import json
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
 
 from . import _arguments, _native
 from ._arguments import Path
@@ -25,7 +27,7 @@ _UPS = {None: _native.UP_FOUND, "y": _native.UP_Y, "z": _native.UP_Z}
 class Motion(Owner):
     """A motion file as it was read: at least one clip of the file's own skeleton. Immutable; may be used by many threads.
 
-    Made by `open_motion` and `Motion.from_bytes`.
+    Made by `open_motion`, `Motion.from_bytes` and `Motion.from_poses`.
     """
 
     @classmethod
@@ -60,6 +62,58 @@ class Motion(Owner):
             len(encoded),
             ctypes.byref(options),
         )
+
+    @classmethod
+    def from_poses(
+        cls,
+        name: str,
+        joint_names: Sequence[str],
+        parents: Sequence[int],
+        rest: np.ndarray,
+        frames: np.ndarray,
+        frames_per_second: float,
+        space: str = "gltf",
+    ) -> Motion:
+        """A motion of a skeleton that a program has, such as an action of an armature, to be retargeted as one of a file.
+
+        Args:
+            name: of its clip.
+            joint_names: one per joint, none twice.
+            parents: place of each joint's parent, before the joint's own; −1 for none.
+            rest: (joints, 7) float32: where each joint rests relative to its parent, a unit quaternion x, y, z, w and a
+                translation in metres. Other numbers are converted.
+            frames: (frames, joints, 7) float32: likewise for each frame.
+            frames_per_second: their rate.
+            space: of the transforms: `"gltf"`, `"blender"` or `"unity"`.
+
+        Raises:
+            Error: numbers are not finite, a parent is not before its joint, or a name comes twice.
+            TypeError, ValueError: an argument is of another kind or shape.
+        """
+        if isinstance(joint_names, (str, bytes)):
+            raise TypeError("joint_names: expected a list of names, got one text")
+        encoded = [_arguments.text(one, "joint_names") for one in joint_names]
+        count = len(encoded)
+        places = np.array([_arguments.place(one, "parents") for one in parents], np.int32)
+        _arguments.shaped(places, "parents", (count,))
+        resting = _arguments.floats(rest, "rest", (count, 7))
+        poses = _arguments.floats(frames, "frames", (None, count, 7))
+        clip_name, buffers = _arguments.text(name, "name"), [ctypes.c_char_p(one) for one in encoded]
+        kept = ctypes.c_char_p(clip_name)
+        texts = (_native.Text * count)(*[_text(buffer, len(one)) for buffer, one in zip(buffers, encoded)])
+        source = described(
+            _native.MotionSource,
+            space=_arguments.choice(_arguments.SPACES, space, "space"),
+            joint_count=count,
+            frame_count=_arguments.whole(len(poses), "frames"),
+            frames_per_second=_arguments.number(frames_per_second, "frames_per_second"),
+            name=_text(kept, len(clip_name)),
+            joint_names=ctypes.addressof(texts),
+            parents=places.ctypes.data,
+            rest=resting.ctypes.data,
+            frames=poses.ctypes.data,
+        )
+        return cls._make(lib.anthronet_motion_new, ctypes.byref(source))
 
     @property
     def clip_names(self) -> Tuple[str, ...]:
@@ -97,8 +151,8 @@ class Motion(Owner):
             in_place: leaves out the way over the ground.
             looped: makes the end meet the beginning.
             root_motion: gives the way over the ground to the joint `Root` instead of the pelvis.
-            mapping: which joint of the source drives which of ours, `{"upperarm_l": "LeftArm", "jaw": None}`; the rest is
-                found.
+            mapping: which joint of the source drives which of ours, or nothing: `{"LeftArm": "upperarm_l", "Jaw": None}`;
+                the rest is found.
             frames_per_second: rate of the result; None for the motion's.
 
         Returns:
@@ -164,6 +218,10 @@ def open_motion(
     options = _options(metres_per_unit, up, frames_per_second)
     encoded = _arguments.path(path)
     return Motion._make(lib.anthronet_motion_open_path, encoded, len(encoded), ctypes.byref(options))
+
+
+def _text(buffer: ctypes.c_char_p, length: int) -> _native.Text:
+    return _native.Text(ctypes.cast(buffer, ctypes.c_void_p), length)
 
 
 def _options(metres_per_unit: Optional[float], up: Optional[str], frames_per_second: Optional[float]) -> Any:

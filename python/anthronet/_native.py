@@ -12,7 +12,6 @@ from ctypes import (
     c_double,
     c_float,
     c_int32,
-    c_uint8,
     c_uint32,
     c_uint64,
     c_void_p,

@@ -6,8 +6,6 @@ import threading
 from ctypes import c_double, c_uint8
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 
-import numpy as np
-
 from . import _arguments, _native
 from ._library import Handle, bytes_of, call, json_of, lib, new_handle, number_of, text_of
 
@@ -173,8 +171,9 @@ class Request:
     def __getitem__(self, name: str) -> float:
         """A given measure, metres. KeyError where it is open, is none, or where two sides differ."""
         measures = self.measures
-        values = {measures.get(side) for side in _sides(name)}
-        if len(values) != 1 or None in values:
+        sides = _sides(name)
+        values = {measures[side] for side in sides if side in measures}
+        if len(values) != 1 or not all(side in measures for side in sides):
             raise KeyError(name)
         return values.pop()
 
@@ -223,15 +222,12 @@ def _set_seed(handle: Handle, value: int) -> None:
 
 
 def _set_latent(handle: Handle, value: Optional[Iterable[float]]) -> None:
-    if value is not None and not isinstance(value, (str, bytes)):
-        try:
-            value = np.array([_arguments.number(one, "latent") for one in value], np.float64)
-        except TypeError as error:
-            raise TypeError(f"latent: expected numbers or None: {error}") from None
-    elif value is not None:
+    if isinstance(value, (str, bytes)) or not (value is None or hasattr(value, "__iter__")):
         raise TypeError(f"latent: expected numbers or None, got {value!r}")
-    count = 0 if value is None else len(value)
-    call(lib.anthronet_request_set_latent, handle, value.ctypes.data if count else None, count)
+    numbers = [] if value is None else [_arguments.number(one, "latent") for one in value]
+    if value is not None and not numbers:
+        raise ValueError("latent: expected numbers or None, got none of them")
+    call(lib.anthronet_request_set_latent, handle, (c_double * len(numbers))(*numbers), len(numbers))
 
 
 def _set_fill(handle: Handle, value: str) -> None:

@@ -104,8 +104,8 @@ class _Prepared:
         skinner = _arguments.instance(job.skinner, Skinner, "skinner")
         count = skinner.vertex_count
         self.skinner = skinner._open
-        self.joints = _arguments.rows(job.joints, "joints", 7)
-        self.offsets = None if job.offsets is None else _arguments.rows(job.offsets, "offsets", 3, count)
+        self.joints = _arguments.floats(job.joints, "joints", (None, 7))
+        self.offsets = None if job.offsets is None else _arguments.floats(job.offsets, "offsets", (count, 3))
         self.positions = _output(job.positions, "positions", count)
         self.normals = None if job.normals is False else _output(job.normals, "normals", count)
         self.described = _native.SkinJob(
@@ -139,7 +139,7 @@ class _Prepared:
 
 
 def _output(array: Any, name: str, count: int) -> np.ndarray:
-    return np.empty((count, 3), np.float32) if array is None else _arguments.filled(array, name, 3, count)
+    return np.empty((count, 3), np.float32) if array is None else _arguments.filled(array, name, (count, 3))
 
 
 def _apart(extents: List[Tuple[int, int]]) -> None:

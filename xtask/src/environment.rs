@@ -1,6 +1,9 @@
 //! What the cross-boundary tests need, installed into `target/test-env` with pinned versions.
 //!
-//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module)
+//! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
+//!   CMake and Ninja)
+//! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
+//! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
 //! Godot and the compilers of C and C++ with valgrind come from the system's packages.
@@ -26,6 +29,10 @@ const BLENDER_LIBRARIES: &[&str] = &[
     "libxkbcommon0",
 ];
 
+/// The Blender that every test runs in; its version is that of `tests/requirements.txt`.
+const BLENDER: &str = "5.0.1";
+/// The older ones that the extension supports, each in a virtual environment of its own.
+const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
 /// What builds and watches the consumers of the C ABI, and the packages of Debian and Ubuntu that have it.
 const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
 const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
@@ -51,6 +58,28 @@ impl Environment {
         let mut command = Command::new(program);
         command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
         Ok(command)
+    }
+
+    /// Python of every Blender that the extension supports, with its version, or why it is not there.
+    pub(crate) fn blenders(&self) -> Outcome<Vec<(&'static str, Result<PathBuf, String>)>> {
+        let newest = self.blender.clone().and_then(|()| self.python.clone());
+        let mut all = vec![(BLENDER, newest.clone())];
+        for version in OLDER_BLENDERS {
+            let found = match &newest {
+                Ok(python) => older_blender(python, version)?,
+                Err(reason) => Err(reason.clone()),
+            };
+            all.push((version, found));
+        }
+        Ok(all)
+    }
+
+    /// A program that the virtual environment brings, such as CMake.
+    pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
+        let python = self.python.as_ref().map_err(String::clone)?;
+        let folder = python.parent().unwrap_or(Path::new("."));
+        let found = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+        if found.is_file() { Ok(found) } else { Err(format!("{name} has no wheel for this platform")) }
     }
 
     /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to
@@ -145,6 +174,57 @@ fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
     Ok(python)
 }
 
+/// The versions of Python that the Python package is tested with: first the one that Blender 5.0 has.
+pub(crate) const PYTHONS: [&str; 5] = ["3.11", "3.9", "3.10", "3.12", "3.13"];
+
+/// Any Python new enough for the tests; nothing is installed for it.
+pub(crate) fn python() -> Outcome<PathBuf> {
+    Ok(find_python()?.0)
+}
+
+/// Python of a version in an environment with a wheel of ours and numpy, and nothing else. The outer error is a failure,
+/// the inner a reason to skip.
+pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf, String>> {
+    let Some(base) = python_of(version) else {
+        return Ok(Err(format!("there is no Python {version}: neither in the path nor of pyenv")));
+    };
+    let venv = tools::target().join("test-env").join(format!("python{version}"));
+    let python = program(&venv, "python");
+    let requirements = tools::root().join("tests/requirements.txt");
+    let pip = |arguments: &[&str]| {
+        let mut command = Command::new(&python);
+        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(arguments);
+        command
+    };
+    let made_from = format!("{}\n{}", base.display(), tools::read(&requirements)?);
+    installed_once(&venv, &made_from, || {
+        tools::run(Command::new(&base).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        tools::run(pip(&["numpy", "--constraint"]).arg(&requirements))
+    })?;
+    // The wheel is another one each time, its number is not.
+    tools::run(pip(&["--force-reinstall", "--no-deps"]).arg(wheel))?;
+    Ok(Ok(python))
+}
+
+/// A Python of exactly this version, from the path or among those of pyenv.
+fn python_of(version: &str) -> Option<PathBuf> {
+    let is = |python: &Path| {
+        let script = "import sys; print('%d.%d' % sys.version_info[:2])";
+        tools::output(Command::new(python).args(["-c", script])).is_ok_and(|found| found.trim() == version)
+    };
+    let named = PathBuf::from(format!("python{version}"));
+    if is(&named) {
+        return Some(named);
+    }
+    let pyenv = std::env::var_os("PYENV_ROOT").map(PathBuf::from);
+    let pyenv = pyenv.or_else(|| Some(std::env::home_dir()?.join(".pyenv")))?;
+    let mut installed: Vec<_> = std::fs::read_dir(pyenv.join("versions")).ok()?.flatten().collect();
+    installed.sort_by_key(std::fs::DirEntry::file_name);
+    let of_version = |name: &str| name.strip_prefix(version).is_some_and(|rest| rest.starts_with('.'));
+    installed.retain(|entry| of_version(&entry.file_name().to_string_lossy()));
+    installed.into_iter().map(|entry| program(&entry.path(), "python")).find(|python| is(python))
+}
+
 /// Imports Blender, installing its shared libraries where that is needed and allowed.
 fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
     let import =
@@ -157,6 +237,20 @@ fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
         Ok(()) => import().map(|_| Ok(())),
         Err(reason) => Ok(Err(format!("{message}; {reason}"))),
     }
+}
+
+/// Python of an older Blender, in a virtual environment beside the others.
+fn older_blender(python: &Path, version: &str) -> Outcome<Result<PathBuf, String>> {
+    let venv = tools::target().join("test-env").join(format!("blender-{version}"));
+    let module = format!("bpy=={version}");
+    let blender = program(&venv, "python");
+    let needs = tools::root().join("tests/requirements-blender.txt");
+    installed_once(&venv, &format!("{module}\n{}", tools::read(&needs)?), || {
+        tools::run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"];
+        tools::run(Command::new(&blender).args(pip).arg(&module).arg("--requirement").arg(&needs))
+    })?;
+    Ok(import_blender(&blender)?.map(|()| blender))
 }
 
 /// Debian's Godot 3 without a window, installed where that is needed and allowed.

@@ -6,6 +6,7 @@
 //! | `test`  | `check`, the Rust tests, and the cross-boundary tests in programs that are not ours |
 //! | `train` | rebuilds the committed model from nothing |
 //! | `bench` | the library's benchmarks |
+//! | `package` | what is handed to users, in `target/dist` |
 //! | `gen`   | rewrites generated files: the C header, the C# bindings, the pictures in `docs/` |
 //! | `bless` | rewrites the goldens in `tests/golden/` after an intended change |
 
@@ -17,6 +18,7 @@ mod environment;
 mod r#gen;
 mod hosts;
 mod layering;
+mod package;
 mod requests;
 mod test;
 mod tools;
@@ -54,7 +56,13 @@ enum Verb {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Rewrite generated files: ffi/include/anthronet.h, the C# bindings, docs/preview.png, docs/people.png
+    /// Make what is handed to users, in target/dist
+    Package {
+        /// What
+        #[arg(value_enum)]
+        kind: package::Kind,
+    },
+    /// Rewrite generated files: ffi/include/anthronet.h, the bindings of C# and Python, docs/preview.png, docs/people.png
     Gen {
         /// One kind alone
         #[arg(long, value_enum)]
@@ -70,6 +78,7 @@ fn main() -> ExitCode {
         Verb::Test { only } => test::run(only),
         Verb::Train { rest } => train::run(&rest),
         Verb::Bench { rest } => bench::run(&rest),
+        Verb::Package { kind } => package::run(kind),
         Verb::Gen { only } => r#gen::run(only),
         Verb::Bless => bless::run(),
     };

@@ -29,6 +29,9 @@ pub(crate) struct Row {
     direction_mean_deg: f64,
     beyond_limits_deg: f64,
     beyond_limits_joint: Option<String>,
+    /// The farthest that a limb turns in one frame beyond the motion, and where.
+    jump_deg: f64,
+    jump_at: Option<String>,
     /// Contacts of both feet, mean over the bodies.
     contacts: f64,
     /// The longest path of a touching point within one contact, before and after feet were held.
@@ -47,6 +50,7 @@ pub(crate) struct MotionTable {
     direction_mean_deg: f64,
     direction_worst_clip_mean_deg: f64,
     beyond_limits_deg: f64,
+    jump_deg: f64,
     slide_mm: f64,
     under_floor_mm: f64,
     rows: Vec<Row>,
@@ -79,6 +83,7 @@ pub(crate) fn motion_table(folder: &Path, bodies: usize) -> Result<MotionTable> 
         direction_mean_deg: of_files.iter().map(|r| r.direction_mean_deg).sum::<f64>() / files.len() as f64,
         direction_worst_clip_mean_deg: worst(|r| r.direction_mean_deg),
         beyond_limits_deg: worst(|r| r.beyond_limits_deg),
+        jump_deg: worst(|r| r.jump_deg),
         slide_mm: worst(|r| r.slide_mm),
         under_floor_mm: worst(|r| r.under_floor_mm),
         rows,
@@ -125,6 +130,10 @@ fn row(path: &Path, motion: &Motion, rests: &[Arc<RestPose>]) -> Result<Row> {
             row.frames = row.frames.max(quality.frames);
             row.direction_mean_deg += share * quality.direction.mean();
             row.beyond(quality.beyond_limits, quality.beyond_limits_joint.as_deref());
+            if quality.jump.degrees > row.jump_deg {
+                row.jump_deg = quality.jump.degrees;
+                row.jump_at = quality.jump.joint.as_ref().map(|j| format!("{j} {}", quality.jump.frame));
+            }
             if let Some(feet) = &quality.feet {
                 row.feet(&feet.before, &feet.after, share);
             }
@@ -157,6 +166,8 @@ impl Row {
             direction_mean_deg: 0.0,
             beyond_limits_deg: 0.0,
             beyond_limits_joint: None,
+            jump_deg: 0.0,
+            jump_at: None,
             contacts: 0.0,
             slide_before_mm: 0.0,
             slide_mm: 0.0,
@@ -191,19 +202,28 @@ impl MotionTable {
         );
         let _ = writeln!(
             out,
-            "  {:24} {:>6} {:>9} {:>14} {:>8} {:>16} {:>16}",
-            "clip", "frames", "direction", "beyond limits", "contacts", "slide a stride", "under the floor"
+            "  {:24} {:>6} {:>9} {:>14} {:>21} {:>8} {:>16} {:>16}",
+            "clip",
+            "frames",
+            "direction",
+            "beyond limits",
+            "jump in one frame",
+            "contacts",
+            "slide a stride",
+            "under the floor"
         );
         for r in &self.rows {
             let joint = r.beyond_limits_joint.as_deref().unwrap_or("");
             let _ = writeln!(
                 out,
-                "  {:24} {:6} {:7.2} ° {:6.2} ° {:>12} {:5.0} {:6.1} mm ({:.0}) {:6.1} mm ({:.0})",
+                "  {:24} {:6} {:7.2} ° {:6.2} ° {:>12} {:5.1} ° {:>15} {:5.0} {:6.1} mm ({:.0}) {:6.1} mm ({:.0})",
                 r.clip,
                 r.frames,
                 r.direction_mean_deg,
                 r.beyond_limits_deg,
                 joint,
+                r.jump_deg,
+                r.jump_at.as_deref().unwrap_or(""),
                 r.contacts,
                 r.slide_mm,
                 r.slide_before_mm,
@@ -213,11 +233,12 @@ impl MotionTable {
         }
         let _ = writeln!(
             out,
-            "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; slide a stride {:.1} mm; \
-             under the floor {:.1} mm",
+            "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; jump in one frame \
+             {:.1} °; slide a stride {:.1} mm; under the floor {:.1} mm",
             self.direction_mean_deg,
             self.direction_worst_clip_mean_deg,
             self.beyond_limits_deg,
+            self.jump_deg,
             self.slide_mm,
             self.under_floor_mm
         );

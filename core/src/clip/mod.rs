@@ -34,7 +34,7 @@ pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, 
 pub use onto::{ClipQuality, OntoOptions, OntoReport, onto, worst_excess};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
-    BoneError, DirectionError, FingerMode, Floor, FootMode, RetargetOptions, Retargeter, RootMotion,
-    direction_error,
+    BoneError, DirectionError, FingerMode, Floor, FootMode, Jump, RetargetOptions, Retargeter, RootMotion,
+    direction_error, worst_jump,
 };
 pub use sample::{Sampler, Wrap};

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::feet::{FeetOptions, FeetReport, plant};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
-use super::retarget::{DirectionError, RetargetOptions, Retargeter, direction_error};
+use super::retarget::{DirectionError, Jump, RetargetOptions, Retargeter, direction_error, worst_jump};
 use super::{Clip, Motion, in_place, looped, resample};
 use crate::Result;
 use crate::pose::RestPose;
-use crate::pose::limits::JointLimits;
+use crate::pose::limits::{JointLimits, TwistsBefore};
 
 /// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
 const LOOP_BLEND: f64 = 0.3;
@@ -63,6 +63,8 @@ pub struct ClipQuality {
     pub beyond_limits: f64,
     /// The joint that does.
     pub beyond_limits_joint: Option<String>,
+    /// The farthest that a limb turns in one frame beyond the motion.
+    pub jump: Jump,
     /// What was done about the feet; `None` where nothing was asked for.
     pub feet: Option<FeetReport>,
 }
@@ -99,9 +101,10 @@ pub fn onto(
     for source in &motion.clips {
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
+        let mut twists = TwistsBefore::first(&limits, source.frames_per_second());
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
-                limits.clamp(target, pose);
+                limits.clamp_after(target, pose, &mut twists);
             }
         })?;
         let mut feet = None;
@@ -109,8 +112,9 @@ pub fn onto(
             let (planted, found) = plant(&clip, options)?;
             (clip, feet) = (planted, Some(found));
         }
-        // Directions are those of the motion as it was, so before its end is bent to its beginning.
+        // Both compare with the motion as it was, so before its end is bent to its beginning.
         let direction = direction_error(source, &clip, &map);
+        let jump = worst_jump(source, &clip, &map);
         if options.in_place {
             clip = in_place(&clip)?;
         }
@@ -125,6 +129,7 @@ pub fn onto(
             direction,
             beyond_limits: f64::from(beyond).to_degrees(),
             beyond_limits_joint: joint.and_then(|j| target.names().get(j).cloned()),
+            jump,
             feet,
         });
         clips.push(clip);

@@ -36,17 +36,28 @@ impl Local {
         Self { rotation, translation: rotation * -self.translation }
     }
 
-    /// The same motion of ours with both its spaces in `space`.
-    pub fn in_space(self, space: Space) -> Self {
-        Self {
-            rotation: space.rotation_from_ours(self.rotation),
-            translation: space.from_ours(self.translation),
-        }
+    /// A joint's transform to the model, ours, in a space: see [`Space::model_from_joint`].
+    pub fn model_from_joint_in(self, space: Space) -> Self {
+        let (rotation, translation) = space.model_from_joint(self.rotation, self.translation);
+        Self { rotation, translation }
     }
 
-    /// A motion with both its spaces in `space`, in ours.
-    pub fn out_of_space(self, space: Space) -> Self {
-        Self { rotation: space.rotation_to_ours(self.rotation), translation: space.to_ours(self.translation) }
+    /// A joint's transform to its parent, ours, in a space; the model is the parent of a joint without one.
+    pub fn parent_from_joint_in(self, space: Space, parent: Option<u32>) -> Self {
+        if parent.is_none() {
+            return self.model_from_joint_in(space);
+        }
+        let (rotation, translation) = space.parent_from_joint(self.rotation, self.translation);
+        Self { rotation, translation }
+    }
+
+    /// A joint's transform to its parent in a space, as ours.
+    pub fn parent_from_joint_out_of(self, space: Space, parent: Option<u32>) -> Self {
+        let (rotation, translation) = match parent {
+            None => space.model_from_joint_to_ours(self.rotation, self.translation),
+            Some(_) => space.parent_from_joint(self.rotation, self.translation),
+        };
+        Self { rotation, translation }
     }
 }
 
@@ -95,12 +106,16 @@ mod tests {
     fn a_chain_ends_at_the_same_place_in_every_space() {
         let step =
             |angle| Local { rotation: Quat::from_rotation_x(angle), translation: Vec3::new(1.0, 2.0, 3.0) };
-        let (first, second) = (step(0.3), step(-1.1));
+        let (root, child) = (step(0.3), step(-1.1));
         for space in [Space::YUp, Space::ZUp, Space::Unity] {
-            let end = first.in_space(space).then(second.in_space(space));
-            let expected = space.from_ours(first.then(second).translation);
-            assert!(end.translation.distance(expected) < 1e-6, "{space:?}");
-            assert_eq!(first.in_space(space).out_of_space(space), first);
+            let there = [root.parent_from_joint_in(space, None), child.parent_from_joint_in(space, Some(0))];
+            let end = there[0].then(there[1]);
+            let expected = root.then(child).model_from_joint_in(space);
+            assert!(end.translation.distance(expected.translation) < 1e-6, "{space:?}");
+            assert!(end.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "{space:?}");
+            let back = there[0].parent_from_joint_out_of(space, None);
+            assert!(back.translation == root.translation && back.rotation.dot(root.rotation) > 1.0 - 1e-6);
+            assert_eq!(there[1].parent_from_joint_out_of(space, Some(0)), child);
         }
     }
 

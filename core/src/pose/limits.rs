@@ -17,10 +17,16 @@ use std::f32::consts::{PI, TAU};
 use glam::{Quat, Vec2, Vec3};
 
 use super::{Pose, RestPose, SwingTwist};
+use crate::rig::humanoid::finger;
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.
 const ROUNDING: f32 = 2e-5;
+/// How far past half a turn from the middle of its range a twist stays at the end of the range that it left by, radians
+/// (60°).
+const PAST_HALF: f32 = 1.05;
+/// How fast a twist goes over to the other end of its range when it must, radians a second (600°): as fast as wrists do.
+const GOING_OVER: f32 = 10.5;
 
 /// A row of the table, degrees, for a joint in the middle or on the left.
 struct Row {
@@ -92,27 +98,25 @@ pub struct JointLimit {
 }
 
 impl JointLimit {
-    /// The nearest swing and twist within, and how far off that is: the larger of the two.
-    fn within(&self, given: SwingTwist) -> (SwingTwist, f32) {
+    /// The nearest swing and twist within, and how far off that is: the larger of the two. The nearest twist is the
+    /// shorter way round, but goes on from the one `before`.
+    fn within(&self, given: SwingTwist, before: &mut TwistBefore) -> (SwingTwist, f32) {
         let inside = Vec2::new(
             given.swing.x.clamp(self.swing_x[0], self.swing_x[1]),
             given.swing.y.clamp(self.swing_z[0], self.swing_z[1]),
         )
         .clamp_length_max(self.cone);
         let middle = 0.5 * (self.twist[0] + self.twist[1]);
-        let off = given.twist - middle;
-        // The shorter way round.
-        let off = off - TAU * libm::roundf(off / TAU);
         let half = 0.5 * (self.twist[1] - self.twist[0]);
-        let twist = middle + off.clamp(-half, half);
-        let excess = inside.distance(given.swing).max(libm::fabsf(off) - half).max(0.0);
-        (SwingTwist { swing: inside, twist }, excess)
+        let (off, kept) = before.go_on(given.twist - middle, half);
+        let excess = inside.distance(given.swing).max(libm::fabsf(off - kept));
+        (SwingTwist { swing: inside, twist: middle + kept }, excess)
     }
 
     /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
-    fn clamped(&self, from_rest: Quat) -> Option<(Quat, f32)> {
+    fn clamped(&self, from_rest: Quat, before: &mut TwistBefore) -> Option<(Quat, f32)> {
         let centre = Quat::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
-        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest));
+        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), before);
         (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
     }
 
@@ -133,8 +137,7 @@ impl JointLimit {
             Some(base) => (base, true),
             None => (name.strip_suffix("_l").unwrap_or(name), false),
         };
-        let finger = ["index", "middle", "ring", "pinky"].iter().any(|f| base.starts_with(f));
-        let key = if finger && !base.ends_with("_01") { "finger" } else { base };
+        let key = if let Some((1.., 2..)) = finger(name) { "finger" } else { base };
         let row = TABLE.iter().find(|row| row.name == key)?;
         let range = |r: [f32; 2]| r.map(f32::to_radians);
         let (centre, cone) = match key {
@@ -145,6 +148,46 @@ impl JointLimit {
         let limit =
             Self { centre, swing_x: range(row.x), swing_z: range(row.z), cone, twist: range(row.twist) };
         Some(if right { limit.mirrored() } else { limit })
+    }
+}
+
+/// How a joint was twisted in the frame before.
+#[derive(Clone, Copy, Debug, Default)]
+struct TwistBefore {
+    /// From the middle of its range, radians: as given, past half a turn if it got there bit by bit, and as kept.
+    last: Option<(f32, f32)>,
+    /// The farthest that it may go from there to the other end of its range.
+    fastest: f32,
+}
+
+impl TwistBefore {
+    /// The next twist, as given and kept within `half` of the middle of its range.
+    fn go_on(&mut self, given: f32, half: f32) -> (f32, f32) {
+        let near = |place: f32| given + TAU * libm::roundf((place - given) / TAU);
+        let mut off = near(0.0);
+        let mut kept = off.clamp(-half, half);
+        if let Some((off_before, kept_before)) = self.last {
+            let unwound = near(off_before);
+            if libm::fabsf(unwound) < PI + PAST_HALF {
+                off = unwound;
+            }
+            let fastest = libm::fabsf(unwound - off_before).max(self.fastest);
+            kept = off.clamp(-half, half).clamp(kept_before - fastest, kept_before + fastest);
+        }
+        self.last = Some((off, kept));
+        (off, kept)
+    }
+}
+
+/// How the joints of a clip were twisted in the frame before: see [`JointLimits::clamp_after`].
+#[derive(Clone, Debug, Default)]
+pub struct TwistsBefore(Vec<TwistBefore>);
+
+impl TwistsBefore {
+    /// Before the first frame.
+    pub fn first(limits: &JointLimits, frames_per_second: f64) -> Self {
+        let before = TwistBefore { last: None, fastest: GOING_OVER / frames_per_second as f32 };
+        Self(vec![before; limits.limits.len()])
     }
 }
 
@@ -184,14 +227,26 @@ impl JointLimits {
         }
     }
 
+    /// As [`clamp`](Self::clamp), frame after frame of a clip: a joint that twists on past half a turn from the middle
+    /// of its range stays at the end that it left by, and goes over to the other in time, instead of jumping to and fro.
+    pub fn clamp_after(&self, rest: &RestPose, pose: &mut Pose, before: &mut TwistsBefore) {
+        for (joint, before) in before.0.iter_mut().enumerate() {
+            self.clamp_one(rest, pose, joint, before);
+        }
+    }
+
     /// Brings one joint within its limits; whether it had to be moved.
     pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
+        self.clamp_one(rest, pose, joint, &mut TwistBefore::default())
+    }
+
+    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
             (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
             return false;
         };
-        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation) else {
+        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation, before) else {
             return false;
         };
         local.rotation = (rest.rotation * inside).normalize();
@@ -205,7 +260,8 @@ impl JointLimits {
             .iter()
             .zip(from_rest)
             .map(|(limit, (rest, local))| {
-                let clamped = limit.and_then(|l| l.clamped(rest.rotation.conjugate() * local.rotation));
+                let turned = rest.rotation.conjugate() * local.rotation;
+                let clamped = limit.and_then(|limit| limit.clamped(turned, &mut TwistBefore::default()));
                 clamped.map_or(0.0, |(_, excess)| excess)
             })
             .collect()

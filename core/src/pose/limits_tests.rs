@@ -59,6 +59,41 @@ fn twist_is_clamped_the_shorter_way_round() {
     assert!((beyond("lowerarm_l", 0.0, 90.0, 0.0) - 30.0).abs() < 0.01);
 }
 
+/// The twist that a forearm keeps, frame by frame at 30 frames a second, whose twist is given; degrees.
+fn kept(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
+    let rest = rest();
+    let limits = JointLimits::of_rig(&rest);
+    let mut before = TwistsBefore::first(&limits, 30.0);
+    let joint = rest.find("lowerarm_l").unwrap();
+    let frame = |twist: f32| {
+        let mut pose = rest.pose().clone();
+        pose.locals[joint].rotation *= Quat::from_rotation_y(twist.to_radians());
+        limits.clamp_after(&rest, &mut pose, &mut before);
+        assert!(limits.excess(&rest, &pose).iter().all(|e| *e == 0.0));
+        let kept = rest.pose().locals[joint].rotation.conjugate() * pose.locals[joint].rotation;
+        SwingTwist::of(kept).twist.to_degrees()
+    };
+    twists.into_iter().map(frame).collect()
+}
+
+#[test]
+fn a_twist_past_half_a_turn_stays_at_its_end() {
+    // −170 to 60: half a turn from the middle is at 125.
+    let there_and_back: Vec<f32> = kept((40..160).chain((40..160).rev()).map(|d| d as f32));
+    assert!(there_and_back.iter().all(|t| (39.9..60.1).contains(t)), "{there_and_back:?}");
+}
+
+#[test]
+fn a_twist_that_goes_all_the_way_round_crosses_its_range_in_time() {
+    let round = kept((0..=360).step_by(5).map(|d| d as f32));
+    let steps = round.windows(2).map(|w| (w[1] - w[0]).abs());
+    assert!(steps.fold(0.0, f32::max) < 21.0, "{round:?}");
+    assert!(round.iter().any(|t| *t < -120.0) && round.last().unwrap().abs() < 0.1, "{round:?}");
+    // A range that is not left is followed at any speed.
+    let inside = kept([0.0, -100.0, 50.0]);
+    assert!(inside.iter().zip([0.0, -100.0, 50.0]).all(|(a, b)| (a - b).abs() < 0.01), "{inside:?}");
+}
+
 proptest! {
     #[test]
     fn clamping_twice_is_clamping_once_and_ends_within(

@@ -138,7 +138,7 @@ const ROOT: Row = ["Root", "Root", "Root", "root", "root"];
 /// Endings and beginnings of a side: native, Unity, Mixamo, VRM, Blender.
 const SIDES: [Row; 2] = [["_l", "Left", "Left", "left", ".L"], ["_r", "Right", "Right", "right", ".R"]];
 
-const FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
+const UNITY_FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
 
 struct Table {
     /// The humanoid bones: central before sided, left before right, required before optional.
@@ -184,9 +184,20 @@ fn sided(row: &Row, side: &Row) -> [String; 5] {
 }
 
 fn bone([native, unity, mixamo, vrm, blender]: [String; 5], required: bool) -> HumanoidBone {
-    let finger = FINGERS.iter().find(|finger| unity.contains(*finger));
+    let finger = UNITY_FINGERS.iter().find(|finger| unity.contains(*finger));
     let unity_trait = finger.map_or(unity.clone(), |finger| unity.replace(finger, &format!(" {finger} ")));
     HumanoidBone { native, unity, unity_trait, mixamo, vrm, blender, required }
+}
+
+/// The fingers of the rig. Each has three joints a side, numbered from the palm outwards: `index_02_l`.
+pub const FINGERS: [&str; 5] = ["thumb", "index", "middle", "ring", "pinky"];
+
+/// Finger, its place in [`FINGERS`], and number, 1 to 3, of a joint of the rig such as `index_02_l`.
+pub fn finger(native: &str) -> Option<(usize, usize)> {
+    let stem = native.strip_suffix("_l").or_else(|| native.strip_suffix("_r"))?;
+    let (finger, number) = stem.rsplit_once("_0")?;
+    let finger = FINGERS.iter().position(|name| *name == finger)?;
+    Some((finger, number.parse().ok().filter(|n| (1..=3).contains(n))?))
 }
 
 /// The humanoid bones of the rig: the seven in the middle, then 24 a side, the left first.

@@ -11,28 +11,28 @@ const PREAMBLE: &str = r#""""Declarations of libanthronet: what `include/anthron
 
 Made from ffi/src by `cargo xtask gen`; do not edit.
 """
-
-from ctypes import (
-    CFUNCTYPE,
-    POINTER,
-    Structure,
-    c_char,
-    c_char_p,
-    c_double,
-    c_float,
-    c_int32,
-    c_uint8,
-    c_uint32,
-    c_uint64,
-    c_void_p,
-)
 "#;
+
+/// What of ctypes may be needed, in the order in which Python's formatters want it.
+const CTYPES: [&str; 12] = [
+    "CFUNCTYPE",
+    "POINTER",
+    "Structure",
+    "c_char",
+    "c_char_p",
+    "c_double",
+    "c_float",
+    "c_int32",
+    "c_uint8",
+    "c_uint32",
+    "c_uint64",
+    "c_void_p",
+];
 
 /// The Python module that declares what the header declares.
 pub(super) fn declarations(header: &str) -> Outcome<String> {
     let header = Header::parse(header)?;
-    let mut text = PREAMBLE.to_owned();
-    text.push('\n');
+    let mut text = "\n".to_owned();
     for (name, value) in &header.constants {
         let _ = writeln!(text, "{name} = {value}");
     }
@@ -54,7 +54,13 @@ pub(super) fn declarations(header: &str) -> Outcome<String> {
         let _ = writeln!(text, "    \"{name}\": ({}, [{kinds}]),", header.result(result)?);
     }
     text.push_str("}\n");
-    Ok(text)
+    let mut imports = String::new();
+    for name in CTYPES {
+        if text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name) {
+            let _ = writeln!(imports, "    {name},");
+        }
+    }
+    Ok(format!("{PREAMBLE}\nfrom ctypes import (\n{imports})\n{text}"))
 }
 
 type Function = (String, String, Vec<String>);

@@ -4,7 +4,10 @@
 //! `skipped NAME: why`; all its other lines are for the reader.
 
 mod animation;
+mod blender;
 mod c;
+mod cpp;
+mod python;
 mod skin;
 mod tally;
 mod usd;
@@ -35,6 +38,9 @@ pub(crate) fn run() -> Outcome {
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
     c::run(&environment.c, &folder, &mut tally)?;
+    cpp::run(&anthronet, &environment, &folder, &mut tally)?;
+    python::run(&anthronet, &environment, &folder, &mut tally)?;
+    blender::run(&anthronet, &environment, &folder, &mut tally)?;
     close(&tally)
 }
 

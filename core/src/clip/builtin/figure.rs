@@ -7,6 +7,7 @@ use glam::{Quat, Vec2, Vec3};
 use crate::clip::feet::Leg;
 use crate::pose::ik::Reach;
 use crate::pose::{Local, Pose, RestPose, model_from_joints};
+use crate::rig::humanoid::finger;
 use crate::{Error, Result};
 
 /// What of a leg may be used, so that a knee never locks.
@@ -108,10 +109,6 @@ impl Figure {
         let joint = |name: &str| rest.require(name);
         let arm = |side: &str| -> Result<ArmJoints> {
             let of = |part: &str| joint(&format!("{part}_{side}"));
-            let ends = |parts: &[&str]| {
-                let found = parts.iter().filter_map(|part| rest.find(&format!("{part}_{side}")));
-                found.collect::<Vec<_>>()
-            };
             let helpers = [("upperarm_twist_01", -1.0), ("upperarm_twist_02", -0.5)];
             Ok(ArmJoints {
                 clavicle: of("clavicle")?,
@@ -122,20 +119,12 @@ impl Figure {
                     .iter()
                     .filter_map(|(part, share)| Some((rest.find(&format!("{part}_{side}"))?, *share)))
                     .collect(),
-                fingers: ends(&[
-                    "index_01",
-                    "index_02",
-                    "index_03",
-                    "middle_01",
-                    "middle_02",
-                    "middle_03",
-                    "ring_01",
-                    "ring_02",
-                    "ring_03",
-                    "pinky_01",
-                    "pinky_02",
-                    "pinky_03",
-                ]),
+                fingers: (0..rest.len())
+                    .filter(|&joint| {
+                        let name = &rest.names()[joint];
+                        name.ends_with(side) && matches!(finger(name), Some((1.., _)))
+                    })
+                    .collect(),
             })
         };
         let legs = Leg::both(rest)?;

@@ -131,6 +131,16 @@ fn bridged(values: &[Option<Vec3>], blend: usize) -> Vec<Vec3> {
     out
 }
 
+/// Raises values, and none more than it must, so that from one frame to the next they change by `most`.
+pub(super) fn ramped(values: &mut [f32], most: f32) {
+    for frame in 1..values.len() {
+        values[frame] = values[frame].max(values[frame - 1] - most);
+    }
+    for frame in (1..values.len()).rev() {
+        values[frame - 1] = values[frame - 1].max(values[frame] - most);
+    }
+}
+
 /// From 0 to 1 with level ends.
 pub(super) fn smoothstep(x: f32) -> f32 {
     let x = x.clamp(0.0, 1.0);

@@ -1,16 +1,18 @@
 //! Holding feet on the floor.
 
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
 use glam::{Quat, Vec3};
 
 use super::contacts::{Contacts, contacts};
-use super::hold::{Correction, corrections};
+use super::hold::{Correction, corrections, ramped};
 use super::leg::{self, Leg};
 use super::{FeetOptions, FeetReport, for_each_pose, measure};
 use crate::Result;
 use crate::clip::{Clip, TranslationTrack};
 use crate::pose::ik::Reach;
 use crate::pose::limits::JointLimits;
-use crate::pose::{Local, Pose, RestPose, model_from_joints};
+use crate::pose::{Local, Pose, RestPose, SwingTwist, model_from_joints};
 
 /// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
 const SOFTNESS: f32 = 0.001;
@@ -18,6 +20,8 @@ const SOFTNESS: f32 = 0.001;
 const SPARED: f32 = 0.004;
 /// How far an ankle or the toes may go beyond their limits so that a foot can stay where it is: 4°.
 const GIVE: f32 = 0.07;
+/// How fast toes begin and end to bend at most, radians a second (600°).
+const TOES: f32 = 10.5;
 
 /// Holds the feet of a clip of our rig: points in contact stay where they are, nothing sinks deeper than
 /// `options.depth`, toes bend instead of going through the floor. A foot keeps the rotation it has, but for the turn
@@ -41,18 +45,25 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
     // moves the whole body, so that legs keep their bend.
     let floor = found.floor - common_rise(clip, &legs, &found, &corrected(found.floor));
     let feet = corrected(floor);
-    let mut planter = Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor, options };
+    let planter = Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor, options };
     let drops = planter.pelvis_drops(clip, &feet, blend);
 
     let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
     let mut places = Vec::with_capacity(clip.frame_count());
+    let mut bends = [Vec::with_capacity(clip.frame_count()), Vec::with_capacity(clip.frame_count())];
     let mut pose = Pose::default();
     let mut model = Vec::new();
     for frame in 0..clip.frame_count() {
         clip.pose_into(frame, &mut pose);
-        planter.frame(&mut pose, &mut model, pelvis, [feet[0][frame], feet[1][frame]], drops[frame]);
+        let toes =
+            planter.frame(&mut pose, &mut model, pelvis, [feet[0][frame], feet[1][frame]], drops[frame]);
         rotations.extend(pose.locals.iter().map(|l| l.rotation));
         places.push(pose.locals[pelvis].translation);
+        bends.iter_mut().zip(toes).for_each(|(bends, bend)| bends.push(bend));
+    }
+    for (leg, bends) in planter.legs.iter().zip(&mut bends) {
+        ramped(bends, TOES / clip.frames_per_second() as f32);
+        planter.bend_toes(leg, bends, &mut pose, &mut rotations);
     }
     let mut tracks = clip.translations().to_vec();
     tracks.retain(|track| track.joint as usize != pelvis);
@@ -136,14 +147,15 @@ impl Planter<'_> {
         (0..most.len()).map(|f| most[window(f)].iter().sum::<f32>() / window(f).len() as f32).collect()
     }
 
+    /// Puts the feet of a frame where they go; how far the toes of each still have to bend.
     fn frame(
-        &mut self,
+        &self,
         pose: &mut Pose,
         model: &mut Vec<Local>,
         pelvis: usize,
         corrections: [Correction; 2],
         drop: f32,
-    ) {
+    ) -> [f32; 2] {
         let parents = self.rest.parents();
         model_from_joints(parents, &pose.locals, model);
         let goals: [Local; 2] = std::array::from_fn(|f| self.goal(&self.legs[f], model, &corrections[f]));
@@ -153,8 +165,8 @@ impl Planter<'_> {
         for ((leg, goal), correction) in self.legs.iter().zip(goals).zip(corrections) {
             let pivot = if correction.on_heel { leg.heel } else { pose.locals[leg.ball].translation };
             self.reach(leg, pose, leg.above(model), goal, pivot);
-            self.bend_toes(leg, pose, leg.above(model));
         }
+        std::array::from_fn(|f| self.toe_bend(&self.legs[f], pose, self.legs[f].above(model)))
     }
 
     /// Bends the leg to its goal. Where the ankle is past its limit the foot turns back about `pivot`, a point in its
@@ -173,23 +185,35 @@ impl Planter<'_> {
         self.limits.clamp_joint(self.rest, pose, leg.limb.end);
     }
 
-    /// Lifts the toes about the ball until their tip is out of the floor.
-    fn bend_toes(&self, leg: &Leg, pose: &mut Pose, above: Local) {
+    /// How far the toes turn up about the ball until their tip is out of the floor, radians; toes that point back under
+    /// the foot come forwards.
+    fn toe_bend(&self, leg: &Leg, pose: &Pose, above: Local) -> f32 {
         let [_, _, foot] = leg.limb.model_from_joints(pose, above);
         let ball = foot.then(pose.locals[leg.ball]);
         let wanted = leg.clearance[1] - ball.translation.y - self.options.depth;
         let (axis, toes) = (ball.rotation * Vec3::X, ball.rotation * leg.tip);
-        if toes.y >= wanted {
-            return;
-        }
         // toes.y · cos + (axis × toes).y · sin = wanted, on the way up. The axis is level but for the foot's roll.
         let (cos, sin) = (toes.y, axis.cross(toes).y);
         let most = libm::sqrtf(cos * cos + sin * sin);
-        if most < 1e-6 {
-            return;
+        if toes.y >= wanted || most < 1e-6 {
+            return 0.0;
         }
         let angle = libm::atan2f(sin, cos) - libm::acosf((wanted / most).clamp(-1.0, 1.0));
-        pose.locals[leg.ball].rotation *= Quat::from_rotation_x(angle);
-        self.limits.clamp_joint(self.rest, pose, leg.ball);
+        if angle < -FRAC_PI_2 { angle + TAU } else { angle.max(0.0) }
+    }
+
+    /// Bends the toes of every frame, within their limits.
+    fn bend_toes(&self, leg: &Leg, bends: &[f32], pose: &mut Pose, rotations: &mut [Quat]) {
+        let at_rest = self.rest.pose().locals[leg.ball].rotation;
+        for (bend, frame) in bends.iter().zip(rotations.chunks_exact_mut(self.rest.len())) {
+            let limit = self.limits.get(leg.ball).map_or(PI, |limit| limit.swing_x[1]);
+            let bent = SwingTwist::of(at_rest.conjugate() * frame[leg.ball]).swing.x;
+            let bend = bend.min(limit - bent);
+            if bend > 0.0 {
+                pose.locals[leg.ball].rotation = frame[leg.ball] * Quat::from_rotation_x(bend);
+                self.limits.clamp_joint(self.rest, pose, leg.ball);
+                frame[leg.ball] = pose.locals[leg.ball].rotation;
+            }
+        }
     }
 }

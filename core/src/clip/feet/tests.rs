@@ -65,6 +65,37 @@ fn feet_are_held_and_lifted_out_of_the_floor() {
     }
 }
 
+/// Somebody who stands on the tips of curled toes and then is lifted by 3 cm a frame.
+fn lifted(rest: &std::sync::Arc<crate::pose::RestPose>) -> Clip {
+    let mut pose = rest.pose().clone();
+    for (joint, degrees) in [("foot_l", -65.0_f32), ("foot_r", -65.0), ("ball_l", -45.0), ("ball_r", -45.0)] {
+        pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_rotation_x(degrees.to_radians());
+    }
+    let [ball, pelvis] = ["ball_l", "pelvis"].map(|name| rest.find(name).unwrap());
+    let fall = pose.model_from_joints(rest.parents())[ball].translation.y
+        - rest.model_from_joints()[ball].translation.y;
+    let lift = |frame: usize| Vec3::Y * (0.03 * frame.saturating_sub(10) as f32 - fall);
+    let values = (0..20).map(|frame| pose.locals[pelvis].translation + lift(frame)).collect();
+    let rotations = (0..20).flat_map(|_| pose.locals.iter().map(|l| l.rotation)).collect();
+    let tracks = vec![TranslationTrack { joint: pelvis as u32, values }];
+    Clip::new("lifted".into(), rest.clone(), 30.0, rotations, tracks).unwrap()
+}
+
+#[test]
+fn toes_leave_the_floor_without_a_jump() {
+    for (body, rest) in bodies() {
+        let (planted, report) = plant(&lifted(&rest), &FeetOptions::default()).unwrap();
+        let ball = rest.find("ball_l").unwrap();
+        let turns: Vec<f32> = (1..planted.frame_count())
+            .map(|f| planted.rotations(f)[ball].angle_between(planted.rotations(f - 1)[ball]).to_degrees())
+            .collect();
+        let most = turns.iter().copied().fold(0.0, f32::max);
+        assert!(turns.iter().sum::<f32>() > 60.0, "{body}: the toes bend on the floor: {turns:?}");
+        assert!(most < 21.0, "{body}: {most} degrees in one frame: {turns:?}");
+        assert!(report.after.deepest[0] < 0.007, "{body}: {report:?}");
+    }
+}
+
 #[test]
 fn feet_that_stand_well_stay_as_they_are() {
     let (_, rest) = bodies().remove(1);

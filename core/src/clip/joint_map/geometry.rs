@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::pose::RestPose;
+use crate::rig::humanoid::FINGERS;
 
 /// Upper arm and forearm as parts of thigh and calf together: 50th percentiles of adults (Winter, *Biomechanics and
 /// Motor Control of Human Movement*, table 4.1: 0.186 and 0.146 of height to 0.245 and 0.246).
@@ -297,9 +298,8 @@ impl<'a> Tree<'a> {
         chains.sort_by(|a, b| {
             (self.places[b[0]] - mean).dot(across).total_cmp(&(self.places[a[0]] - mean).dot(across))
         });
-        for (finger, chain) in
-            ["index", "middle", "ring", "pinky"].iter().zip(&chains).chain([(&"thumb", &thumb)])
-        {
+        chains.insert(0, thumb);
+        for (finger, chain) in FINGERS.iter().zip(&chains) {
             for (i, &joint) in chain.iter().take(3).enumerate() {
                 found.insert(format!("{finger}_0{}_{side}", i + 1), joint);
             }

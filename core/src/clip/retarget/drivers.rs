@@ -2,10 +2,11 @@
 
 use glam::Quat;
 
-use super::fingers::{finger, relaxed};
+use super::fingers::relaxed;
 use super::reference::Reference;
 use super::{Driver, FingerMode, RetargetOptions};
 use crate::pose::Local;
+use crate::rig::humanoid::finger;
 
 /// One driver per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &RetargetOptions) -> Vec<Driver> {

@@ -3,29 +3,18 @@
 use glam::{Quat, Vec3};
 
 use super::Joints;
+use crate::rig::humanoid::finger;
 
-/// Degrees by which a joint of each finger curls beyond the rest pose, from the palm outwards: a hand that hangs curls
-/// more towards the little finger.
-const CURLS: [(&str, [f32; 3]); 5] = [
-    ("thumb", [4.0, 6.0, 10.0]),
-    ("index", [10.0, 14.0, 8.0]),
-    ("middle", [14.0, 16.0, 10.0]),
-    ("ring", [17.0, 18.0, 12.0]),
-    ("pinky", [20.0, 20.0, 14.0]),
-];
-
-/// Finger and number of a joint such as `index_02_l`.
-pub(super) fn finger(name: &str) -> Option<(usize, usize)> {
-    let stem = name.strip_suffix("_l").or_else(|| name.strip_suffix("_r"))?;
-    let (finger, number) = stem.rsplit_once("_0")?;
-    let finger = CURLS.iter().position(|(name, _)| *name == finger)?;
-    Some((finger, number.parse().ok().filter(|n| (1..=3).contains(n))?))
-}
+/// Degrees by which a joint of each finger curls beyond the rest pose, in the order of
+/// [`FINGERS`](crate::rig::humanoid::FINGERS) and from the palm outwards: a hand that hangs curls more towards the
+/// little finger.
+const CURLS: [[f32; 3]; 5] =
+    [[4.0, 6.0, 10.0], [10.0, 14.0, 8.0], [14.0, 16.0, 10.0], [17.0, 18.0, 12.0], [20.0, 20.0, 14.0]];
 
 /// `parent_from_joint` of a finger joint at ease.
 pub(super) fn relaxed(joints: &Joints, joint: usize) -> Option<Quat> {
     let (finger, number) = finger(joints.target.names().get(joint)?)?;
-    let degrees = CURLS[finger].1[number - 1];
+    let degrees = CURLS[finger][number - 1];
     let rest = &joints.target_rest[joint];
     // In the T-pose palms look down; a finger curls about the axis across it and the way the palm looks. A thumb curls
     // towards the palm's middle, which is the way its tip already leans: about the same axis.

@@ -9,6 +9,7 @@ mod direction;
 mod drivers;
 mod fingers;
 mod hinge;
+mod jump;
 mod reference;
 mod root;
 #[cfg(test)]
@@ -21,6 +22,7 @@ use glam::Quat;
 
 pub use direction::{BoneError, DirectionError, direction_error};
 use hinge::{Limb, MeanFold};
+pub use jump::{Jump, worst_jump};
 use reference::Reference;
 use root::Root;
 use twist::Twist;

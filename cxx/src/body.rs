@@ -1,0 +1,111 @@
+//! Bodies: what a model makes of a request, and the account of it.
+
+use std::sync::Arc;
+
+use anthronet::measure::Sex;
+use anthronet::pose::RestPose;
+use anthronet::rig::humanoid::renamed;
+
+use crate::Result;
+use crate::bridge::ffi;
+use crate::enums::{Meaning, at};
+use crate::mesh::Mesh;
+use crate::model::measure;
+use crate::scene::Scene;
+
+pub(crate) struct Body {
+    pub(crate) body: anthronet::Body,
+    pub(crate) rest: Arc<RestPose>,
+}
+
+impl Body {
+    pub(crate) fn new(body: anthronet::Body) -> Result<Box<Self>> {
+        let rest = Arc::new(RestPose::of_joints(body.joints())?);
+        Ok(Box::new(Self { body, rest }))
+    }
+
+    pub(crate) fn summary(&self) -> ffi::BodySummary {
+        let report = self.body.report();
+        ffi::BodySummary {
+            sex: match report.sex {
+                Sex::Female => ffi::Sex::Female,
+                Sex::Male => ffi::Sex::Male,
+            },
+            seed: report.seed,
+            mass_kg: report.mass_kg,
+            volume_m3: report.volume_m3,
+            bmi: report.bmi,
+            solve_residual: report.solve_residual,
+            iterations: report.iterations as u32,
+            converged: report.converged,
+            joint_count: self.body.joints().len(),
+        }
+    }
+
+    pub(crate) fn measures(&self) -> Vec<ffi::MeasureReport> {
+        let measures = self.body.report().measures.iter().map(|measure| ffi::MeasureReport {
+            name: measure.name.to_owned(),
+            given: measure.given,
+            asked: measure.asked.unwrap_or_default(),
+            obtained: measure.obtained,
+            residual: measure.residual.unwrap_or_default(),
+            low90: measure.low90,
+            high90: measure.high90,
+            percentile: measure.percentile,
+        });
+        measures.collect()
+    }
+
+    pub(crate) fn measure(&self, name: &str) -> Result<f64> {
+        Ok(self.body.measurements()[measure(name)?.index()])
+    }
+
+    pub(crate) fn warnings(&self) -> &[String] {
+        &self.body.report().warnings
+    }
+
+    pub(crate) fn report(&self) -> String {
+        self.body.report().to_json()
+    }
+
+    pub(crate) fn latent(&self) -> &[f64] {
+        &self.body.report().z
+    }
+
+    pub(crate) fn joints(&self, space: ffi::Space) -> Result<Vec<ffi::Joint>> {
+        let space = space.meaning()?;
+        let joints =
+            self.body.joints().iter().zip(&self.rest.pose().locals).map(|(joint, rest)| ffi::Joint {
+                name: joint.name.clone(),
+                parent: joint.parent.map_or(-1, |parent| parent as i32),
+                length: joint.length,
+                parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
+                model_from_joint: space
+                    .model_from_joint_matrix(joint.model_from_joint.into())
+                    .to_cols_array(),
+                joint_from_model: space
+                    .joint_from_model_matrix(joint.model_from_joint.inverse().into())
+                    .to_cols_array(),
+            });
+        Ok(joints.collect())
+    }
+
+    pub(crate) fn joint_name(&self, joint: usize, names: ffi::JointNames) -> Result<String> {
+        Ok(renamed(&at(self.body.joints(), joint, "joint")?.name, names.meaning()?).into_owned())
+    }
+
+    pub(crate) fn mesh(&self, options: &ffi::MeshOptions) -> Result<Box<Mesh>> {
+        Mesh::new(self, options)
+    }
+
+    pub(crate) fn scene(&self, options: &ffi::SceneOptions) -> Result<Box<Scene>> {
+        Scene::new(self, options)
+    }
+
+    pub(crate) fn save(&self, path: &str) -> Result<()> {
+        anthronet::export::write_scene(
+            &anthronet::export::Scene::from_body(&self.body, &Default::default())?,
+            path,
+        )
+    }
+}

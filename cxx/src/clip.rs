@@ -1,0 +1,225 @@
+//! Motion: files as they were read, their way onto a body, and clips of the body's own skeleton.
+
+use std::path::Path;
+
+use anthronet::Error;
+use anthronet::clip::feet::FeetOptions;
+use anthronet::clip::{self, BUILTIN, OntoOptions, ReadOptions, RootMotion, Sampler};
+use anthronet::pose::{Local, Pose};
+use anthronet::space::{Space, Unit};
+
+use crate::Result;
+use crate::body::Body;
+use crate::bridge::ffi;
+use crate::enums::{Meaning, at, finite};
+
+pub(crate) struct Clip {
+    clip: clip::Clip,
+    report: String,
+}
+
+pub(crate) struct Motion(clip::Motion);
+
+pub(crate) fn builtin_clips() -> Vec<String> {
+    BUILTIN.iter().map(|name| (*name).to_owned()).collect()
+}
+
+impl From<clip::Clip> for Box<Clip> {
+    fn from(clip: clip::Clip) -> Self {
+        Self::new(Clip { clip, report: String::new() })
+    }
+}
+
+impl Clip {
+    pub(crate) fn builtin(name: &str, body: &Body) -> Result<Box<Self>> {
+        Ok(clip::builtin(name, &body.rest)?.into())
+    }
+
+    pub(crate) fn clip(&self) -> &clip::Clip {
+        &self.clip
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        self.clip.name()
+    }
+
+    pub(crate) fn renamed(&self, name: &str) -> Box<Self> {
+        Box::new(Self { clip: self.clip.clone().with_name(name), report: self.report.clone() })
+    }
+
+    pub(crate) fn frame_count(&self) -> usize {
+        self.clip.frame_count()
+    }
+
+    pub(crate) fn joint_count(&self) -> usize {
+        self.clip.rest().len()
+    }
+
+    pub(crate) fn frames_per_second(&self) -> f64 {
+        self.clip.frames_per_second()
+    }
+
+    pub(crate) fn duration(&self) -> f64 {
+        self.clip.duration()
+    }
+
+    pub(crate) fn report(&self) -> &str {
+        &self.report
+    }
+
+    pub(crate) fn sample(
+        &self,
+        seconds: f64,
+        wrap: ffi::Wrap,
+        relative: ffi::Relative,
+        space: ffi::Space,
+        joints: &mut [ffi::Transform],
+    ) -> Result<()> {
+        let (wrap, to_model, space) = (wrap.meaning()?, relative.meaning()?, space.meaning()?);
+        finite("seconds", seconds)?;
+        room(joints, self.joint_count())?;
+        self.write(&Sampler::new(&self.clip, wrap).sample(seconds), &mut Vec::new(), to_model, space, joints);
+        Ok(())
+    }
+
+    pub(crate) fn bake(
+        &self,
+        relative: ffi::Relative,
+        space: ffi::Space,
+        joints: &mut [ffi::Transform],
+    ) -> Result<()> {
+        let (to_model, space) = (relative.meaning()?, space.meaning()?);
+        room(joints, self.frame_count() * self.joint_count())?;
+        let (mut pose, mut model) = (Pose::default(), Vec::new());
+        for (frame, joints) in joints.chunks_exact_mut(self.joint_count()).enumerate() {
+            self.clip.pose_into(frame, &mut pose);
+            self.write(&pose, &mut model, to_model, space, joints);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn resample(&self, frames_per_second: f64) -> Result<Box<Self>> {
+        Ok(clip::resample(&self.clip, frames_per_second)?.into())
+    }
+
+    pub(crate) fn in_place(&self) -> Result<Box<Self>> {
+        Ok(clip::in_place(&self.clip)?.into())
+    }
+
+    pub(crate) fn looped(&self, seconds: f64) -> Result<Box<Self>> {
+        Ok(clip::looped(&self.clip, seconds)?.into())
+    }
+
+    pub(crate) fn blend(&self, other: &Self, weight: f32) -> Result<Box<Self>> {
+        finite("weight", weight.into())?;
+        Ok(clip::blend(&self.clip, &other.clip, weight, None)?.into())
+    }
+
+    pub(crate) fn crossfade(&self, next: &Self, seconds: f64) -> Result<Box<Self>> {
+        Ok(clip::crossfade(&self.clip, &next.clip, seconds)?.into())
+    }
+
+    /// A pose as it was asked for; `model` is room that may be used again.
+    fn write(
+        &self,
+        pose: &Pose,
+        model: &mut Vec<Local>,
+        to_model: bool,
+        space: Space,
+        out: &mut [ffi::Transform],
+    ) {
+        let parents = self.clip.rest().parents();
+        if to_model {
+            anthronet::pose::model_from_joints(parents, &pose.locals, model);
+            for (out, joint) in out.iter_mut().zip(model) {
+                *out = joint.model_from_joint_in(space).into();
+            }
+        } else {
+            for ((out, joint), parent) in out.iter_mut().zip(&pose.locals).zip(parents) {
+                *out = joint.parent_from_joint_in(space, *parent).into();
+            }
+        }
+    }
+}
+
+fn room(joints: &[ffi::Transform], expected: usize) -> Result<()> {
+    if joints.len() == expected {
+        return Ok(());
+    }
+    Err(Error::invalid("joints", format!("expected room for {expected} transforms, got {}", joints.len())))
+}
+
+impl Motion {
+    pub(crate) fn open(path: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
+        Ok(Box::new(Self(clip::read(path, &read_options(options)?)?)))
+    }
+
+    pub(crate) fn from_bytes(bytes: &[u8], name: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
+        Ok(Box::new(Self(clip::from_bytes(bytes, Path::new(name), &read_options(options)?)?)))
+    }
+
+    pub(crate) fn clip_count(&self) -> usize {
+        self.0.clips.len()
+    }
+
+    pub(crate) fn clip_name(&self, clip: usize) -> Result<&str> {
+        Ok(at(&self.0.clips, clip, "clip")?.name())
+    }
+
+    pub(crate) fn report(&self) -> Result<String> {
+        json("motion report", &self.0.report)
+    }
+
+    pub(crate) fn retarget(
+        &self,
+        clip: usize,
+        body: &Body,
+        options: &ffi::RetargetOptions,
+    ) -> Result<Box<Clip>> {
+        let options = onto_options(options)?;
+        let one = clip::Motion {
+            clips: vec![at(&self.0.clips, clip, "clip")?.clone()],
+            report: self.0.report.clone(),
+        };
+        let (clips, report) = clip::onto(&one, &body.rest, &options)?;
+        let report = json("retarget report", &report)?;
+        let clip = clips.into_iter().next().map(|clip| Box::new(Clip { clip, report }));
+        clip.ok_or_else(|| Error::invalid("motion", "no clip was made"))
+    }
+}
+
+fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
+    let unit = match asked.metres_per_unit {
+        0.0 => None,
+        metres => Some(Unit::of_metres(metres).ok_or_else(|| {
+            Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
+        })?),
+    };
+    Ok(ReadOptions { unit, up: asked.up.meaning()?, frames_per_second: rate(asked.frames_per_second) })
+}
+
+fn onto_options(asked: &ffi::RetargetOptions) -> Result<OntoOptions> {
+    let mut options = OntoOptions {
+        limits: !asked.no_limits,
+        feet: (!asked.no_feet).then(FeetOptions::default),
+        in_place: asked.in_place,
+        looped: asked.looped,
+        frames_per_second: rate(asked.frames_per_second),
+        ..OntoOptions::default()
+    };
+    options.retarget.fingers = asked.fingers.meaning()?;
+    options.retarget.root = if asked.root_motion { RootMotion::Root } else { RootMotion::Pelvis };
+    if !asked.mapping_json.is_empty() {
+        options.mapping = clip::read_overrides(&asked.mapping_json, Path::new("mapping_json"))?;
+    }
+    Ok(options)
+}
+
+/// Frames per second; 0 for those that are there.
+fn rate(frames_per_second: f64) -> Option<f64> {
+    (frames_per_second != 0.0).then_some(frames_per_second)
+}
+
+fn json(what: &'static str, value: &impl serde::Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(|e| Error::invalid(what, e.to_string()))
+}

@@ -1,0 +1,61 @@
+"""How fast the Python package is: numbers beside their bars, asserted nowhere.
+
+    python python_speed.py
+"""
+
+import time
+
+import numpy as np
+
+import anthronet
+from anthronet import _library
+
+
+def best(function, repeats=7, number=1):
+    """Seconds of one call, the best of some rounds."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        for _ in range(number):
+            function()
+        times.append((time.perf_counter() - start) / number)
+    return min(times)
+
+
+def main():
+    body = anthronet.generate("female", height=1.70)
+    model, mesh, walk = anthronet.default_model(), body.mesh(), anthronet.builtin_clip("walk", body)
+    empty = best(lambda: None, number=100_000)
+    print(f"abi_version()                    {(best(anthronet.abi_version, number=100_000)) * 1e6:8.2f} µs   bar 1 µs")
+    plain = _library.lib.anthronet_abi_version
+    print(f"  the entry alone                {best(plain, number=100_000) * 1e6:8.2f} µs")
+    count = lambda: model.vertex_count(0)  # noqa: E731
+    print(f"model.vertex_count(0)            {(best(count, number=50_000) - empty) * 1e6:8.2f} µs   two results checked")
+
+    part = mesh[0]
+    view, out = part.positions, np.empty(part.positions.shape, np.float32)
+    # In turns, so that both meet the same machine.
+    rounds = [(best(lambda: np.copyto(out, view), 3, 40), best(lambda: part.read("positions", out), 3, 40)) for _ in range(9)]
+    copied, read = (min(times) for times in zip(*rounds))
+    size = view.nbytes
+    print(f"numpy copies level 0 positions   {copied * 1e6:8.1f} µs   {size / copied / 1e9:.1f} GB/s, {size / 1e6:.2f} MB")
+    print(f"part.read of the same            {read * 1e6:8.1f} µs   {copied / read:.0%} of that speed, bar 60 %")
+    stable = np.zeros(len(view), [("position", "f4", 3), ("normal", "f4", 3)])
+    rows = best(lambda: part.read("positions", stable["position"]), number=20)
+    print(f"part.read into interleaved rows  {rows * 1e6:8.1f} µs")
+    print(f"part.positions (a view)          {best(lambda: part.positions, number=5000) * 1e6:8.2f} µs")
+
+    request = anthronet.Request("female", height=1.70)
+    print(f"generate                         {best(lambda: model.generate(request)) * 1e3:8.2f} ms")
+    print(f"generate and mesh, level 1       {best(lambda: model.generate(request).mesh(lod=1)) * 1e3:8.2f} ms")
+    print(f"mesh, level 1                    {best(lambda: body.mesh(lod=1)) * 1e3:8.2f} ms")
+    print(f"mesh, level 0                    {best(lambda: body.mesh()) * 1e3:8.2f} ms")
+    pose = np.empty((walk.joint_count, 7), np.float32)
+    print(f"clip.sample                      {best(lambda: walk.sample(0.3, relative='model', out=pose), number=2000) * 1e6:8.2f} µs")
+    skinner, normals = body.mesh(lod=1).skinner(), None
+    positions, normals = skinner.skin(pose)
+    print(f"skinner.skin, level 1            {best(lambda: skinner.skin(pose, positions, normals), number=50) * 1e6:8.1f} µs")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,64 @@
+//! The Python package: its wheel in a clean environment of every Python that is there, measures by numpy and scipy,
+//! speed beside its bars.
+
+use std::path::Path;
+use std::process::Command;
+
+use super::tally::Tally;
+use crate::environment::{self, Environment};
+use crate::tools::{self, Outcome};
+use crate::{bindings, package};
+
+pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+    let python = match &environment.python {
+        Ok(python) => python,
+        Err(reason) => {
+            tally.skip("the Python package", reason);
+            return Ok(());
+        }
+    };
+    let wheel = match package::package_python(python) {
+        Ok(wheel) => wheel,
+        Err(why) => {
+            tally.case("the Python wheel", Err(why));
+            return Ok(());
+        }
+    };
+    tally.script("the Python wheel", environment.python_script("python_wheel.py")?.arg(&wheel));
+    let folder = folder.join("python");
+    let header = tools::root().join(bindings::HEADER);
+    for version in environment::PYTHONS {
+        let clean = match environment::python_with(version, &wheel)? {
+            Ok(clean) => clean,
+            Err(reason) => {
+                tally.skip(&format!("the Python package in Python {version}"), &reason);
+                continue;
+            }
+        };
+        let script = |name: &str, arguments: &[&Path]| {
+            let mut command = Command::new(&clean);
+            command
+                .env("PYTHONDONTWRITEBYTECODE", "1")
+                .env_remove("PYTHONPATH")
+                .env_remove("ANTHRONET_LIBRARY");
+            command.arg(tools::root().join("tests").join(name)).args(arguments);
+            command
+        };
+        let mut case = |what: &str, name: &str, arguments: &[&Path]| {
+            tally.script(&format!("Python {version}: {what}"), &mut script(name, arguments));
+        };
+        case("interface", "python_api.py", &[&header, &folder]);
+        case("memory and threads", "python_memory.py", &[&folder]);
+        case("README", "python_readme.py", &[&folder]);
+        // Neither depends on the version of Python.
+        if version == environment::PYTHONS[0] {
+            case("declarations", "python_declarations.py", &[&header]);
+            case("files", "python_files.py", &[anthronet, &folder]);
+            let _ = tools::run(&mut script("python_speed.py", &[]));
+        }
+    }
+    let mut measures = environment.python_script("python_measures.py")?;
+    measures.env("PYTHONPATH", tools::root().join("python")).env("ANTHRONET_LIBRARY", package::library()?);
+    tally.script("measures of Python's bodies by numpy and scipy", &mut measures);
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! `cargo xtask package blender`: the extension with its wheel, built and validated by Blender's own tool.
+
+use super::python::package_python;
+use crate::environment::Environment;
+use crate::tools::{self, Outcome};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Where the wheel lies in the extension, as `blender_manifest.toml` names it.
+const WHEELS: &str = "wheels";
+
+/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the command line, which tells
+/// what the model's measures are. The inner error is a reason for which this machine cannot.
+pub(crate) fn package_blender(
+    environment: &Environment,
+    anthronet: &Path,
+) -> Outcome<Result<PathBuf, String>> {
+    let python = match (&environment.python, &environment.blender) {
+        (Ok(python), Ok(())) => python,
+        (Err(reason), _) | (_, Err(reason)) => return Ok(Err(reason.clone())),
+    };
+    let wheel = package_python(python)?;
+    let source = tools::root().join("blender_addon");
+    let stage = tools::target().join("dist/stage/anthronet");
+    if stage.exists() {
+        std::fs::remove_dir_all(&stage).map_err(|e| format!("{}: cannot empty: {e}", stage.display()))?;
+    }
+    copy(&source, &stage)?;
+    let name = wheel.file_name().and_then(|name| name.to_str()).ok_or("the wheel has no name")?;
+    let manifest = tools::read(&source.join("blender_manifest.toml"))?;
+    if !manifest.contains(&format!("./{WHEELS}/{name}")) {
+        return Err(format!("blender_manifest.toml: expected the wheel {name}"));
+    }
+    let wheels = stage.join(WHEELS);
+    std::fs::create_dir_all(&wheels).map_err(|e| format!("{}: cannot create: {e}", wheels.display()))?;
+    std::fs::copy(&wheel, wheels.join(name)).map_err(|e| format!("{}: cannot copy: {e}", wheel.display()))?;
+    tools::write(&stage.join("data/measures.json"), &measures(anthronet)?)?;
+
+    let archive =
+        tools::target().join("dist").join(format!("anthronet-blender-{}.zip", env!("CARGO_PKG_VERSION")));
+    let tool = extension_tool(python)?;
+    let run = |arguments: &[&std::ffi::OsStr]| {
+        tools::output(Command::new(python).arg(&tool).args(arguments)).map(drop)
+    };
+    run(&[
+        "build".as_ref(),
+        "--source-dir".as_ref(),
+        stage.as_ref(),
+        "--output-filepath".as_ref(),
+        archive.as_ref(),
+    ])?;
+    run(&["validate".as_ref(), archive.as_ref()])?;
+    Ok(Ok(archive))
+}
+
+/// What the extension knows of the measures before it loads the library.
+fn measures(anthronet: &Path) -> Outcome<String> {
+    let info = tools::output(Command::new(anthronet).args(["info", "--json"]))?;
+    let info: serde_json::Value = serde_json::from_str(&info).map_err(|e| format!("info --json: {e}"))?;
+    let known = info["measures"].as_array().ok_or("info --json: no measures")?.iter().map(|measure| {
+        let fields = ["name", "kind", "standard", "min", "max"];
+        let fields = fields.map(|field| (field.to_owned(), measure[field].clone()));
+        serde_json::Value::Object(fields.into_iter().collect())
+    });
+    Ok(serde_json::json!({ "measures": known.collect::<Vec<_>>() }).to_string() + "\n")
+}
+
+/// Blender's program that builds and validates extensions; it comes with the module.
+fn extension_tool(python: &Path) -> Outcome<PathBuf> {
+    let script = "import glob, importlib.util, os; \
+                  folder = os.path.dirname(importlib.util.find_spec('bpy').origin); \
+                  print(glob.glob(folder + '/*/scripts/addons_core/bl_pkg/cli/blender_ext.py')[0])";
+    Ok(PathBuf::from(tools::output(Command::new(python).args(["-c", script]))?.trim()))
+}
+
+/// Copies a folder, but for what Python and packaging leave in it.
+fn copy(from: &Path, to: &Path) -> Outcome {
+    let complain = |e: std::io::Error| format!("{}: cannot copy: {e}", from.display());
+    std::fs::create_dir_all(to).map_err(complain)?;
+    for entry in std::fs::read_dir(from).map_err(complain)? {
+        let entry = entry.map_err(complain)?;
+        let (name, path) = (entry.file_name(), entry.path());
+        if ["__pycache__", "data", WHEELS].iter().any(|left| name == *left) {
+            continue;
+        }
+        if path.is_dir() {
+            copy(&path, &to.join(name))?;
+        } else {
+            std::fs::copy(&path, to.join(name)).map_err(complain)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,143 @@
+//! `cargo xtask package cpp`: a folder that CMake's `find_package(anthronet)` finds.
+//!
+//! ```text
+//! target/dist/cpp/include/anthronet/{anthronet.hpp, bridge.h}   include/rust/cxx.h
+//! target/dist/cpp/lib/libanthronet_cxx.a                        lib/cmake/anthronet/anthronet-config{,-version}.cmake
+//! target/dist/cpp/examples                                      README.md, licences
+//! ```
+//!
+//! The C ABI's header is not in it: the archive does not hold those functions, and two archives of Rust in one program
+//! would hold the same runtime twice.
+
+use crate::tools::{self, Outcome, cargo};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+/// What a build of the crate tells.
+#[derive(Default)]
+struct Built {
+    archive: PathBuf,
+    /// The folder with the generated headers.
+    include: PathBuf,
+    /// What the archive needs of the system, as CMake links it.
+    libraries: Vec<String>,
+}
+
+/// Builds the archive and puts the package together; its folder.
+pub(crate) fn package_cpp() -> Outcome<PathBuf> {
+    let built = build()?;
+    let source = tools::root().join("cxx");
+    let package = tools::target().join("dist/cpp");
+    if package.exists() {
+        std::fs::remove_dir_all(&package).map_err(|e| format!("{}: cannot empty: {e}", package.display()))?;
+    }
+    let archive = built.archive.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    copy(&built.archive, &package.join("lib").join(&archive))?;
+    copy(&source.join("include/anthronet/anthronet.hpp"), &package.join("include/anthronet/anthronet.hpp"))?;
+    copy(&built.include.join("anthronet-cxx/src/bridge.rs.h"), &package.join("include/anthronet/bridge.h"))?;
+    copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
+    for name in ["README.md", "examples/person.cpp", "examples/walk.cpp"] {
+        copy(&source.join(name), &package.join(name))?;
+    }
+    for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
+        copy(&tools::root().join(name), &package.join(name))?;
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    let numbers: Vec<_> = version.split('.').collect();
+    let values = [
+        ("@ARCHIVE@", archive.as_str()),
+        ("@LIBRARIES@", &built.libraries.join(";")),
+        ("@VERSION@", version),
+        ("@MAJOR@", numbers[0]),
+        ("@MINOR@", numbers[1]),
+        ("@POINTER@", &size_of::<usize>().to_string()),
+        ("@BITS@", &usize::BITS.to_string()),
+    ];
+    for name in ["anthronet-config.cmake", "anthronet-config-version.cmake"] {
+        let mut text = tools::read(&source.join("cmake").join(name).with_extension("cmake.in"))?;
+        for (key, value) in values {
+            text = text.replace(key, value);
+        }
+        tools::write(&package.join("lib/cmake/anthronet").join(name), &text)?;
+    }
+    println!("{}", package.display());
+    Ok(package)
+}
+
+fn build() -> Outcome<Built> {
+    // Cargo tells in JSON where it put what, and rustc in a note what the archive needs; cargo repeats both when nothing
+    // was to be built.
+    let mut command = cargo("rustc");
+    command
+        .args(["--release", "--package", "anthronet-cxx", "--message-format=json"])
+        .args(["--", "--print", "native-static-libs"])
+        .stderr(Stdio::inherit());
+    let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
+    let mut built = Built::default();
+    for line in String::from_utf8_lossy(&output.stdout).lines() {
+        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's messages: {e}"))?;
+        let ours = message["package_id"].as_str().is_some_and(|id| id.contains("anthronet-cxx"));
+        match message["reason"].as_str() {
+            Some("compiler-message") if ours => {
+                let said = &message["message"];
+                match said["message"].as_str().unwrap_or_default().strip_prefix("native-static-libs: ") {
+                    Some(words) => built.libraries = libraries(words),
+                    None if said["level"] == "note" => {}
+                    None => eprint!("{}", said["rendered"].as_str().unwrap_or_default()),
+                }
+            }
+            Some("build-script-executed") if ours => {
+                let folder = message["out_dir"].as_str().unwrap_or_default();
+                built.include = Path::new(folder).join("cxxbridge/include");
+            }
+            Some("compiler-artifact") if ours && message["target"]["kind"][0] == "staticlib" => {
+                built.archive = message["filenames"][0].as_str().unwrap_or_default().into();
+            }
+            _ => {}
+        }
+    }
+    if !output.status.success() {
+        return Err(format!("cargo rustc --package anthronet-cxx failed: {}", output.status));
+    }
+    if built.libraries.is_empty() || built.include.as_os_str().is_empty() || !built.archive.is_file() {
+        return Err("cargo did not say where anthronet-cxx is and what it needs".to_owned());
+    }
+    Ok(built)
+}
+
+/// `-lm -lpthread -framework X kernel32.lib` as CMake takes it, each once.
+fn libraries(words: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut words = words.split_whitespace();
+    while let Some(word) = words.next() {
+        let library = match word {
+            "-framework" => format!("-framework {}", words.next().unwrap_or_default()),
+            _ => word.strip_prefix("-l").unwrap_or(word).to_owned(),
+        };
+        if !found.contains(&library) {
+            found.push(library);
+        }
+    }
+    found
+}
+
+fn copy(from: &Path, to: &Path) -> Outcome {
+    let complain = |e| format!("{} to {}: cannot copy: {e}", from.display(), to.display());
+    if let Some(folder) = to.parent() {
+        std::fs::create_dir_all(folder).map_err(complain)?;
+    }
+    std::fs::copy(from, to).map(drop).map_err(complain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::libraries;
+
+    #[test]
+    fn libraries_are_written_as_cmake_links_them() {
+        assert_eq!(libraries("-lstdc++ -lm -lpthread -lm"), ["stdc++", "m", "pthread"]);
+        assert_eq!(libraries("-framework Security -liconv"), ["-framework Security", "iconv"]);
+        assert_eq!(libraries("kernel32.lib ntdll.lib"), ["kernel32.lib", "ntdll.lib"]);
+    }
+}

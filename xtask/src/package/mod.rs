@@ -1,0 +1,33 @@
+//! `cargo xtask package`: what is handed to users, in `target/dist`.
+
+mod blender;
+mod cpp;
+mod python;
+
+pub(crate) use blender::package_blender;
+pub(crate) use cpp::package_cpp;
+pub(crate) use python::{library, package_python};
+
+use crate::environment;
+use crate::tools::{self, Outcome};
+
+/// What can be packaged.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Kind {
+    /// The wheel of the Python package, with the library inside
+    Python,
+    /// C++17: static library, headers, CMake files
+    Cpp,
+    /// The Blender extension, with the wheel inside
+    Blender,
+}
+
+pub(crate) fn run(kind: Kind) -> Outcome {
+    let made = match kind {
+        Kind::Python => package_python(&environment::python()?)?,
+        Kind::Cpp => package_cpp()?,
+        Kind::Blender => package_blender(&environment::prepare()?, &tools::command_line()?)??,
+    };
+    println!("{}", made.display());
+    Ok(())
+}
