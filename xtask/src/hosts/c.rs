@@ -16,7 +16,7 @@ const C99: [&str; 1] = ["-std=c99"];
 const CPP17: [&str; 3] = ["-std=c++17", "-x", "c++"];
 const SANITIZERS: [&str; 3] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"];
 /// What the static library needs of the system.
-const SYSTEM: [&str; 4] = ["-lgcc_s", "-lpthread", "-ldl", "-lm"];
+const SYSTEM: [&str; 5] = ["-lstdc++", "-lgcc_s", "-lpthread", "-ldl", "-lm"];
 
 const VALUES: [&str; 7] = [
     "check.c",
