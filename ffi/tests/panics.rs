@@ -2,7 +2,9 @@
 //! terminal.
 
 #![expect(unsafe_code, reason = "calls a C ABI")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[allow(dead_code, reason = "each test uses its part of it")]
 mod library;
 
 use std::ffi::{c_char, c_void};
@@ -36,7 +38,7 @@ fn a_panic_becomes_a_code_and_a_line_in_the_log() {
         let library = Library::new(beside()).unwrap();
         let panic: libloading::Symbol<TestPanic> = library.get("anthronet_test_panic").unwrap();
         let set: libloading::Symbol<SetCallback> = library.get("anthronet_set_log_callback").unwrap();
-        let heard = Mutex::new(Vec::new());
+        let heard = Mutex::new(Vec::<(u32, String)>::new());
         assert_eq!(set(Some(hear), (&raw const heard).cast_mut().cast(), std::ptr::null_mut()), 0);
         for _ in 0..3 {
             let mut error = Error { code: 0, message: [0; 512] };

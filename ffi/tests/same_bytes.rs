@@ -11,9 +11,9 @@
 //! `tests/c/same_bytes.c` is the shortest example.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 #![expect(unsafe_code, reason = "calls a C ABI")]
 
+#[allow(dead_code, reason = "each test uses its part of it")]
 mod library;
 
 use std::ffi::{c_char, c_void};
