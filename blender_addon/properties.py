@@ -103,6 +103,13 @@ def _tone_changed(settings, _context):
         material.set_tone(character.mesh_of(settings.id_data), settings.skin_tone)
 
 
+def _render_changed(settings, _context):
+    if not _silent and settings.is_character:
+        from .services import character
+
+        character.set_fine_render(settings.id_data, settings.fine_render)
+
+
 class AnthroMeasureReport(bpy.types.PropertyGroup):
     """What came of one measure. Metres."""
 
@@ -149,6 +156,11 @@ class AnthroCharacter(bpy.types.PropertyGroup):
         description="Eyes, teeth, tongue and lashes as parts of the mesh",
         default=True,
         update=_surface_changed,
+    )
+    fine_render: BoolProperty(
+        name="Fine in Renders",
+        description="Subdivide the posed surface once more in renders; the viewport stays as fast as it is",
+        update=_render_changed,
     )
     joint_names: EnumProperty(
         name="Bone Names", description="What the bones are called", items=NAMES, update=_names_changed

@@ -402,8 +402,14 @@ def crowding():
     people = [ob for ob in bpy.data.objects if ob.anthronet.is_character]
     heights = {round(ob.anthronet.height, 4) for ob in people}
     check("a hundred different people", len(people) == 100 and len(heights) > 90, f"{len(people)}, {len(heights)} heights")
+    for thing in people[3:6]:
+        thing.select_set(True)
+    bpy.context.view_layer.objects.active = people[3]
     people[3].anthronet.height = 1.77
-    check("each of them can be edited", people[3].anthronet.error == "" and people[4].anthronet.height != 1.77)
+    bpy.ops.anthronet.copy_request()
+    alike = {round(ob.anthronet.height, 4) for ob in people[3:6]}
+    check("a request for all selected", alike == {1.77}, str(alike))
+    check("each of them can be edited", people[3].anthronet.error == "" and people[7].anthronet.height != 1.77)
 
 
 def registering():
@@ -448,9 +454,7 @@ def picturing():
         character = add(**fields)
         bpy.ops.anthronet.clip_builtin(name=clip, frame_start=12 - frame, in_place=True)
         character.location.x = place
-        surface = mesh_of(character)
-        smooth = surface.modifiers.new("Subdivision", "SUBSURF")
-        smooth.levels, smooth.render_levels = 0, 1
+        character.anthronet.fine_render = True
     scene.frame_set(12)
     bpy.ops.mesh.primitive_plane_add(size=40)
     ground = bpy.data.materials.new("ground")

@@ -105,6 +105,26 @@ class ANTHRONET_OT_open_measures(NeedsCharacter, bpy.types.Operator):
         return _regenerate(self, context, owner)
 
 
+class ANTHRONET_OT_copy_request(NeedsCharacter, bpy.types.Operator):
+    """Give the request of the active character to all selected ones"""
+
+    bl_idname = "anthronet.copy_request"
+    bl_label = "Copy to Selected"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @reported
+    def execute(self, context):
+        first, *others = character.selected(context)
+        request = first.anthronet.request()
+        for owner in others:
+            owner.anthronet.set_request(request)
+            result = _regenerate(self, context, owner)
+            if result != {"FINISHED"}:
+                return result
+        self.report({"INFO"}, f"{len(others)} characters changed")
+        return {"FINISHED"}
+
+
 class ANTHRONET_OT_request_save(NeedsCharacter, bpy.types.Operator, ExportHelper):
     """Save the request of the active character as JSON, as the command line reads it"""
 
@@ -144,6 +164,7 @@ CLASSES = (
     ANTHRONET_OT_mirror,
     ANTHRONET_OT_symmetrise,
     ANTHRONET_OT_open_measures,
+    ANTHRONET_OT_copy_request,
     ANTHRONET_OT_request_save,
     ANTHRONET_OT_request_load,
 )

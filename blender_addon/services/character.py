@@ -7,6 +7,7 @@ from .. import library, properties
 from . import mesh, rig
 
 _MESH = "anthronet_body"
+_FINE = "Fine in Renders"
 
 
 def of(ob):
@@ -88,3 +89,16 @@ def is_sculpted(character):
     """Whether a user moved vertices of the character's mesh."""
     surface = mesh_of(character)
     return surface is not None and mesh.is_sculpted(surface.data)
+
+
+def set_fine_render(character, fine):
+    """Adds or removes the subdivision of the posed surface in renders."""
+    surface = mesh_of(character)
+    if surface is None:
+        return
+    found = surface.modifiers.get(_FINE)
+    if fine and found is None:
+        found = surface.modifiers.new(_FINE, "SUBSURF")
+        found.levels, found.render_levels = 0, 1
+    elif not fine and found is not None:
+        surface.modifiers.remove(found)

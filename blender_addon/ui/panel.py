@@ -60,6 +60,7 @@ class ANTHRONET_PT_person(_Panel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("anthronet.mirror", icon="MOD_MIRROR")
         row.operator("anthronet.symmetrise", text="Left to Right").side = "left"
+        layout.operator("anthronet.copy_request", icon="COPYDOWN")
         row = layout.row(align=True)
         row.operator("anthronet.request_load", icon="IMPORT")
         row.operator("anthronet.request_save", icon="EXPORT")
@@ -169,7 +170,7 @@ class ANTHRONET_PT_body(_Panel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("lod", "accessories", "skin_tone", "joint_names"):
+        for name in ("lod", "fine_render", "accessories", "skin_tone", "joint_names"):
             layout.prop(settings, name)
 
 

@@ -54,6 +54,8 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         if version == environment::PYTHONS[0] {
             case("declarations", "python_declarations.py", &[&header]);
             case("files", "python_files.py", &[anthronet, &folder]);
+            // The consumers in C, which come first, have left the list.
+            case("same bytes", "python_same_bytes.py", &[&tools::target().join("tmp/same_bytes")]);
             let _ = tools::run(&mut script("python_speed.py", &[]));
         }
     }
