@@ -3,8 +3,6 @@
 
 import bpy
 
-#: Whether meshes take custom normals as an attribute (4.5 and newer).
-HAS_NORMAL_ATTRIBUTE = bpy.app.version >= (4, 5, 0)
 #: Whether actions have slots and layers (4.4 and newer).
 HAS_SLOTS = bpy.app.version >= (4, 4, 0)
 
@@ -46,8 +44,3 @@ def add_strip(armature_object, action, start):
     if HAS_SLOTS and action.slots:
         strip.action_slot = action.slots[0]
     return strip
-
-
-def is_bone_selected(pose_bone):
-    """Whether a bone is selected in pose mode; it moved from the bone to the pose's bone in 5.0."""
-    return pose_bone.select if hasattr(pose_bone, "select") else pose_bone.bone.select

@@ -69,8 +69,7 @@ def all_measures():
     """All measures in the order of the library."""
     text = (Path(__file__).parent / "data" / "measures.json").read_text(encoding="utf-8")
     return tuple(
-        Measure(m["name"], m["kind"], m.get("standard") or "", m["min"], m["max"])
-        for m in json.loads(text)["measures"]
+        Measure(m["name"], m["kind"], m.get("standard") or "", m["min"], m["max"]) for m in json.loads(text)["measures"]
     )
 
 

@@ -104,7 +104,6 @@ def creating():
     speed("character at level 0", milliseconds(lambda i: add(sex="MALE", height=1.80, seed=i, lod="0"), 5), 150)
 
     check("an armature with a mesh below it", character.type == "ARMATURE" and surface.type == "MESH")
-    measures = character["anthronet_measured"] if "anthronet_measured" in character else None
     bpy.context.view_layer.objects.active = character
     bpy.ops.anthronet.measure_selected()
     measures = character["anthronet_measured"]
@@ -134,8 +133,14 @@ def creating():
     left, right = (character.data.bones[f"hand.{side}"].head_local for side in "LR")
     check("the left hand is at +X, the face looks along -Y", left.x > 0 > right.x)
     bone, child = character.data.bones["upper_arm.L"], character.data.bones["forearm.L"]
-    check("a bone's tail points to its child", (bone.tail_local - child.head_local).length < 0.02, f"{(bone.tail_local - child.head_local).length:.4f} m")
-    check("bones that do not deform are told apart", not character.data.bones[body.joint_names("blender")[0]].use_deform)
+    check(
+        "a bone's tail points to its child",
+        (bone.tail_local - child.head_local).length < 0.02,
+        f"{(bone.tail_local - child.head_local).length:.4f} m",
+    )
+    check(
+        "bones that do not deform are told apart", not character.data.bones[body.joint_names("blender")[0]].use_deform
+    )
     names = {collection.name for collection in character.data.collections}
     check("bone collections", names == {"Torso", "Arms", "Legs", "Fingers", "Face", "Twist"}, str(names))
     check("the humanoid map", character.data["anthronet_humanoid"]["upperarm_l"] == "LeftUpperArm")
@@ -157,20 +162,32 @@ def editing():
     material = surface.data.materials[0]
 
     settings.waist_circumference = 0.80
-    check("moving a slider gives the measure", settings.given_waist_circumference and settings.error == "", settings.error)
-    check("the filled values follow", abs(settings.hip_circumference - generated(character).measures["hip_circumference"]) < 1e-6)
-    expected = np.concatenate([p.positions for p in generated(character).mesh(lod=1, space="blender", layout="model").parts])
+    check(
+        "moving a slider gives the measure", settings.given_waist_circumference and settings.error == "", settings.error
+    )
+    check(
+        "the filled values follow",
+        abs(settings.hip_circumference - generated(character).measures["hip_circumference"]) < 1e-6,
+    )
+    expected = np.concatenate(
+        [p.positions for p in generated(character).mesh(lod=1, space="blender", layout="model").parts]
+    )
     check("the mesh follows", np.array_equal(positions(surface.data), expected))
     moved = np.array(key.data[5].co) - np.array(surface.data.shape_keys.key_blocks[0].data[5].co)
     check("shape keys stay on top", np.allclose(moved, (0.25, 0, 0), atol=1e-6), str(moved))
-    check("animation and materials stay", character.animation_data.action == action and surface.data.materials[0] == material)
+    check(
+        "animation and materials stay",
+        character.animation_data.action == action and surface.data.materials[0] == material,
+    )
     rest = np.array(character.data.bones["head"].matrix_local)
     joints = dict(zip(generated(character).joint_names("blender"), generated(character).joints("blender")))
     check("the bones follow", np.abs(rest - joints["head"]["model_from_joint"]).max() < 1e-5)
 
     bpy.ops.object.mode_set(mode="POSE")
     settings.height = 1.75
-    check("works in pose mode", character.mode == "POSE" and settings.error == "" and abs(settings.height - 1.75) < 1e-6)
+    check(
+        "works in pose mode", character.mode == "POSE" and settings.error == "" and abs(settings.height - 1.75) < 1e-6
+    )
     bpy.ops.object.mode_set(mode="OBJECT")
 
     before = positions(surface.data).copy()
@@ -201,7 +218,9 @@ def editing():
 def curves(action):
     if hasattr(action, "fcurves"):
         return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+    return [
+        curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves
+    ]
 
 
 def ticking():
@@ -215,7 +234,10 @@ def ticking():
 
         milliseconds(tick, 3)
         speed(f"slider tick at level {lod}", milliseconds(tick, 20), bar)
-        check(f"the last tick at level {lod} was met", abs(generated(character).measures["waist_circumference"] - 0.757) < 1e-4)
+        check(
+            f"the last tick at level {lod} was met",
+            abs(generated(character).measures["waist_circumference"] - 0.757) < 1e-4,
+        )
 
 
 def sculpting():
@@ -243,7 +265,9 @@ def sculpting():
 
 def positions_of(character):
     settings = character.anthronet
-    mesh = generated(character).mesh(lod=int(settings.lod), space="blender", layout="model", body_only=not settings.accessories)
+    mesh = generated(character).mesh(
+        lod=int(settings.lod), space="blender", layout="model", body_only=not settings.accessories
+    )
     return np.concatenate([part.positions for part in mesh.parts])
 
 
@@ -318,8 +342,18 @@ def failing():
         ("a broken clip", lambda: bpy.ops.anthronet.clip_apply(filepath=str(broken)), "broken.bvh"),
         ("a missing clip", lambda: bpy.ops.anthronet.clip_apply(filepath="/nowhere/a.bvh"), "/nowhere/a.bvh"),
         ("a clip's number", lambda: bpy.ops.anthronet.clip_from_armature(source="nobody"), "nobody"),
-        ("an impossible person", lambda: bpy.ops.anthronet.character_add(sex="FEMALE", height=1.5, thigh_length_left=0.69, thigh_length_right=0.69), "thigh"),
-        ("a folder that is not there", lambda: bpy.ops.anthronet.character_export(filepath="/nowhere/a.glb"), "/nowhere"),
+        (
+            "an impossible person",
+            lambda: bpy.ops.anthronet.character_add(
+                sex="FEMALE", height=1.5, thigh_length_left=0.69, thigh_length_right=0.69
+            ),
+            "thigh",
+        ),
+        (
+            "a folder that is not there",
+            lambda: bpy.ops.anthronet.character_export(filepath="/nowhere/a.glb"),
+            "/nowhere",
+        ),
     ):
         message = ""
         try:
@@ -333,7 +367,11 @@ def failing():
         message = ""
     except RuntimeError as error:
         message = str(error)
-    check("a mesh without its vertices is an error in words", "vertices" in message and "Traceback" not in message, message.strip())
+    check(
+        "a mesh without its vertices is an error in words",
+        "vertices" in message and "Traceback" not in message,
+        message.strip(),
+    )
 
 
 def keeping():
@@ -345,7 +383,9 @@ def keeping():
     character.anthronet.height = 1.90
     bpy.ops.ed.undo_push(message="taller")
     bpy.ops.ed.undo()
-    character = service("character").active(bpy.context) or next(ob for ob in bpy.data.objects if ob.anthronet.is_character)
+    character = service("character").active(bpy.context) or next(
+        ob for ob in bpy.data.objects if ob.anthronet.is_character
+    )
     same = np.array_equal(positions(mesh_of(character).data), before)
     check("undo restores the request and the body", same and abs(character.anthronet.height - 1.80) < 1e-6)
     bpy.ops.ed.redo()
@@ -362,7 +402,10 @@ def keeping():
     check("a saved file has the request", character.anthronet.request().to_json() == request)
     character.anthronet.height = 1.70
     expected = positions_of(character)
-    check("and is edited on", character.anthronet.error == "" and np.array_equal(positions(mesh_of(character).data), expected))
+    check(
+        "and is edited on",
+        character.anthronet.error == "" and np.array_equal(positions(mesh_of(character).data), expected),
+    )
 
     clean()
     with bpy.data.libraries.load(str(path)) as (there, here):
@@ -389,10 +432,16 @@ def keeping():
     check("presets", abs(character.anthronet.height - 1.66) < 1e-6)
     character.anthronet.arm_length_left = 0.33
     bpy.ops.anthronet.mirror()
-    check("mirrored measures", abs(character.anthronet.arm_length_right - 0.33) < 1e-6 and character.anthronet.given_arm_length_right)
+    check(
+        "mirrored measures",
+        abs(character.anthronet.arm_length_right - 0.33) < 1e-6 and character.anthronet.given_arm_length_right,
+    )
     seed = character.anthronet.seed
     bpy.ops.anthronet.randomise(what="IDENTITY")
-    check("another identity with the same measures", character.anthronet.seed != seed and abs(character.anthronet.height - 1.66) < 1e-6)
+    check(
+        "another identity with the same measures",
+        character.anthronet.seed != seed and abs(character.anthronet.height - 1.66) < 1e-6,
+    )
 
 
 def crowding():
@@ -401,7 +450,9 @@ def crowding():
     speed("100 characters at level 1", took, 10_000)
     people = [ob for ob in bpy.data.objects if ob.anthronet.is_character]
     heights = {round(ob.anthronet.height, 4) for ob in people}
-    check("a hundred different people", len(people) == 100 and len(heights) > 90, f"{len(people)}, {len(heights)} heights")
+    check(
+        "a hundred different people", len(people) == 100 and len(heights) > 90, f"{len(people)}, {len(heights)} heights"
+    )
     for thing in people[3:6]:
         thing.select_set(True)
     bpy.context.view_layer.objects.active = people[3]
@@ -415,7 +466,10 @@ def crowding():
 def registering():
     clean()
     known = lambda: {name for name in dir(bpy.types) if "anthro" in name.lower()} | set(dir(bpy.ops.anthronet))
-    menus = lambda: [len(getattr(bpy.types, m).draw._draw_funcs) for m in ("VIEW3D_MT_mesh_add", "TOPBAR_MT_file_import", "TOPBAR_MT_file_export")]
+    menus = lambda: [
+        len(getattr(bpy.types, m).draw._draw_funcs)
+        for m in ("VIEW3D_MT_mesh_add", "TOPBAR_MT_file_import", "TOPBAR_MT_file_export")
+    ]
     first, entries = known(), menus()
     for _ in range(20):
         bpy.ops.preferences.addon_disable(module=NAME)
@@ -427,7 +481,12 @@ def registering():
     bpy.ops.preferences.addon_enable(module=NAME)
 
     operators = [getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("ANTHRONET_OT_")]
-    reads = {"anthronet.request_save", "anthronet.character_export", "anthronet.measure_selected", "anthronet.preset_add"}
+    reads = {
+        "anthronet.request_save",
+        "anthronet.character_export",
+        "anthronet.measure_selected",
+        "anthronet.preset_add",
+    }
     faults = []
     for operator in operators:
         module, _, name = operator.bl_idname.partition(".")

@@ -51,7 +51,11 @@ def context_at_import():
                 continue
             tree = ast.parse(files.read(name), name)
             bodies = [node for node in tree.body if not isinstance(node, (ast.FunctionDef, ast.ClassDef))]
-            bodies += [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name in ("register", "unregister")]
+            bodies += [
+                node
+                for node in tree.body
+                if isinstance(node, ast.FunctionDef) and node.name in ("register", "unregister")
+            ]
             for body in bodies:
                 for node in ast.walk(body):
                     if isinstance(node, ast.Attribute) and node.attr in ("context", "data", "ops"):
@@ -67,7 +71,10 @@ bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 if NAME not in bpy.context.preferences.addons:
     bpy.ops.preferences.addon_enable(module=NAME)
 panels = {name: getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("ANTHRONET_PT_")}
-cases.case("no character: the start panel alone", [n for n, p in panels.items() if p.poll(bpy.context)] == ["ANTHRONET_PT_start"])
+cases.case(
+    "no character: the start panel alone",
+    [n for n, p in panels.items() if p.poll(bpy.context)] == ["ANTHRONET_PT_start"],
+)
 
 bpy.ops.anthronet.character_add(sex="FEMALE", height=1.70)
 open_panels = {name for name, panel in panels.items() if panel.poll(bpy.context)}
@@ -107,8 +114,16 @@ def read_panels(texts):
     everything = " | ".join(groups.values())
     lost = [name for name in anthronet.MEASURES if name not in everything]
     cases.case("every measure has its row", not lost, f"{lost} not in {everything[:400]}")
-    cases.case("a filled measure shows its interval in metres", "–" in groups["legs"] and " m" in groups["legs"], groups["legs"][:200])
-    cases.case("a given one its residual and percentile", " mm" in groups["torso"] and " %" in groups["torso"], groups["torso"][:300])
+    cases.case(
+        "a filled measure shows its interval in metres",
+        "–" in groups["legs"] and " m" in groups["legs"],
+        groups["legs"][:200],
+    )
+    cases.case(
+        "a given one its residual and percentile",
+        " mm" in groups["torso"] and " %" in groups["torso"],
+        groups["torso"][:300],
+    )
 
 
 with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):

@@ -1,6 +1,6 @@
 """The same bytes from the Python package as from Rust, C and C++: the list that ffi/tests/same_bytes.rs leaves.
 
-    python python_same_bytes.py FOLDER
+python python_same_bytes.py FOLDER
 """
 
 import hashlib

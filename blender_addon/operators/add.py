@@ -94,7 +94,9 @@ class ANTHRONET_OT_crowd_add(bpy.types.Operator):
     seed: IntProperty(name="Seed", description="The first person's seed", default=1, min=1)
     spacing: FloatProperty(name="Spacing", default=1.5, min=0.1, unit="LENGTH", subtype="DISTANCE")
     lod: EnumProperty(name="Detail", items=properties.LODS, default="1")
-    skin_tones: BoolProperty(name="All Skin Tones", description="Skin tones in turn instead of the default", default=True)
+    skin_tones: BoolProperty(
+        name="All Skin Tones", description="Skin tones in turn instead of the default", default=True
+    )
 
     poll = ANTHRONET_OT_character_add.poll
 
@@ -147,9 +149,7 @@ class _Crowd:
     def __init__(self, asked):
         request = library.anthronet().Request
         sexes = ("female", "male")
-        self._requests = [
-            request(sex=sexes[i % 2], seed=asked.seed + i, fill="sample") for i in range(asked.count)
-        ]
+        self._requests = [request(sex=sexes[i % 2], seed=asked.seed + i, fill="sample") for i in range(asked.count)]
         self._columns = max(1, round(asked.count**0.5))
         self._spacing, self._lod, self._tones = asked.spacing, int(asked.lod), asked.skin_tones
         self.placed = 0

@@ -29,7 +29,9 @@ class ANTHRONET_OT_character_export(NeedsCharacter, bpy.types.Operator, ExportHe
     filename_ext = ".glb"
     filter_glob: StringProperty(default="*.glb;*.gltf;*.vrm;*.usdc;*.usda;*.usdz;*.obj", options={"HIDDEN"})
     format: EnumProperty(name="Format", items=_FORMATS)
-    use_motion: BoolProperty(name="Motion", description="The motion over the scene's frames, if there is any", default=True)
+    use_motion: BoolProperty(
+        name="Motion", description="The motion over the scene's frames, if there is any", default=True
+    )
     compress: BoolProperty(name="Compress", description="EXT_meshopt_compression, for .glb and .gltf")
     joint_names: EnumProperty(name="Joint Names", items=properties.NAMES, default="NATIVE")
 

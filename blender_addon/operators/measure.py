@@ -21,7 +21,11 @@ class ANTHRONET_OT_measure_selected(NeedsCharacter, bpy.types.Operator):
     def execute(self, context):
         owner = character.active(context)
         measured = character.measured(owner)
-        owner["anthronet_measured"] = {**measured.measures, "mass_kg": measured.mass_kg, "volume_m3": measured.volume_m3}
+        owner["anthronet_measured"] = {
+            **measured.measures,
+            "mass_kg": measured.mass_kg,
+            "volume_m3": measured.volume_m3,
+        }
         for name, value in measured.measures.items():
             self.report({"INFO"}, f"{name}: {1000 * value:.1f} mm")
         if self.popup and not bpy.app.background:
@@ -58,7 +62,9 @@ class ANTHRONET_OT_fit_selected(NeedsCharacter, bpy.types.Operator):
 def _draw(layout, measured):
     columns = layout.grid_flow(columns=2, even_columns=True)
     for name, value in measured.measures.items():
-        columns.label(text=f"{name.replace('_', ' ')}: {bpy.utils.units.to_string('METRIC', 'LENGTH', value, precision=4)}")
+        columns.label(
+            text=f"{name.replace('_', ' ')}: {bpy.utils.units.to_string('METRIC', 'LENGTH', value, precision=4)}"
+        )
     layout.separator()
     layout.label(text=f"{measured.mass_kg:.1f} kg, BMI {measured.bmi:.1f}")
 

@@ -81,7 +81,9 @@ def measured(character):
     model = library.model()
     count = model.vertex_count(int(character.anthronet.lod))
     if len(surface.data.vertices) < count:
-        raise ValueError(f"{surface.name}: expected at least {count} vertices, the mesh has {len(surface.data.vertices)}")
+        raise ValueError(
+            f"{surface.name}: expected at least {count} vertices, the mesh has {len(surface.data.vertices)}"
+        )
     return model.measure(mesh.body_positions(surface.data, count), space="blender")
 
 

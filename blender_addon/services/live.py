@@ -22,8 +22,7 @@ def apply(owner, body, context):
     settings = owner.anthronet
     surface = character.mesh_of(owner)
     if surface is not None:
-        positions, _ = mesh.arrays(body, int(settings.lod), settings.accessories)
-        mesh.move(surface.data, positions)
+        mesh.move(surface.data, mesh.positions(body, int(settings.lod), settings.accessories))
     rig.move([owner], [body], context.view_layer)
     settings.set_report(body)
 

@@ -33,23 +33,22 @@ def new(body, lod, accessories, bone_names, name):
     del mesh[_KEY]
     mesh.name = name
     mesh["anthronet_lod"] = lod
-    positions, normals = arrays(body, lod, accessories)
     mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
-    _write(mesh, positions)
+    _write(mesh, positions(body, lod, accessories))
     return mesh
 
 
-def arrays(body, lod, accessories):
-    """Positions and normals of all parts, one after the other: (V, 3), metres, Blender's axes."""
+def positions(body, lod, accessories):
+    """Positions of all parts, one after the other: (V, 3), metres, Blender's axes."""
     surface = body.mesh(lod=lod, space="blender", layout="model", body_only=not accessories)
-    return tuple(np.concatenate([getattr(part, name) for part in surface.parts]) for name in ("positions", "normals"))
+    return np.concatenate([part.positions for part in surface.parts])
 
 
-def move(mesh, positions):
+def move(mesh, places):
     """Gives a mesh another body's positions. What was sculpted, and shape keys, stay on top of them."""
     count = len(mesh.vertices)
-    if len(positions) != count:
-        raise ValueError(f"{mesh.name}: expected {len(positions)} vertices, the mesh has {count}")
+    if len(places) != count:
+        raise ValueError(f"{mesh.name}: expected {len(places)} vertices, the mesh has {count}")
     generated = mesh.attributes.get(GENERATED)
     before = np.empty(3 * count, np.float32)
     if generated is None:
@@ -57,7 +56,7 @@ def move(mesh, positions):
         mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
     else:
         generated.data.foreach_get("vector", before)
-    step = positions.reshape(-1) - before
+    step = places.reshape(-1) - before
     moved = np.empty(3 * count, np.float32)
     if mesh.shape_keys:
         for block in mesh.shape_keys.key_blocks:
@@ -66,21 +65,21 @@ def move(mesh, positions):
     mesh.attributes["position"].data.foreach_get("vector", moved)
     # Untouched vertices get exactly what the library made, not a sum of roundings.
     sculpted = moved != before
-    _write(mesh, np.where(sculpted, moved + step, positions.reshape(-1)), positions)
+    _write(mesh, np.where(sculpted, moved + step, places.reshape(-1)), places)
 
 
-def _write(mesh, positions, generated=None):
-    mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(positions, np.float32).reshape(-1))
-    generated = positions if generated is None else generated
+def _write(mesh, places, generated=None):
+    mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(places, np.float32).reshape(-1))
+    generated = places if generated is None else generated
     mesh.attributes[GENERATED].data.foreach_set("vector", np.ascontiguousarray(generated, np.float32).reshape(-1))
     mesh.update()
 
 
 def body_positions(mesh, vertex_count):
     """The body's vertices as they are now, without shape keys and modifiers: (V, 3), metres."""
-    positions = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", positions)
-    return positions.reshape(-1, 3)[:vertex_count]
+    places = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", places)
+    return places.reshape(-1, 3)[:vertex_count]
 
 
 def _build(surface, bone_names):
@@ -101,8 +100,8 @@ def _build(surface, bone_names):
     mesh.vertices.add(int(starts[-1]))
     mesh.loops.add(len(corners))
     mesh.polygons.add(len(sizes))
-    positions = np.concatenate([part.positions for part in parts])
-    mesh.attributes["position"].data.foreach_set("vector", positions.reshape(-1))
+    places = np.concatenate([part.positions for part in parts])
+    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
     mesh.polygons.foreach_set("loop_start", np.cumsum(sizes, dtype=np.int32) - sizes)
     mesh.polygons.foreach_set("material_index", slots)
