@@ -74,15 +74,31 @@ namespace Anthronet
             var vertices = offsets[skinners.Length];
             held = new Held[skinners.Length];
             jobs = new anthronet_skin_job[skinners.Length];
-            poses = new NativeArray<AnthroTransform>(checked(skinners.Length * jointCount), Allocator.Persistent);
-            positions = new NativeArray<Vector3>(vertices, Allocator.Persistent);
-            normals = new NativeArray<Vector3>(vertices, Allocator.Persistent);
+            try
+            {
+                for (var i = 0; i < skinners.Length; i++)
+                {
+                    held[i] = new Held(skinners[i].Handle);
+                }
+                poses = new NativeArray<AnthroTransform>(checked(skinners.Length * jointCount), Allocator.Persistent);
+                positions = new NativeArray<Vector3>(vertices, Allocator.Persistent);
+                normals = new NativeArray<Vector3>(vertices, Allocator.Persistent);
+                Describe(method);
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
+        }
+
+        void Describe(AnthroSkinning method)
+        {
             var firstPose = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses);
             var firstPosition = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(positions);
             var firstNormal = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(normals);
-            for (var i = 0; i < skinners.Length; i++)
+            for (var i = 0; i < jobs.Length; i++)
             {
-                held[i] = new Held(skinners[i].Handle);
                 var bytes = (ulong)skinners[i].VertexCount * (ulong)sizeof(Vector3);
                 jobs[i].struct_size = (uint)sizeof(anthronet_skin_job);
                 jobs[i].method = (uint)method;
@@ -154,17 +170,21 @@ namespace Anthronet
         /// <summary>Frees the arrays. What was got from `Positions` and `Normals` is not to be used any longer.</summary>
         public void Dispose()
         {
-            if (!positions.IsCreated)
-            {
-                return;
-            }
             for (var i = 0; i < held.Length; i++)
             {
                 held[i].Dispose();
             }
-            poses.Dispose();
-            positions.Dispose();
-            normals.Dispose();
+            Free(ref poses);
+            Free(ref positions);
+            Free(ref normals);
+        }
+
+        static void Free<T>(ref NativeArray<T> array) where T : struct
+        {
+            if (array.IsCreated)
+            {
+                array.Dispose();
+            }
         }
     }
 }
