@@ -26,13 +26,13 @@ def assets():
     for path in sorted(PACKAGE.rglob("*")):
         relative = path.relative_to(PACKAGE)
         hidden = any(part.startswith(".") or part.endswith("~") for part in relative.parts)
-        if not hidden and path.suffix != ".meta" and "Plugins" not in relative.parts[2:]:
+        if not hidden and path.suffix != ".meta" and path.suffix not in (".so", ".dll", ".dylib", ".a"):
             yield relative
 
 
 def plugins():
-    """Libraries that packaging puts there, with their settings: (path, platform, processor)."""
-    table = json.loads((PACKAGE / "Runtime/Plugins/platforms.json").read_text("utf-8"))
+    """Libraries that packaging puts there: their paths, with their settings."""
+    table = json.loads((PACKAGE / "Plugins~/platforms.json").read_text("utf-8"))
     for entry in table["plugins"]:
         yield Path("Runtime/Plugins") / entry["file"], entry
 
@@ -75,26 +75,31 @@ def plugin_meta(relative, entry):
 
 
 def expected():
+    """All .meta files of the repository with their text.
+
+    Those of native libraries wait in `Plugins~`, where Unity does not look: one without its library would be deleted.
+    """
     for relative in assets():
-        yield relative, meta(relative)
-    folders = set()
+        yield meta_path(relative), meta(relative)
     for relative, entry in plugins():
-        for folder in relative.parents:
-            if len(folder.parts) > 2 and folder not in folders:
-                folders.add(folder)
-                head = f"fileFormatVersion: 2\nguid: {guid(folder)}\n"
-                tail = "  externalObjects: {}\n  userData: \n  assetBundleName: \n  assetBundleVariant: \n"
-                yield folder, f"{head}folderAsset: yes\nDefaultImporter:\n{tail}"
-        yield relative, plugin_meta(relative, entry)
+        for folder in list(relative.parents)[:-3]:
+            head = f"fileFormatVersion: 2\nguid: {guid(folder)}\n"
+            tail = "  externalObjects: {}\n  userData: \n  assetBundleName: \n  assetBundleVariant: \n"
+            yield waiting(folder), f"{head}folderAsset: yes\nDefaultImporter:\n{tail}"
+        yield waiting(relative), plugin_meta(relative, entry)
 
 
 def meta_path(relative):
     return PACKAGE / relative.with_name(relative.name + ".meta")
 
 
+def waiting(relative):
+    return meta_path(Path("Plugins~") / relative.relative_to("Runtime/Plugins"))
+
+
 def test_metas():
     """every file has its .meta, no .meta is without its file"""
-    wanted = {meta_path(relative): text for relative, text in expected()}
+    wanted = dict(expected())
     wrong = [str(path) for path, text in wanted.items() if not path.is_file() or path.read_text("utf-8") != text]
     assert not wrong, f"missing or changed, `python tests/unity_package.py --write` writes them: {wrong}"
     there = {path for path in PACKAGE.rglob("*.meta")}
@@ -129,7 +134,8 @@ def test_assemblies():
         assert path.stem == definition["name"], path
         unknown = [name for name in definition["references"] if name not in names]
         assert not unknown, f"{path}: {unknown}"
-    for script in PACKAGE.rglob("*.cs"):
+    scripts = [path for path in PACKAGE.rglob("*.cs") if not any(part.endswith("~") for part in path.parts)]
+    for script in scripts:
         assert any(path.parent in script.parents for path in definitions), f"{script}: in no assembly"
 
 
@@ -142,8 +148,7 @@ def test_file_names():
 
 def main():
     if sys.argv[1:] == ["--write"]:
-        for relative, text in expected():
-            path = meta_path(relative)
+        for path, text in expected():
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, "utf-8", newline="\n")
         return 0

@@ -101,12 +101,12 @@ namespace Anthronet.Tests
                 Expect.Code(AnthroError.Size, "36", () => body.Measures(new AnthroMeasureReport[2]), "few reports");
                 Expect.Code(AnthroError.Size, "", () => body.Joints(new AnthroJoint[1]), "few joints");
                 Expect.Code(AnthroError.Size, "", () => body.Joints(new AnthroJoint[0]), "no joints");
-                Expect.Code(AnthroError.Invalid, "", () => AnthroClip.Builtin("fly", body), "clip");
-                Expect.Code(AnthroError.File, "", () => body.ToBytes("docx"), "format");
+                Expect.Code(AnthroError.Request, "fly", () => AnthroClip.Builtin("fly", body), "clip");
+                Expect.Code(AnthroError.Request, "docx", () => body.ToBytes("docx"), "format");
                 Expect.Throws<AnthroException>(() => new AnthroSurface(body, 4), "level of detail");
                 using (var clip = AnthroClip.Builtin("walk", body))
                 {
-                    Expect.Code(AnthroError.Invalid, "", () => clip.Sample(double.NaN, AnthroWrap.Loop,
+                    Expect.Code(AnthroError.Request, "", () => clip.Sample(double.NaN, AnthroWrap.Loop,
                         new AnthroTransform[clip.JointCount]), "no time");
                 }
             }

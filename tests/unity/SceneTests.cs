@@ -345,6 +345,52 @@ namespace Anthronet.Tests
             many.Dispose();
         }
 
+        [Case("a spawn that is disposed of leaves nothing half made")]
+        static void Halfway()
+        {
+            var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 });
+            var before = UnityEngine.Object.Alive;
+            while (UnityEngine.Object.Alive == before)
+            {
+                spawn.Advance(0);
+            }
+            Expect.That(!spawn.IsDone, "it is done in one step");
+            spawn.Dispose();
+            spawn.Dispose();
+            Expect.Equal(before, UnityEngine.Object.Alive, "objects that are alive");
+            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it goes on");
+        }
+
+        [Case("the samples run")]
+        static void Samples()
+        {
+            var single = new GameObject("single").AddComponent<SingleCharacter>();
+            MonoBehaviour.Tell(single, "Start");
+            single.height = 1.9f;
+            MonoBehaviour.Tell(single, "Update");
+            var person = single.transform.GetChild(0).gameObject.GetComponent<AnthroCharacter>();
+            Expect.Near(1.9, person.Body.Measures()[3].obtained, 1e-3, "height");
+            MonoBehaviour.Tell(person.GetComponent<AnthroAnimator>(), "LateUpdate");
+            UnityEngine.Object.Destroy(single.gameObject);
+
+            var crowd = new GameObject("crowd").AddComponent<Crowd>();
+            crowd.count = 12;
+            MonoBehaviour.Tell(crowd, "Start");
+            var runner = (AnthroRunner)typeof(AnthroRunner)
+                .GetField("runner", System.Reflection.BindingFlags.Static | System.Reflection.BindingFlags.NonPublic).GetValue(null);
+            var frames = 0;
+            while (crowd.transform.childCount < 12 || frames < 20)
+            {
+                MonoBehaviour.Tell(runner, "Update");
+                frames++;
+            }
+            var places = Enumerable.Range(0, 200).Select(i => Crowd.Position(i, 200, 1.2f)).ToArray();
+            Expect.Equal(200, places.Distinct().Count(), "different places");
+            MonoBehaviour.Tell(runner, "Update");
+            UnityEngine.Object.Destroy(crowd.gameObject);
+            AnthroRunner.Budget = 4.0;
+        }
+
         [Case("the runner advances spawns each frame and frees them")]
         static void Running()
         {

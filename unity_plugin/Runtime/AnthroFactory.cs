@@ -90,6 +90,7 @@ namespace Anthronet
         readonly Stopwatch watch = new Stopwatch();
         int next;
         IEnumerator steps;
+        bool freed;
 
         internal AnthroSpawn(AnthroJob job, AnthroRequest[] requests, AnthroSettings settings)
         {
@@ -115,10 +116,10 @@ namespace Anthronet
             get { return next; }
         }
 
-        /// <summary>Whether all have.</summary>
+        /// <summary>Whether all have, or it was disposed of.</summary>
         public bool IsDone
         {
-            get { return next == requests.Length; }
+            get { return freed || next == requests.Length; }
         }
 
         /// <summary>A character, null before it is whole or where it failed.</summary>
@@ -181,10 +182,16 @@ namespace Anthronet
             job.Cancel();
         }
 
-        /// <summary>Cancels it and frees the job. Characters stay.</summary>
+        /// <summary>Cancels it and frees the job. Characters that are whole stay, one that is not is destroyed.</summary>
         public void Dispose()
         {
             job.Dispose();
+            freed = true;
+            if (steps != null)
+            {
+                UnityEngine.Object.Destroy(characters[next].gameObject);
+                steps = null;
+            }
         }
     }
 }

@@ -368,6 +368,7 @@ namespace UnityEngine
     {
         /// For the tests: what was complained of.
         public static readonly List<string> Errors = new List<string>();
+        public static void Log(object message) { }
         public static void LogError(object message) { Errors.Add(message.ToString()); }
         public static void LogError(object message, Object context) { Errors.Add(message.ToString()); }
         public static void LogException(Exception exception) { Errors.Add(exception.ToString()); }

@@ -10,6 +10,7 @@ mod cpp;
 mod python;
 mod skin;
 mod tally;
+mod unity;
 mod usd;
 
 use crate::environment::{self, Environment};
@@ -41,6 +42,7 @@ pub(crate) fn run() -> Outcome {
     cpp::run(&anthronet, &environment, &folder, &mut tally)?;
     python::run(&anthronet, &environment, &folder, &mut tally)?;
     blender::run(&anthronet, &environment, &folder, &mut tally)?;
+    unity::run(&environment, &folder, &mut tally)?;
     close(&tally)
 }
 
