@@ -1,9 +1,9 @@
 // The tests of the Unity package: its own code with stand-ins for Unity's, and the real library.
 //
-//     mono anthronet-unity-tests.exe [--same-bytes FOLDER] [--layout FILE] [--layout-source]
+//     mono anthronet-unity-tests.exe [--same-bytes FOLDER] [--layout FILE] [--layout-source] [--speed AVATARS]
 //
 // Prints `ok NAME`, `FAILED NAME: why` or `skipped NAME: why` for every case. `--layout-source` prints a program in C
-// whose output is what `--layout` compares with.
+// whose output is what `--layout` compares with; `--speed` prints times beside their bars instead.
 using System;
 using System.Collections.Generic;
 using System.Linq;
@@ -74,6 +74,12 @@ namespace Anthronet.Tests
             if (arguments.Contains("--layout-source"))
             {
                 Console.Write(LayoutTests.Source());
+                return 0;
+            }
+            var speed = Array.IndexOf(arguments, "--speed");
+            if (speed >= 0)
+            {
+                Speed.Print(int.Parse(arguments[speed + 1]));
                 return 0;
             }
             for (var i = 0; i + 1 < arguments.Length; i++)

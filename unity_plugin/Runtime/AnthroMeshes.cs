@@ -118,6 +118,7 @@ namespace Anthronet
                 var uvs = (float*)NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(1));
                 var indices = (uint*)NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<uint>());
                 int vertex = 0, index = 0;
+                var bounds = new Bounds();
                 for (var part = 0; part < surface.PartCount; part++)
                 {
                     var of = surface.Part(part);
@@ -134,10 +135,14 @@ namespace Anthronet
                     descriptor.vertexCount = of.vertexCount;
                     descriptor.bounds = Around((Vector3*)first, 2, of.vertexCount);
                     data.SetSubMesh(part, descriptor, Unchecked);
+                    if (part == 0)
+                    {
+                        bounds = descriptor.bounds;
+                    }
+                    bounds.Encapsulate(descriptor.bounds);
                     vertex += of.vertexCount;
                     index += 3 * of.triangleCount;
                 }
-                var bounds = Around((Vector3*)vertices, 2, surface.VertexCount);
                 filled = true;
                 Mesh.ApplyAndDisposeWritableMeshData(meshes, mesh, Unchecked);
                 mesh.bounds = bounds;
@@ -218,11 +223,15 @@ namespace Anthronet
             if (count > 0)
             {
                 Vector3 min = *position, max = *position;
-                for (var i = 1; i < count; i++)
+                for (var last = position + step * count; position < last; position += step)
                 {
-                    position += step;
-                    min = Vector3.Min(min, *position);
-                    max = Vector3.Max(max, *position);
+                    // By hand: mono calls Vector3.Min for every vertex.
+                    if (position->x < min.x) min.x = position->x;
+                    else if (position->x > max.x) max.x = position->x;
+                    if (position->y < min.y) min.y = position->y;
+                    else if (position->y > max.y) max.y = position->y;
+                    if (position->z < min.z) min.z = position->z;
+                    else if (position->z > max.z) max.z = position->z;
                 }
                 bounds.SetMinMax(min, max);
             }

@@ -149,6 +149,11 @@ namespace UnityEngine
         public Vector3 min { get { return middle - half; } }
         public Vector3 max { get { return middle + half; } }
 
+        public void Encapsulate(Bounds bounds)
+        {
+            SetMinMax(Vector3.Min(min, bounds.min), Vector3.Max(max, bounds.max));
+        }
+
         public void SetMinMax(Vector3 min, Vector3 max)
         {
             half = (max - min) * 0.5f;

@@ -37,12 +37,18 @@ namespace Unity.Collections
         {
             Length = length;
             view = false;
-            buffer = Marshal.AllocHGlobal(length * Marshal.SizeOf(typeof(T)) + 1);
+            var bytes = length * Marshal.SizeOf(typeof(T));
+            buffer = Marshal.AllocHGlobal(bytes + 1);
             // What Unity does not clear is filled with what shows.
-            var fill = options == NativeArrayOptions.ClearMemory ? (byte)0 : (byte)0xEE;
-            for (var i = 0; i < length * Marshal.SizeOf(typeof(T)); i++)
+            var fill = options == NativeArrayOptions.ClearMemory ? 0L : unchecked((long)0xEEEEEEEEEEEEEEEE);
+            var words = (long*)buffer;
+            for (var i = 0; i < bytes / 8; i++)
             {
-                ((byte*)buffer)[i] = fill;
+                words[i] = fill;
+            }
+            for (var i = bytes / 8 * 8; i < bytes; i++)
+            {
+                ((byte*)buffer)[i] = (byte)fill;
             }
             Alive++;
         }

@@ -3,7 +3,7 @@
 //! No Unity is run: `tests/unity/SIGNATURES.md` lists what the stand-ins take for granted.
 
 use super::tally::Tally;
-use crate::environment::{self, Environment};
+use crate::environment;
 use crate::package::{library, package_unity};
 use crate::tools::{self, Outcome};
 use std::path::{Path, PathBuf};
@@ -13,9 +13,13 @@ use std::process::Command;
 const SOURCES: [&str; 4] =
     ["unity_plugin/Runtime", "unity_plugin/Editor", "unity_plugin/Samples~", "tests/unity"];
 
-pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
-    match environment.python_script("unity_package.py") {
-        Ok(mut command) => tally.script("Unity package", &mut command),
+pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
+    match environment::python() {
+        Ok(python) => {
+            let mut command = Command::new(python);
+            let script = tools::root().join("tests/unity_package.py");
+            tally.script("Unity package", command.env("PYTHONDONTWRITEBYTECODE", "1").arg(script));
+        }
         Err(reason) => tally.skip("Unity package", &reason),
     }
     tally.case("the Unity package is packed", package_unity().map(drop));
@@ -39,7 +43,7 @@ pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -
     };
     let mut tests = mono();
     tests.arg("--same-bytes").arg(tools::target().join("tmp/same_bytes"));
-    match &environment.c {
+    match environment::c_programs() {
         Ok(()) => match layout(&mono, &folder.join("unity")) {
             Ok(file) => {
                 tests.arg("--layout").arg(file);
@@ -49,6 +53,8 @@ pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -
         Err(reason) => println!("without a compiler of C: {reason}"),
     }
     tally.script("the Unity package under mono", &mut tests);
+    println!("-- speed of the Unity package under mono");
+    tools::run(mono().args(["--speed", "100"]))?;
     Ok(())
 }
 

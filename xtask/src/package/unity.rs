@@ -32,6 +32,10 @@ pub(crate) fn package_unity() -> Outcome<PathBuf> {
         copy(&with_meta(&from), &with_meta(&to))?;
     }
     copy(&library, &to)?;
+    // There Unity asks for no .meta files.
+    for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
+        copy(&tools::root().join(name), &package.join("Documentation~").join(name))?;
+    }
     let archive = dist.join(format!("com.anthronet.unity-{}.tgz", env!("CARGO_PKG_VERSION")));
     let plain = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"];
     tools::run(Command::new("tar").args(plain).arg(&archive).arg("-C").arg(&stage).arg("package"))?;
