@@ -232,6 +232,25 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(fresh.gameObject);
         }
 
+        [Case("after a reload of the code a character is made anew, not twice")]
+        static void Reload()
+        {
+            var character = Character(2, 3);
+            var children = character.transform.childCount;
+            // What Unity does not serialise is as in a new component.
+            var hidden = System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic;
+            foreach (var name in new[] { "body", "rig", "avatar" })
+            {
+                typeof(AnthroCharacter).GetField(name, hidden).SetValue(character, null);
+            }
+            ((System.Collections.IList)typeof(AnthroCharacter).GetField("levels", hidden).GetValue(character)).Clear();
+            AnthroModel.ReleaseDefault();
+            character.Generate();
+            Expect.Equal(children, character.transform.childCount, "children");
+            Expect.That(character.Avatar != null && character.Rig.Find("pelvis") != null, "avatar");
+            UnityEngine.Object.Destroy(character.gameObject);
+        }
+
         [Case("awake generates, destroying leaves nothing")]
         static void Lifecycle()
         {

@@ -12,8 +12,10 @@ namespace Anthronet.Tests
         {
             // Compiled, read, and allocated once.
             Spawn(1, 1);
-            var spawn = Enumerable.Range(0, 15).Select(i => Milliseconds(() => Spawn((ulong)i + 20, 1))).OrderBy(t => t).ToArray();
+            var spawn = Enumerable.Range(0, 15).Select(i => Milliseconds(() => Fill((ulong)i + 20))).OrderBy(t => t).ToArray();
             Line("spawn of LOD1, request to filled buffers (median of 15)", spawn[7], "ms", 10);
+            var objects = Enumerable.Range(0, 15).Select(i => Milliseconds(() => Spawn((ulong)i + 20, 1))).OrderBy(t => t);
+            Console.WriteLine("   the same with objects and avatar: {0:0.0} ms", objects.ElementAt(7));
 
             Parts();
             var request = new AnthroRequest { Seed = 4 };
@@ -87,6 +89,15 @@ namespace Anthronet.Tests
                 Milliseconds(() => UnityEngine.Object.Destroy(AnthroMeshes.Create(surface, body.Joints(), "x"))));
             surface.Dispose();
             body.Dispose();
+        }
+
+        static void Fill(ulong seed)
+        {
+            using (var body = AnthroModel.Default.Generate(new AnthroRequest { Seed = seed }.Set("height", 1.7)))
+            using (var surface = new AnthroSurface(body, 1))
+            {
+                UnityEngine.Object.Destroy(AnthroMeshes.Create(surface, body.Joints(), "filled"));
+            }
         }
 
         static void Spawn(ulong seed, int lod)

@@ -22,6 +22,9 @@ namespace Anthronet
         [SerializeField] bool generateOnAwake = true;
         [SerializeField] Material[] materials = new Material[0];
 
+        // Survives a reload of the code, saving and copying, when what is known of these objects does not.
+        [SerializeField] [HideInInspector] List<GameObject> made = new List<GameObject>();
+
         readonly List<Level> levels = new List<Level>();
         AnthroBody body;
         AnthroRig rig;
@@ -156,7 +159,17 @@ namespace Anthronet
             body = next;
             if (rig == null)
             {
+                // Made before a reload, or those of the character that this one is a copy of: names must not stand twice.
+                foreach (var old in made)
+                {
+                    if (old != null)
+                    {
+                        DestroyImmediate(old);
+                    }
+                }
+                made.Clear();
                 rig = AnthroRig.Create(body, transform);
+                made.Add(rig.Bones[0].gameObject);
             }
             else
             {
@@ -216,6 +229,7 @@ namespace Anthronet
             level.lod = lod;
             var child = new GameObject("LOD" + lod);
             child.transform.SetParent(transform, false);
+            made.Add(child);
             level.renderer = child.AddComponent<SkinnedMeshRenderer>();
             levels.Add(level);
             using (var surface = new AnthroSurface(body, lod, skinTone, bodyOnly))

@@ -47,6 +47,10 @@ namespace UnityEngine
             var home = obj as GameObject;
             if (!ReferenceEquals(home, null))
             {
+                if (home.transform.parent != null)
+                {
+                    home.transform.parent.children.Remove(home.transform);
+                }
                 foreach (var child in new List<Transform>(home.transform.children))
                 {
                     Destroy(child.gameObject);
@@ -397,6 +401,9 @@ namespace UnityEngine
 
     [AttributeUsage(AttributeTargets.Field)]
     public sealed class SerializeField : Attribute { }
+
+    [AttributeUsage(AttributeTargets.Field)]
+    public sealed class HideInInspector : Attribute { }
 
     [AttributeUsage(AttributeTargets.Field)]
     public sealed class RangeAttribute : Attribute
