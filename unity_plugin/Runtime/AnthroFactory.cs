@@ -2,6 +2,7 @@ using System;
 using System.Collections;
 using System.Collections.Generic;
 using System.Diagnostics;
+using System.Linq;
 using UnityEngine;
 
 namespace Anthronet
@@ -51,7 +52,7 @@ namespace Anthronet
             {
                 copies[i] = requests[i].Copy();
             }
-            return new AnthroSpawn((settings.model ?? AnthroModel.Default).Start(copies), copies, settings);
+            return new AnthroSpawn(copies, settings);
         }
 
         internal static AnthroCharacter Blank(AnthroRequest request, AnthroSettings settings)
@@ -82,7 +83,7 @@ namespace Anthronet
     /// <summary>Characters that are being made.</summary>
     public sealed class AnthroSpawn : IDisposable
     {
-        readonly AnthroJob job;
+        readonly AnthroJob[] jobs;
         readonly AnthroRequest[] requests;
         readonly AnthroSettings settings;
         readonly AnthroCharacter[] characters;
@@ -92,9 +93,23 @@ namespace Anthronet
         IEnumerator steps;
         bool freed;
 
-        internal AnthroSpawn(AnthroJob job, AnthroRequest[] requests, AnthroSettings settings)
+        internal AnthroSpawn(AnthroRequest[] requests, AnthroSettings settings)
         {
-            this.job = job;
+            // A job makes one body after the other: two, taken from in turns, keep more cores busy.
+            var model = settings.model ?? AnthroModel.Default;
+            jobs = new AnthroJob[2];
+            try
+            {
+                for (var i = 0; i < jobs.Length; i++)
+                {
+                    jobs[i] = model.Start(requests.Where((request, place) => place % jobs.Length == i).ToArray());
+                }
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
             this.requests = requests;
             this.settings = settings;
             characters = new AnthroCharacter[requests.Length];
@@ -147,7 +162,7 @@ namespace Anthronet
                 if (steps == null)
                 {
                     AnthroBody body;
-                    if (!job.TryTake(next, out body, out errors[next]))
+                    if (!jobs[next % jobs.Length].TryTake(next / jobs.Length, out body, out errors[next]))
                     {
                         if (errors[next] == null)
                         {
@@ -179,13 +194,22 @@ namespace Anthronet
         /// <summary>Asks for no more characters: those that are whole stay, the others get the error `Cancelled`.</summary>
         public void Cancel()
         {
-            job.Cancel();
+            foreach (var job in jobs)
+            {
+                job.Cancel();
+            }
         }
 
         /// <summary>Cancels it and frees the job. Characters that are whole stay, one that is not is destroyed.</summary>
         public void Dispose()
         {
-            job.Dispose();
+            foreach (var job in jobs)
+            {
+                if (job != null)
+                {
+                    job.Dispose();
+                }
+            }
             freed = true;
             if (steps != null)
             {
