@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The header that C and C++ include.
 pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
 /// The declarations that C# calls.
-pub(crate) const CSHARP: &str = "ffi/bindings/NativeMethods.g.cs";
+pub(crate) const CSHARP: &str = "unity_plugin/Runtime/Native/NativeMethods.g.cs";
 
 /// The declarations that Python calls.
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";

@@ -6,7 +6,7 @@
 //! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
-//! Godot and the compilers of C and C++ with valgrind come from the system's packages.
+//! Godot, mono and the compilers of C and C++ with valgrind come from the system's packages.
 //!
 //! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
 
@@ -36,6 +36,10 @@ const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
 /// What builds and watches the consumers of the C ABI, and the packages of Debian and Ubuntu that have it.
 const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
 const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
+
+/// The compiler and the run time of C#, which Unity's are of the family of, and the packages that have them.
+const MONO_PROGRAMS: [&str; 2] = ["mcs", "mono"];
+const MONO_PACKAGES: &[&str] = &["mono-mcs", "mono-runtime", "mono-devel"];
 
 /// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
 pub(crate) struct Environment {
@@ -274,6 +278,18 @@ pub(crate) fn c_programs() -> Result<(), String> {
         || C_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
     let Some(name) = missing() else { return Ok(()) };
     apt_install(C_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
+    missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
+}
+
+/// Mono, installed where that is needed and allowed.
+pub(crate) fn mono() -> Result<(), String> {
+    if !cfg!(target_os = "linux") {
+        return Err("the Unity package is tested with mono on Linux alone".to_owned());
+    }
+    let missing =
+        || MONO_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
+    let Some(name) = missing() else { return Ok(()) };
+    apt_install(MONO_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
     missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
 }
 

@@ -14,6 +14,8 @@ pub(crate) enum Part {
     Hosts,
     /// Of those, the consumers of the C ABI alone
     C,
+    /// Of those, the Unity package alone
+    Unity,
 }
 
 /// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
@@ -36,6 +38,9 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     }
     if only == Some(Part::C) {
         failures.extend(hosts::run_c().err());
+    }
+    if only == Some(Part::Unity) {
+        failures.extend(hosts::run_unity().err());
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
 }

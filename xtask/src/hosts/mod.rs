@@ -10,6 +10,7 @@ mod cpp;
 mod python;
 mod skin;
 mod tally;
+mod unity;
 mod usd;
 
 use crate::environment::{self, Environment};
@@ -41,6 +42,7 @@ pub(crate) fn run() -> Outcome {
     cpp::run(&anthronet, &environment, &folder, &mut tally)?;
     python::run(&anthronet, &environment, &folder, &mut tally)?;
     blender::run(&anthronet, &environment, &folder, &mut tally)?;
+    unity::run(&folder, &mut tally)?;
     close(&tally)
 }
 
@@ -48,6 +50,13 @@ pub(crate) fn run() -> Outcome {
 pub(crate) fn run_c() -> Outcome {
     let mut tally = Tally::default();
     c::run(&environment::c_programs(), &tools::target().join("test-env/out"), &mut tally)?;
+    close(&tally)
+}
+
+/// The Unity package alone.
+pub(crate) fn run_unity() -> Outcome {
+    let mut tally = Tally::default();
+    unity::run(&tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
 }
 

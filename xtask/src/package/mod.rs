@@ -3,10 +3,12 @@
 mod blender;
 mod cpp;
 mod python;
+mod unity;
 
 pub(crate) use blender::package_blender;
 pub(crate) use cpp::package_cpp;
 pub(crate) use python::{library, package_python};
+pub(crate) use unity::package_unity;
 
 use crate::environment;
 use crate::tools::{self, Outcome};
@@ -20,6 +22,8 @@ pub(crate) enum Kind {
     Cpp,
     /// The Blender extension, with the wheel inside
     Blender,
+    /// The Unity package, with the library of this system inside
+    Unity,
 }
 
 pub(crate) fn run(kind: Kind) -> Outcome {
@@ -27,6 +31,7 @@ pub(crate) fn run(kind: Kind) -> Outcome {
         Kind::Python => package_python(&environment::python()?)?,
         Kind::Cpp => package_cpp()?,
         Kind::Blender => package_blender(&environment::prepare()?, &tools::command_line()?)??,
+        Kind::Unity => package_unity()?,
     };
     println!("{}", made.display());
     Ok(())

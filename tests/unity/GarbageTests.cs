@@ -1,0 +1,63 @@
+using System;
+using System.Linq;
+using System.Reflection;
+using UnityEngine;
+
+namespace Anthronet.Tests
+{
+    /// Nothing is left to the collector by what runs every frame.
+    static class GarbageTests
+    {
+        // This counter of the runtime is missing from the compiler's reference assemblies.
+        static readonly Func<long> Allocated = (Func<long>)Delegate.CreateDelegate(typeof(Func<long>),
+            typeof(GC).GetMethod("GetAllocatedBytesForCurrentThread", BindingFlags.Static | BindingFlags.Public | BindingFlags.NonPublic));
+
+        static void Nothing(string what, int times, Action frame)
+        {
+            // The first run compiles.
+            frame();
+            var before = Allocated();
+            for (var i = 0; i < times; i++)
+            {
+                frame();
+            }
+            Expect.Equal(0L, Allocated() - before, what + ": bytes in " + times + " frames");
+        }
+
+        [Case("zero bytes per frame: sampling, animating, skinning a crowd, polling")]
+        static void PerFrame()
+        {
+            var start = Allocated();
+            GC.KeepAlive(new byte[100]);
+            Expect.That(Allocated() - start >= 100, "the counter does not count");
+            var character = AnthroFactory.Create(new AnthroRequest(), new AnthroSettings { finestLod = 3, coarsestLod = 3 });
+            var animator = character.gameObject.AddComponent<AnthroAnimator>();
+            animator.Play("walk");
+            var clip = animator.Clip;
+            var pose = new AnthroTransform[clip.JointCount];
+            Nothing("sampling", 2000, () => clip.Sample(0.2, AnthroWrap.Loop, pose));
+            Nothing("animator", 2000, () => animator.Advance(1f / 60));
+            var reports = new AnthroMeasureReport[AnthroMeasures.Count];
+            Nothing("reports", 1000, () => character.Body.Measures(reports));
+            using (var surface = new AnthroSurface(character.Body, 3))
+            using (var skinner = new AnthroSkinner(surface))
+            using (var crowd = new AnthroCrowdSkin(Enumerable.Repeat(skinner, 8).ToArray(), clip.JointCount))
+            {
+                Nothing("crowd", 300, () =>
+                {
+                    for (var i = 0; i < 8; i++)
+                    {
+                        crowd.Pose(i, clip, 0.1 * i, AnthroWrap.Travel);
+                    }
+                    crowd.Run();
+                });
+            }
+            using (var job = AnthroModel.Default.Start(new[] { new AnthroRequest() }))
+            {
+                int done;
+                Nothing("polling", 2000, () => job.Poll(out done));
+            }
+            UnityEngine.Object.Destroy(character.gameObject);
+        }
+    }
+}

@@ -1,0 +1,400 @@
+// Stand-ins for Unity's meshes and native arrays: as much of them as the package and its tests use, with the checks that
+// Unity documents. See ../SIGNATURES.md.
+using System;
+using System.Collections.Generic;
+using System.Runtime.InteropServices;
+using Unity.Collections;
+using Unity.Collections.LowLevel.Unsafe;
+using UnityEngine.Rendering;
+
+namespace Unity.Collections
+{
+    public enum Allocator
+    {
+        Invalid = 0,
+        None = 1,
+        Temp = 2,
+        TempJob = 3,
+        Persistent = 4,
+    }
+
+    public enum NativeArrayOptions
+    {
+        UninitializedMemory = 0,
+        ClearMemory = 1,
+    }
+
+    public unsafe struct NativeArray<T> : IDisposable where T : struct
+    {
+        internal IntPtr buffer;
+        bool view;
+
+        /// For the tests: arrays that nobody disposed of yet.
+        public static int Alive;
+
+        public NativeArray(
+            int length, Allocator allocator, NativeArrayOptions options = NativeArrayOptions.ClearMemory)
+        {
+            Length = length;
+            view = false;
+            var bytes = length * Marshal.SizeOf(typeof(T));
+            buffer = Marshal.AllocHGlobal(bytes + 1);
+            // What Unity does not clear is filled with what shows.
+            var fill = options == NativeArrayOptions.ClearMemory ? 0L : unchecked((long)0xEEEEEEEEEEEEEEEE);
+            var words = (long*)buffer;
+            for (var i = 0; i < bytes / 8; i++)
+            {
+                words[i] = fill;
+            }
+            for (var i = bytes / 8 * 8; i < bytes; i++)
+            {
+                ((byte*)buffer)[i] = (byte)fill;
+            }
+            Alive++;
+        }
+
+        NativeArray(IntPtr buffer, int length)
+        {
+            this.buffer = buffer;
+            Length = length;
+            view = true;
+        }
+
+        internal static NativeArray<T> Over(IntPtr buffer, int length) { return new NativeArray<T>(buffer, length); }
+
+        public int Length { get; private set; }
+        public bool IsCreated { get { return buffer != IntPtr.Zero; } }
+
+        public T this[int index]
+        {
+            get
+            {
+                if (index < 0 || index >= Length)
+                {
+                    throw new IndexOutOfRangeException();
+                }
+                var size = Marshal.SizeOf(typeof(T));
+                return (T)Marshal.PtrToStructure((IntPtr)((byte*)buffer + (long)index * size), typeof(T));
+            }
+        }
+
+        public NativeArray<T> GetSubArray(int start, int length)
+        {
+            if (start < 0 || length < 0 || start + length > Length)
+            {
+                throw new ArgumentOutOfRangeException();
+            }
+            return Over((IntPtr)((byte*)buffer + start * Marshal.SizeOf(typeof(T))), length);
+        }
+
+        public void Dispose()
+        {
+            if (view || buffer == IntPtr.Zero)
+            {
+                throw new InvalidOperationException("not to be disposed of, or disposed of before");
+            }
+            Marshal.FreeHGlobal(buffer);
+            buffer = IntPtr.Zero;
+            Alive--;
+        }
+    }
+}
+
+namespace Unity.Collections.LowLevel.Unsafe
+{
+    public static class NativeArrayUnsafeUtility
+    {
+        public static unsafe void* GetUnsafePtr<T>(NativeArray<T> nativeArray) where T : struct
+        {
+            return (void*)nativeArray.buffer;
+        }
+    }
+}
+
+namespace UnityEngine.Rendering
+{
+    public enum VertexAttribute
+    {
+        Position = 0,
+        Normal = 1,
+        Tangent = 2,
+        Color = 3,
+        TexCoord0 = 4,
+    }
+
+    public enum VertexAttributeFormat
+    {
+        Float32 = 0,
+    }
+
+    public enum IndexFormat
+    {
+        UInt16 = 0,
+        UInt32 = 1,
+    }
+
+    [Flags]
+    public enum MeshUpdateFlags
+    {
+        Default = 0,
+        DontValidateIndices = 1,
+        DontResetBoneBounds = 2,
+        DontNotifyMeshUsers = 4,
+        DontRecalculateBounds = 8,
+    }
+
+    public struct VertexAttributeDescriptor
+    {
+        public VertexAttributeDescriptor(VertexAttribute attribute = VertexAttribute.Position,
+            VertexAttributeFormat format = VertexAttributeFormat.Float32, int dimension = 3, int stream = 0)
+        {
+            this.attribute = attribute;
+            this.format = format;
+            this.dimension = dimension;
+            this.stream = stream;
+        }
+
+        public VertexAttribute attribute;
+        public VertexAttributeFormat format;
+        public int dimension;
+        public int stream;
+    }
+
+    public struct SubMeshDescriptor
+    {
+        public SubMeshDescriptor(int indexStart, int indexCount, MeshTopology topology = MeshTopology.Triangles)
+            : this()
+        {
+            this.indexStart = indexStart;
+            this.indexCount = indexCount;
+            this.topology = topology;
+        }
+
+        public Bounds bounds { get; set; }
+        public MeshTopology topology { get; set; }
+        public int indexStart { get; set; }
+        public int indexCount { get; set; }
+        public int baseVertex { get; set; }
+        public int firstVertex { get; set; }
+        public int vertexCount { get; set; }
+    }
+}
+
+namespace UnityEngine
+{
+    public enum MeshTopology
+    {
+        Triangles = 0,
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct BoneWeight1
+    {
+        float m_Weight;
+        int m_BoneIndex;
+        public float weight { get { return m_Weight; } set { m_Weight = value; } }
+        public int boneIndex { get { return m_BoneIndex; } set { m_BoneIndex = value; } }
+    }
+
+    public sealed unsafe class Mesh : Object
+    {
+        // What the tests look at.
+        public float[][] Streams;
+        public uint[] Indices;
+        public SubMeshDescriptor[] Parts;
+        public byte[] BonesPerVertex;
+        public BoneWeight1[] Weights;
+        public readonly Dictionary<string, Vector3[]> Shapes = new Dictionary<string, Vector3[]>();
+
+        public int vertexCount { get { return Streams == null ? 0 : Streams[0].Length / 6; } }
+        public Bounds bounds { get; set; }
+        public Matrix4x4[] bindposes { get; set; }
+        public int subMeshCount { get { return Parts.Length; } }
+        public SubMeshDescriptor GetSubMesh(int index) { return Parts[index]; }
+        public int blendShapeCount { get { return Shapes.Count; } }
+        public void ClearBlendShapes() { Shapes.Clear(); }
+
+        public Vector3 Position(int vertex)
+        {
+            return new Vector3(Streams[0][6 * vertex], Streams[0][6 * vertex + 1], Streams[0][6 * vertex + 2]);
+        }
+
+        public Vector3 Normal(int vertex)
+        {
+            return new Vector3(Streams[0][6 * vertex + 3], Streams[0][6 * vertex + 4], Streams[0][6 * vertex + 5]);
+        }
+
+        public struct MeshData
+        {
+            internal sealed class Memory
+            {
+                public int vertices;
+                public int[] floats;
+                public IntPtr[] streams;
+                public int indices;
+                public IntPtr index;
+                public SubMeshDescriptor[] parts;
+            }
+
+            internal Memory memory;
+
+            public void SetVertexBufferParams(int vertexCount, params VertexAttributeDescriptor[] attributes)
+            {
+                memory.vertices = vertexCount;
+                memory.floats = new int[4];
+                foreach (var attribute in attributes)
+                {
+                    memory.floats[attribute.stream] += attribute.dimension;
+                }
+                memory.streams = new IntPtr[4];
+                for (var i = 0; i < 4; i++)
+                {
+                    memory.streams[i] = Marshal.AllocHGlobal(4 * vertexCount * memory.floats[i] + 4);
+                }
+            }
+
+            public void SetIndexBufferParams(int indexCount, IndexFormat format)
+            {
+                if (format != IndexFormat.UInt32)
+                {
+                    throw new NotSupportedException();
+                }
+                memory.indices = indexCount;
+                memory.index = Marshal.AllocHGlobal(4 * indexCount + 4);
+            }
+
+            public int subMeshCount { set { memory.parts = new SubMeshDescriptor[value]; } }
+
+            public NativeArray<T> GetVertexData<T>(int stream = 0) where T : struct
+            {
+                return NativeArray<T>.Over(memory.streams[stream], memory.vertices * memory.floats[stream]);
+            }
+
+            public NativeArray<T> GetIndexData<T>() where T : struct
+            {
+                return NativeArray<T>.Over(memory.index, memory.indices);
+            }
+
+            public void SetSubMesh(int index, SubMeshDescriptor desc, MeshUpdateFlags flags = MeshUpdateFlags.Default)
+            {
+                if (desc.indexStart + desc.indexCount > memory.indices)
+                {
+                    throw new ArgumentException("SetSubMesh: beyond the last index");
+                }
+                memory.parts[index] = desc;
+            }
+        }
+
+        public struct MeshDataArray : IDisposable
+        {
+            internal MeshData[] all;
+            public MeshData this[int index] { get { return all[index]; } }
+            public int Length { get { return all.Length; } }
+
+            public void Dispose()
+            {
+                foreach (var one in all)
+                {
+                    if (one.memory.streams != null)
+                    {
+                        Array.ForEach(one.memory.streams, Marshal.FreeHGlobal);
+                        Marshal.FreeHGlobal(one.memory.index);
+                    }
+                }
+                Pending--;
+            }
+        }
+
+        /// For the tests: writable data that was neither applied nor disposed of.
+        public static int Pending;
+
+        public static MeshDataArray AllocateWritableMeshData(int meshCount)
+        {
+            var array = new MeshDataArray { all = new MeshData[meshCount] };
+            for (var i = 0; i < meshCount; i++)
+            {
+                array.all[i].memory = new MeshData.Memory();
+            }
+            Pending++;
+            return array;
+        }
+
+        public static void ApplyAndDisposeWritableMeshData(
+            MeshDataArray data, Mesh mesh, MeshUpdateFlags flags = MeshUpdateFlags.Default)
+        {
+            var from = data.all[0].memory;
+            mesh.Streams = new float[2][];
+            for (var i = 0; i < 2; i++)
+            {
+                mesh.Streams[i] = new float[from.vertices * from.floats[i]];
+                Marshal.Copy(from.streams[i], mesh.Streams[i], 0, mesh.Streams[i].Length);
+            }
+            mesh.Indices = new uint[from.indices];
+            for (var i = 0; i < from.indices; i++)
+            {
+                mesh.Indices[i] = ((uint*)from.index)[i];
+            }
+            mesh.Parts = from.parts;
+            data.Dispose();
+        }
+
+        public void SetVertices<T>(NativeArray<T> inVertices) where T : struct
+        {
+            Rows(inVertices.Length, (float*)inVertices.buffer, 0);
+        }
+
+        public void SetNormals<T>(NativeArray<T> inNormals) where T : struct
+        {
+            Rows(inNormals.Length, (float*)inNormals.buffer, 3);
+        }
+
+        void Rows(int count, float* from, int offset)
+        {
+            if (count != vertexCount)
+            {
+                throw new ArgumentException("another number of vertices");
+            }
+            for (var i = 0; i < count; i++)
+            {
+                for (var k = 0; k < 3; k++)
+                {
+                    Streams[0][6 * i + offset + k] = from[3 * i + k];
+                }
+            }
+        }
+
+        public void SetBoneWeights(NativeArray<byte> bonesPerVertex, NativeArray<BoneWeight1> weights)
+        {
+            if (bonesPerVertex.Length != vertexCount)
+            {
+                throw new ArgumentException("SetBoneWeights: another number of vertices");
+            }
+            BonesPerVertex = new byte[bonesPerVertex.Length];
+            var total = 0;
+            for (var i = 0; i < BonesPerVertex.Length; i++)
+            {
+                BonesPerVertex[i] = ((byte*)bonesPerVertex.buffer)[i];
+                total += BonesPerVertex[i];
+            }
+            if (total != weights.Length)
+            {
+                throw new ArgumentException("SetBoneWeights: the numbers of bones have another sum");
+            }
+            Weights = new BoneWeight1[total];
+            for (var i = 0; i < total; i++)
+            {
+                Weights[i] = ((BoneWeight1*)weights.buffer)[i];
+            }
+        }
+
+        public void AddBlendShapeFrame(string shapeName, float frameWeight, Vector3[] deltaVertices,
+            Vector3[] deltaNormals, Vector3[] deltaTangents)
+        {
+            if (deltaVertices.Length != vertexCount || Shapes.ContainsKey(shapeName))
+            {
+                throw new ArgumentException("AddBlendShapeFrame: another number of vertices, or the name is taken");
+            }
+            Shapes[shapeName] = (Vector3[])deltaVertices.Clone();
+        }
+    }
+}

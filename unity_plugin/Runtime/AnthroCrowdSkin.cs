@@ -1,0 +1,190 @@
+using System;
+using Anthronet.Native;
+using Unity.Collections;
+using Unity.Collections.LowLevel.Unsafe;
+using UnityEngine;
+
+namespace Anthronet
+{
+    /// <summary>A part of a surface ready to be posed on the processor. Immutable; may be used by many threads.</summary>
+    public sealed unsafe class AnthroSkinner : IDisposable
+    {
+        readonly SkinnerHandle handle;
+
+        /// <summary>Makes a part of a surface ready; the surface is not needed afterwards.</summary>
+        public AnthroSkinner(AnthroSurface surface, int part = 0)
+        {
+            using (var held = new Held(surface.Handle))
+            {
+                anthronet_skinner* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_skinner_new(
+                    (anthronet_mesh*)held.Pointer, checked((uint)part), &made, &error), &error);
+                handle = new SkinnerHandle(made);
+                uint count;
+                Library.Check(NativeMethods.anthronet_skinner_vertex_count(made, &count, &error), &error);
+                VertexCount = (int)count;
+            }
+        }
+
+        internal SkinnerHandle Handle
+        {
+            get { return handle; }
+        }
+
+        /// <summary>Number of vertices.</summary>
+        public int VertexCount { get; private set; }
+
+        /// <summary>Frees it.</summary>
+        public void Dispose()
+        {
+            handle.Dispose();
+        }
+    }
+
+    /// <summary>
+    /// Poses the surfaces of many characters in one call, on all cores, into native arrays of positions and normals.
+    /// `Run` makes no garbage. One thread at a time.
+    /// </summary>
+    public sealed unsafe class AnthroCrowdSkin : IDisposable
+    {
+        readonly AnthroSkinner[] skinners;
+        readonly Held[] held;
+        readonly anthronet_skin_job[] jobs;
+        NativeArray<AnthroTransform> poses;
+        NativeArray<Vector3> positions;
+        NativeArray<Vector3> normals;
+        readonly int[] offsets;
+        readonly int jointCount;
+
+        /// <summary>Makes room for characters.</summary>
+        /// <param name="skinners">One per character; the same one may stand more than once. Kept from being freed.</param>
+        /// <param name="jointCount">Joints of a pose: `AnthroClip.JointCount`.</param>
+        /// <param name="method">How.</param>
+        public AnthroCrowdSkin(
+            AnthroSkinner[] skinners, int jointCount, AnthroSkinning method = AnthroSkinning.Linear)
+        {
+            this.skinners = (AnthroSkinner[])skinners.Clone();
+            this.jointCount = jointCount;
+            offsets = new int[skinners.Length + 1];
+            for (var i = 0; i < skinners.Length; i++)
+            {
+                offsets[i + 1] = checked(offsets[i] + skinners[i].VertexCount);
+            }
+            var vertices = offsets[skinners.Length];
+            held = new Held[skinners.Length];
+            jobs = new anthronet_skin_job[skinners.Length];
+            try
+            {
+                for (var i = 0; i < skinners.Length; i++)
+                {
+                    held[i] = new Held(skinners[i].Handle);
+                }
+                poses = new NativeArray<AnthroTransform>(checked(skinners.Length * jointCount), Allocator.Persistent);
+                positions = new NativeArray<Vector3>(vertices, Allocator.Persistent);
+                normals = new NativeArray<Vector3>(vertices, Allocator.Persistent);
+                Describe(method);
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
+        }
+
+        void Describe(AnthroSkinning method)
+        {
+            var firstPose = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses);
+            var firstPosition = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(positions);
+            var firstNormal = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(normals);
+            for (var i = 0; i < jobs.Length; i++)
+            {
+                var bytes = (ulong)skinners[i].VertexCount * (ulong)sizeof(Vector3);
+                jobs[i].struct_size = (uint)sizeof(anthronet_skin_job);
+                jobs[i].method = (uint)method;
+                jobs[i].skinner = (anthronet_skinner*)held[i].Pointer;
+                jobs[i].joints = (anthronet_transform*)(firstPose + i * jointCount);
+                jobs[i].joint_count = (uint)jointCount;
+                jobs[i].positions = firstPosition + offsets[i];
+                jobs[i].position_bytes = bytes;
+                jobs[i].normals = firstNormal + offsets[i];
+                jobs[i].normal_bytes = bytes;
+            }
+        }
+
+        /// <summary>Number of characters.</summary>
+        public int Count
+        {
+            get { return skinners.Length; }
+        }
+
+        /// <summary>Posed positions of all characters, one after the other, metres, each in its character's space.</summary>
+        public NativeArray<Vector3> Positions
+        {
+            get { return positions; }
+        }
+
+        /// <summary>Posed unit normals of all characters, one after the other.</summary>
+        public NativeArray<Vector3> Normals
+        {
+            get { return normals; }
+        }
+
+        /// <summary>Where a character's vertices begin; of `Count`, where all end.</summary>
+        public int FirstVertex(int character)
+        {
+            return offsets[character];
+        }
+
+        /// <summary>Sets the pose of a character from a clip. Makes no garbage.</summary>
+        public void Pose(int character, AnthroClip clip, double seconds, AnthroWrap wrap)
+        {
+            Open();
+            if (character < 0 || character >= skinners.Length)
+            {
+                throw new ArgumentOutOfRangeException("character");
+            }
+            var first = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses) + character * jointCount;
+            clip.Sample(seconds, wrap, first, jointCount, true);
+        }
+
+        /// <summary>Poses all surfaces. Makes no garbage.</summary>
+        public void Run()
+        {
+            Open();
+            fixed (anthronet_skin_job* first = jobs)
+            {
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_skin(first, (uint)jobs.Length, &error), &error);
+            }
+        }
+
+        void Open()
+        {
+            if (!positions.IsCreated)
+            {
+                throw new ObjectDisposedException("AnthroCrowdSkin");
+            }
+        }
+
+        /// <summary>Frees the arrays. What was got from `Positions` and `Normals` is not to be used any longer.</summary>
+        public void Dispose()
+        {
+            for (var i = 0; i < held.Length; i++)
+            {
+                held[i].Dispose();
+            }
+            Free(ref poses);
+            Free(ref positions);
+            Free(ref normals);
+        }
+
+        static void Free<T>(ref NativeArray<T> array) where T : struct
+        {
+            if (array.IsCreated)
+            {
+                array.Dispose();
+            }
+        }
+    }
+}

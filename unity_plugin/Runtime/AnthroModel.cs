@@ -1,0 +1,232 @@
+using System;
+using System.Collections.Generic;
+using Anthronet.Native;
+using UnityEngine;
+
+namespace Anthronet
+{
+    /// <summary>A trained model: makes bodies of requests. Immutable; may be used by many threads at once.</summary>
+    public sealed unsafe class AnthroModel : IDisposable
+    {
+        static readonly object gate = new object();
+        static AnthroModel shared;
+
+        readonly ModelHandle handle;
+
+        AnthroModel(anthronet_model* pointer)
+        {
+            handle = new ModelHandle(pointer);
+        }
+
+        /// <summary>The model that the library carries, opened once. Do not dispose of it: `ReleaseDefault` does.
+        /// </summary>
+        /// <exception cref="DllNotFoundException">The native library is missing.</exception>
+        public static AnthroModel Default
+        {
+            get
+            {
+                lock (gate)
+                {
+                    return shared ?? (shared = OpenEmbedded());
+                }
+            }
+        }
+
+        /// <summary>Frees the model of `Default`; the next use opens it again. Bodies and jobs stay whole.</summary>
+        public static void ReleaseDefault()
+        {
+            lock (gate)
+            {
+                if (shared != null)
+                {
+                    shared.Dispose();
+                    shared = null;
+                }
+            }
+        }
+
+        // Without a reload of the domain, statics of the last play are still there.
+        [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
+        static void Restart()
+        {
+            ReleaseDefault();
+        }
+
+        /// <summary>Opens the model that the library carries.</summary>
+        public static AnthroModel OpenEmbedded()
+        {
+            Library.Ensure();
+            anthronet_model* made;
+            anthronet_error error;
+            Library.Check(NativeMethods.anthronet_model_open_embedded(&made, &error), &error);
+            return new AnthroModel(made);
+        }
+
+        /// <summary>Opens a model file.</summary>
+        /// <exception cref="AnthroException">There is none, or it is damaged.</exception>
+        public static AnthroModel Open(string path)
+        {
+            Library.Ensure();
+            ulong length;
+            anthronet_model* made;
+            anthronet_error error;
+            fixed (byte* data = Utf8.Bytes(path, "path", out length))
+            {
+                Library.Check(NativeMethods.anthronet_model_open_path(data, length, &made, &error), &error);
+            }
+            return new AnthroModel(made);
+        }
+
+        /// <summary>Opens a model from the bytes of its file, such as those of a TextAsset.</summary>
+        /// <exception cref="AnthroException">They are none.</exception>
+        public static AnthroModel Open(byte[] bytes)
+        {
+            if (bytes == null)
+            {
+                throw new ArgumentNullException("bytes");
+            }
+            Library.Ensure();
+            anthronet_model* made;
+            anthronet_error error;
+            // An empty array has no first byte to point at.
+            fixed (byte* data = bytes.Length == 0 ? new byte[1] : bytes)
+            {
+                Library.Check(
+                    NativeMethods.anthronet_model_open_memory(data, (ulong)bytes.Length, &made, &error), &error);
+            }
+            return new AnthroModel(made);
+        }
+
+        /// <summary>Number of latent numbers of a body.</summary>
+        public int LatentSize
+        {
+            get
+            {
+                using (var held = new Held(handle))
+                {
+                    uint size;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_model_latent_size(
+                        (anthronet_model*)held.Pointer, &size, &error), &error);
+                    return (int)size;
+                }
+            }
+        }
+
+        /// <summary>What the model is, as JSON: measures with definitions and ranges, joints, versions, scores.</summary>
+        public string InfoJson
+        {
+            get
+            {
+                using (var held = new Held(handle))
+                {
+                    anthronet_bytes* json;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_model_info(
+                        (anthronet_model*)held.Pointer, &json, &error), &error);
+                    return Utf8.TakeText(json);
+                }
+            }
+        }
+
+        /// <summary>The smallest and largest value that a request may give of a measure, metres.</summary>
+        public void Range(int measure, out double min, out double max)
+        {
+            using (var held = new Held(handle))
+            {
+                double low, high;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_model_measure_range(
+                    (anthronet_model*)held.Pointer, checked((uint)measure), &low, &high, &error), &error);
+                min = low;
+                max = high;
+            }
+        }
+
+        /// <summary>Makes the body that a request describes. May be called from any thread.</summary>
+        /// <exception cref="AnthroException">The request is refused; the message says why.</exception>
+        public AnthroBody Generate(AnthroRequest request)
+        {
+            if (request == null)
+            {
+                throw new ArgumentNullException("request");
+            }
+            using (var asked = request.Make())
+            using (var held = new Held(handle))
+            {
+                anthronet_body* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_generate(
+                    (anthronet_model*)held.Pointer, (anthronet_request*)asked.DangerousGetHandle(), &made, &error),
+                    &error);
+                return new AnthroBody(made);
+            }
+        }
+
+        /// <summary>Makes the body at the share `t`, 0 to 1, of the way between two requests.</summary>
+        public AnthroBody Interpolate(AnthroRequest from, AnthroRequest to, double t)
+        {
+            if (from == null || to == null)
+            {
+                throw new ArgumentNullException(from == null ? "from" : "to");
+            }
+            using (var first = from.Make())
+            using (var second = to.Make())
+            using (var held = new Held(handle))
+            {
+                anthronet_body* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_interpolate(
+                    (anthronet_model*)held.Pointer, (anthronet_request*)first.DangerousGetHandle(),
+                    (anthronet_request*)second.DangerousGetHandle(), t, &made, &error), &error);
+                return new AnthroBody(made);
+            }
+        }
+
+        /// <summary>Starts to make the bodies of requests, in order, on threads of the library.</summary>
+        public AnthroJob Start(IList<AnthroRequest> requests)
+        {
+            if (requests == null)
+            {
+                throw new ArgumentNullException("requests");
+            }
+            var asked = new RequestHandle[requests.Count];
+            try
+            {
+                // One more: an empty array has no first entry to point at.
+                var pointers = new IntPtr[requests.Count + 1];
+                for (var i = 0; i < asked.Length; i++)
+                {
+                    asked[i] = requests[i].Make();
+                    pointers[i] = asked[i].DangerousGetHandle();
+                }
+                using (var held = new Held(handle))
+                fixed (IntPtr* first = pointers)
+                {
+                    anthronet_job* made;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_job_start(
+                        (anthronet_model*)held.Pointer, (anthronet_request**)first, (uint)asked.Length, &made, &error),
+                        &error);
+                    return new AnthroJob(made, asked.Length);
+                }
+            }
+            finally
+            {
+                foreach (var one in asked)
+                {
+                    if (one != null)
+                    {
+                        one.Dispose();
+                    }
+                }
+            }
+        }
+
+        /// <summary>Frees it. Bodies and jobs that it made stay whole.</summary>
+        public void Dispose()
+        {
+            handle.Dispose();
+        }
+    }
+}

@@ -1,0 +1,132 @@
+using System;
+using Anthronet.Native;
+
+namespace Anthronet
+{
+    /// <summary>A motion file as it was read, of its own skeleton. Immutable; may be used by many threads.</summary>
+    public sealed unsafe class AnthroMotion : IDisposable
+    {
+        readonly MotionHandle handle;
+
+        AnthroMotion(anthronet_motion* pointer)
+        {
+            handle = new MotionHandle(pointer);
+        }
+
+        /// <summary>Reads a file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.</summary>
+        /// <exception cref="AnthroException">It is not such a file.</exception>
+        public static AnthroMotion Open(string path)
+        {
+            Library.Ensure();
+            ulong length;
+            fixed (byte* data = Utf8.Bytes(path, "path", out length))
+            {
+                anthronet_motion* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_motion_open_path(data, length, null, &made, &error), &error);
+                return new AnthroMotion(made);
+            }
+        }
+
+        /// <summary>Reads the bytes of a file; the ending of its name tells the format.</summary>
+        /// <exception cref="AnthroException">They are not such a file's.</exception>
+        public static AnthroMotion Open(byte[] bytes, string name)
+        {
+            if (bytes == null)
+            {
+                throw new ArgumentNullException("bytes");
+            }
+            Library.Ensure();
+            ulong length;
+            fixed (byte* text = Utf8.Bytes(name, "name", out length))
+            fixed (byte* data = bytes.Length == 0 ? new byte[1] : bytes)
+            {
+                anthronet_motion* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_motion_open_memory(
+                    data, (ulong)bytes.Length, text, length, null, &made, &error), &error);
+                return new AnthroMotion(made);
+            }
+        }
+
+        /// <summary>Number of clips: at least one.</summary>
+        public int ClipCount
+        {
+            get
+            {
+                using (var held = new Held(handle))
+                {
+                    uint count;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_motion_clip_count(
+                        (anthronet_motion*)held.Pointer, &count, &error), &error);
+                    return (int)count;
+                }
+            }
+        }
+
+        /// <summary>The name of a clip.</summary>
+        public string ClipName(int clip)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_text name;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_motion_clip_name(
+                    (anthronet_motion*)held.Pointer, checked((uint)clip), &name, &error), &error);
+                return Utf8.Text(name);
+            }
+        }
+
+        /// <summary>How the file was understood, as JSON.</summary>
+        public string ReportJson
+        {
+            get
+            {
+                using (var held = new Held(handle))
+                {
+                    anthronet_bytes* json;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_motion_report(
+                        (anthronet_motion*)held.Pointer, &json, &error), &error);
+                    return Utf8.TakeText(json);
+                }
+            }
+        }
+
+        /// <summary>Brings one of its clips onto a body.</summary>
+        /// <exception cref="AnthroException">Joints that a person needs are not found.</exception>
+        public AnthroClip Onto(AnthroBody body, int clip = 0, AnthroRetarget options = default(AnthroRetarget))
+        {
+            ulong length;
+            var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
+            using (var wearer = new Held(body.Handle))
+            using (var held = new Held(handle))
+            fixed (byte* json = mapping)
+            {
+                var retarget = new anthronet_retarget_options();
+                retarget.struct_size = (uint)sizeof(anthronet_retarget_options);
+                retarget.fingers = (uint)options.fingers;
+                retarget.no_limits = options.noLimits ? 1u : 0u;
+                retarget.no_feet = options.noFeet ? 1u : 0u;
+                retarget.in_place = options.inPlace ? 1u : 0u;
+                retarget.looped = options.looped ? 1u : 0u;
+                retarget.root_motion = options.rootMotion ? 1u : 0u;
+                retarget.frames_per_second = options.framesPerSecond;
+                retarget.mapping_length = (uint)length;
+                retarget.mapping_json = length == 0 ? null : json;
+                anthronet_clip* made;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_motion_retarget((anthronet_motion*)held.Pointer,
+                    checked((uint)clip), (anthronet_body*)wearer.Pointer, &retarget, &made, null, &error), &error);
+                return AnthroClip.Wrap(made);
+            }
+        }
+
+        /// <summary>Frees it. Clips made of it stay whole.</summary>
+        public void Dispose()
+        {
+            handle.Dispose();
+        }
+    }
+}

@@ -1,0 +1,82 @@
+using System;
+using UnityEngine;
+
+namespace Anthronet
+{
+    /// <summary>The joints of a character as transforms, called as in the rig. On the main thread alone.</summary>
+    public sealed class AnthroRig
+    {
+        readonly Transform[] bones;
+        readonly AnthroJoint[] joints;
+
+        AnthroRig(Transform[] bones, AnthroJoint[] joints)
+        {
+            this.bones = bones;
+            this.joints = joints;
+        }
+
+        /// <summary>The transforms, parents first; the first is the root.</summary>
+        public Transform[] Bones
+        {
+            get { return bones; }
+        }
+
+        /// <summary>The joints of the body in the bind pose.</summary>
+        public AnthroJoint[] Joints
+        {
+            get { return joints; }
+        }
+
+        /// <summary>Makes the transforms of a body's joints below a transform, in the bind pose.</summary>
+        public static AnthroRig Create(AnthroBody body, Transform parent)
+        {
+            var joints = body.Joints();
+            var bones = new Transform[joints.Length];
+            for (var i = 0; i < joints.Length; i++)
+            {
+                bones[i] = new GameObject(body.JointName(i)).transform;
+                bones[i].SetParent(joints[i].parent < 0 ? parent : bones[joints[i].parent], false);
+            }
+            var rig = new AnthroRig(bones, joints);
+            rig.ToBindPose();
+            return rig;
+        }
+
+        /// <summary>Gives the transforms the proportions of another body, in its bind pose.</summary>
+        public void Update(AnthroBody body)
+        {
+            body.Joints(joints);
+            ToBindPose();
+        }
+
+        /// <summary>Puts the transforms into the bind pose.</summary>
+        public void ToBindPose()
+        {
+            for (var i = 0; i < bones.Length; i++)
+            {
+                bones[i].localPosition = joints[i].local.translation;
+                bones[i].localRotation = joints[i].local.rotation;
+            }
+        }
+
+        /// <summary>Puts the transforms into a pose relative to the parents. Makes no garbage.</summary>
+        public void ToPose(AnthroTransform[] pose)
+        {
+            if (pose.Length != bones.Length)
+            {
+                throw new ArgumentException("expected " + bones.Length + " joints, got " + pose.Length, "pose");
+            }
+            for (var i = 0; i < bones.Length; i++)
+            {
+                bones[i].localPosition = pose[i].translation;
+                bones[i].localRotation = pose[i].rotation;
+            }
+        }
+
+        /// <summary>The transform of a joint by its name in the rig; null where there is none.</summary>
+        public Transform Find(string joint)
+        {
+            return Array.Find(bones, bone => bone.name == joint);
+        }
+    }
+}

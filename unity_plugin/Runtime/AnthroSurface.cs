@@ -1,0 +1,223 @@
+using System;
+using Anthronet.Native;
+using UnityEngine;
+
+namespace Anthronet
+{
+    /// <summary>A part of a surface: one material.</summary>
+    public struct AnthroPart
+    {
+        /// <summary>Its name, such as `Body`.</summary>
+        public string name;
+        /// <summary>Number of vertices.</summary>
+        public int vertexCount;
+        /// <summary>Number of triangles.</summary>
+        public int triangleCount;
+        /// <summary>Whether back faces are drawn too.</summary>
+        public bool doubleSided;
+        /// <summary>Perceptual roughness, 0 to 1.</summary>
+        public float roughness;
+        /// <summary>Linear red, green, blue and alpha.</summary>
+        public Color baseColor;
+    }
+
+    /// <summary>What of a body's surface is read.</summary>
+    internal enum AnthroAttribute : uint
+    {
+        Positions = NativeMethods.ANTHRONET_ATTRIBUTE_POSITIONS,
+        Normals = NativeMethods.ANTHRONET_ATTRIBUTE_NORMALS,
+        Uvs = NativeMethods.ANTHRONET_ATTRIBUTE_UVS,
+        Triangles = NativeMethods.ANTHRONET_ATTRIBUTE_TRIANGLES,
+        Joints = NativeMethods.ANTHRONET_ATTRIBUTE_JOINTS,
+        Weights = NativeMethods.ANTHRONET_ATTRIBUTE_WEIGHTS,
+    }
+
+    /// <summary>
+    /// The surfaces of a body at one level of detail in Unity's space, in native memory: the body first, then eyes,
+    /// teeth, tongue and lashes. `AnthroMeshes` puts them into Unity's meshes. One thread at a time may change it.
+    /// </summary>
+    public sealed unsafe class AnthroSurface : IDisposable
+    {
+        readonly MeshHandle handle;
+        readonly AnthroPart[] parts;
+
+        /// <summary>Makes the surfaces of a body.</summary>
+        /// <param name="body">The body; not needed afterwards.</param>
+        /// <param name="lod">Level of detail, 0 (finest) to 3.</param>
+        /// <param name="skinTone">Step of the Monk scale, 1 to 10; 0 for the default.</param>
+        /// <param name="bodyOnly">Leaves out eyes, teeth, tongue and lashes.</param>
+        public AnthroSurface(AnthroBody body, int lod, int skinTone = 0, bool bodyOnly = false)
+        {
+            if (body == null)
+            {
+                throw new ArgumentNullException("body");
+            }
+            var options = new anthronet_mesh_options();
+            options.struct_size = (uint)sizeof(anthronet_mesh_options);
+            options.lod = checked((uint)lod);
+            options.influences = Influences;
+            options.space = NativeMethods.ANTHRONET_SPACE_UNITY;
+            options.layout = NativeMethods.ANTHRONET_LAYOUT_RENDER;
+            options.body_only = bodyOnly ? 1u : 0u;
+            options.skin_tone = checked((uint)skinTone);
+            anthronet_error error;
+            using (var held = new Held(body.Handle))
+            {
+                anthronet_mesh* made;
+                Library.Check(NativeMethods.anthronet_mesh_new(
+                    (anthronet_body*)held.Pointer, &options, &made, &error), &error);
+                handle = new MeshHandle(made);
+            }
+            uint count;
+            var mesh = (anthronet_mesh*)handle.DangerousGetHandle();
+            Library.Check(NativeMethods.anthronet_mesh_part_count(mesh, &count, &error), &error);
+            parts = new AnthroPart[count];
+            for (var i = 0u; i < count; i++)
+            {
+                var part = new anthronet_mesh_part();
+                part.struct_size = (uint)sizeof(anthronet_mesh_part);
+                Library.Check(NativeMethods.anthronet_mesh_describe_part(mesh, i, &part, &error), &error);
+                parts[i].name = Utf8.Text(part.name);
+                parts[i].vertexCount = (int)part.vertex_count;
+                parts[i].triangleCount = (int)part.triangle_count;
+                parts[i].doubleSided = part.double_sided != 0;
+                parts[i].roughness = part.roughness;
+                parts[i].baseColor = new Color(
+                    part.base_color[0], part.base_color[1], part.base_color[2], part.base_color[3]);
+                VertexCount += parts[i].vertexCount;
+                TriangleCount += parts[i].triangleCount;
+            }
+        }
+
+        /// <summary>Joints per vertex, at most.</summary>
+        internal const int Influences = 4;
+
+        internal MeshHandle Handle
+        {
+            get { return handle; }
+        }
+
+        /// <summary>Number of parts.</summary>
+        public int PartCount
+        {
+            get { return parts.Length; }
+        }
+
+        /// <summary>What a part is.</summary>
+        public AnthroPart Part(int part)
+        {
+            return parts[part];
+        }
+
+        /// <summary>Number of vertices of all parts.</summary>
+        public int VertexCount { get; private set; }
+
+        /// <summary>Number of triangles of all parts.</summary>
+        public int TriangleCount { get; private set; }
+
+        /// <summary>Makes it the surface of another body, without blend shapes.</summary>
+        public void Update(AnthroBody body)
+        {
+            if (body == null)
+            {
+                throw new ArgumentNullException("body");
+            }
+            using (var other = new Held(body.Handle))
+            using (var held = new Held(handle))
+            {
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_update(
+                    (anthronet_mesh*)held.Pointer, (anthronet_body*)other.Pointer, &error), &error);
+            }
+        }
+
+        /// <summary>Adds a blend shape that leads to the surface of another body of about the same stature.</summary>
+        /// <exception cref="AnthroException">The name is empty or taken.</exception>
+        public void AddBlendShape(string name, AnthroBody body)
+        {
+            if (body == null)
+            {
+                throw new ArgumentNullException("body");
+            }
+            ulong length;
+            using (var other = new Held(body.Handle))
+            using (var held = new Held(handle))
+            fixed (byte* data = Utf8.Bytes(name, "name", out length))
+            {
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_add_blend_shape((anthronet_mesh*)held.Pointer, data, length,
+                    (anthronet_body*)other.Pointer, &error), &error);
+            }
+        }
+
+        /// <summary>Number of blend shapes.</summary>
+        public int BlendShapeCount
+        {
+            get
+            {
+                using (var held = new Held(handle))
+                {
+                    uint count;
+                    anthronet_error error;
+                    Library.Check(NativeMethods.anthronet_mesh_blend_shape_count(
+                        (anthronet_mesh*)held.Pointer, &count, &error), &error);
+                    return (int)count;
+                }
+            }
+        }
+
+        /// <summary>The name of a blend shape.</summary>
+        public string BlendShapeName(int shape)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_text name;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_blend_shape_name(
+                    (anthronet_mesh*)held.Pointer, checked((uint)shape), &name, &error), &error);
+                return Utf8.Text(name);
+            }
+        }
+
+        /// <summary>Writes rows of one part to memory, `stride` bytes apart.</summary>
+        internal void Read(int part, AnthroAttribute attribute, void* rows, long bytes, int stride)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_read((anthronet_mesh*)held.Pointer, (uint)part,
+                    (uint)attribute, rows, (ulong)bytes, (ulong)stride, &error), &error);
+            }
+        }
+
+        /// <summary>Writes rows of one part's blend shape to memory, `stride` bytes apart.</summary>
+        internal void ReadBlendShape(int shape, int part, AnthroAttribute attribute, void* rows, long bytes, int stride)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_read_blend_shape((anthronet_mesh*)held.Pointer, (uint)shape,
+                    (uint)part, (uint)attribute, rows, (ulong)bytes, (ulong)stride, &error), &error);
+            }
+        }
+
+        /// <summary>Where rows of one part are; as long as the surface is neither changed nor freed.</summary>
+        internal void* View(int part, AnthroAttribute attribute)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_view view;
+                anthronet_error error;
+                Library.Check(NativeMethods.anthronet_mesh_data(
+                    (anthronet_mesh*)held.Pointer, (uint)part, (uint)attribute, &view, &error), &error);
+                return view.data;
+            }
+        }
+
+        /// <summary>Frees it. Unity's meshes made of it stay whole.</summary>
+        public void Dispose()
+        {
+            handle.Dispose();
+        }
+    }
+}

@@ -1,0 +1,82 @@
+using System;
+
+namespace Anthronet.Native
+{
+    /// <summary>The shared library: whether it is there, of the right version, and what its calls say.</summary>
+    internal static unsafe class Library
+    {
+        const string Folder = "Packages/com.anthronet.unity/Runtime/Plugins/";
+
+#if UNITY_EDITOR_WIN || (UNITY_STANDALONE_WIN && !UNITY_EDITOR)
+        const string Expected = "Windows/x86_64/anthronet.dll";
+#elif UNITY_EDITOR_OSX || (UNITY_STANDALONE_OSX && !UNITY_EDITOR)
+        const string Expected = "macOS/libanthronet.dylib";
+#elif UNITY_ANDROID && !UNITY_EDITOR
+        const string Expected = "Android/arm64-v8a/libanthronet.so";
+#elif UNITY_IOS && !UNITY_EDITOR
+        const string Expected = "iOS/libanthronet.a";
+#else
+        const string Expected = "Linux/x86_64/libanthronet.so";
+#endif
+
+        static volatile bool ready;
+
+        /// <summary>Where the library of this platform has to lie.</summary>
+        internal static string ExpectedFile
+        {
+            get { return Folder + Expected; }
+        }
+
+        /// <summary>Makes sure that the library is there and of the version that this package was made for.</summary>
+        /// <exception cref="DllNotFoundException">It is not; the message names the file that was expected.</exception>
+        internal static void Ensure()
+        {
+            if (ready)
+            {
+                return;
+            }
+            uint version;
+            try
+            {
+                version = NativeMethods.anthronet_abi_version();
+            }
+            catch (Exception error) when (error is DllNotFoundException || error is EntryPointNotFoundException
+                || error is BadImageFormatException)
+            {
+                throw Missing(error);
+            }
+            CheckVersion(version);
+            ready = true;
+        }
+
+        /// <summary>The exception for a library that did not load.</summary>
+        internal static DllNotFoundException Missing(Exception reason)
+        {
+            return new DllNotFoundException(
+                "AnthroNet: its native library did not load; expected " + ExpectedFile + ", built for this platform and"
+                + " switched on for it in its import settings. `cargo xtask package unity` puts the one for Linux"
+                + " there, Documentation~/platforms.md says how to build the others.", reason);
+        }
+
+        /// <summary>Refuses a library of another release.</summary>
+        internal static void CheckVersion(uint version)
+        {
+            if (version != NativeMethods.ANTHRONET_ABI_VERSION)
+            {
+                throw new DllNotFoundException(
+                    "AnthroNet: " + ExpectedFile + " has version " + version + " of the C interface, expected "
+                    + NativeMethods.ANTHRONET_ABI_VERSION + ": package and library must be of one release.");
+            }
+        }
+
+        /// <summary>Throws what a call says.</summary>
+        /// <exception cref="AnthroException">The status is not "done".</exception>
+        internal static void Check(int status, anthronet_error* error)
+        {
+            if (status != NativeMethods.ANTHRONET_OK)
+            {
+                throw new AnthroException((AnthroError)status, Utf8.Ended(error->message, 512));
+            }
+        }
+    }
+}
