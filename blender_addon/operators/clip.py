@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Motion: files, built-in clips and other armatures of the scene, onto characters."""
 
-import threading
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
@@ -82,34 +80,8 @@ class ANTHRONET_OT_clip_apply(NeedsCharacter, Retargets, bpy.types.Operator, Imp
 
     @reported
     def execute(self, context):
-        return self._finish(context, self._read(context))
-
-    @reported
-    def invoke(self, context, event):
-        if not self.filepath:
-            return ImportHelper.invoke(self, context, event)
-        return self.execute(context)
-
-    def _read(self, context):
-        """The motion, read beside the main thread so that the window stays alive where there is one."""
-        open_motion = library.anthronet().open_motion
-        found = []
-
-        def work():
-            try:
-                up = None if self.up == "FOUND" else self.up.lower()
-                found.append(open_motion(self.filepath, metres_per_unit=self.scale or None, up=up))
-            except Exception as error:  # Handed to the main thread, which raises it.
-                found.append(error)
-
-        thread = threading.Thread(target=work)
-        thread.start()
-        thread.join()
-        if isinstance(found[0], Exception):
-            raise found[0]
-        return found[0]
-
-    def _finish(self, context, motion):
+        up = None if self.up == "FOUND" else self.up.lower()
+        motion = library.anthronet().open_motion(self.filepath, metres_per_unit=self.scale or None, up=up)
         for warning in motion.report["warnings"]:
             self.report({"WARNING"}, warning)
         for owner in character.selected(context):
