@@ -57,7 +57,8 @@ pub(crate) struct EvaluateArguments {
 
 /// Train a network from nothing. Long; shows its progress and can be resumed.
 #[derive(Args)]
-#[command(after_help = "Example:\n  cargo anthronet-train train generator --resume")]
+#[command(after_help = "Examples:\n  cargo anthronet-train train generator --resume\n  \
+                        cargo anthronet-train train generator --plain --fourier 8 --sigma 0.03 --out /tmp/paper")]
 pub(crate) struct TrainArguments {
     #[command(subcommand)]
     pub(crate) network: Network,
@@ -68,6 +69,8 @@ pub(crate) enum Network {
     Generator(GeneratorArguments),
     /// Lay the measures on the mean body anew: writes model/measures.json. The generator must be trained after it.
     Measures,
+    /// Score the committed generator again and write the scores into its file.
+    Scores,
 }
 
 /// The conditional autoencoder that makes bodies from measures.
@@ -88,6 +91,14 @@ pub(crate) struct GeneratorArguments {
     /// The paper's plain network, without the linear skip.
     #[arg(long)]
     pub(crate) plain: bool,
+
+    /// Fourier components f of a measure, 0 for none; left out, as configured.
+    #[arg(long, value_name = "F")]
+    pub(crate) fourier: Option<usize>,
+
+    /// Deviation σ of their frequencies, cycles per deviation of the measure; left out, as configured.
+    #[arg(long, value_name = "S")]
+    pub(crate) sigma: Option<f64>,
 }
 
 #[cfg(not(feature = "train"))]
@@ -119,39 +130,47 @@ pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
     Err(no_networks(match &arguments.network {
         Network::Generator(_) => "train generator",
         Network::Measures => "train measures",
+        Network::Scores => "train scores",
     }))
 }
 
 #[cfg(feature = "train")]
 fn networks(arguments: &EvaluateArguments) -> Result<()> {
-    use crate::failure::Failure;
-    use anthronet_trainer::corpus;
-    let table = match arguments.table {
-        Table::Generator => "generator",
-        _ => "statistics",
-    };
+    use anthronet_trainer::{commands, corpus};
     let split = match arguments.split {
         Split::HeldOut => corpus::Split::HeldOut,
         Split::Validation => corpus::Split::Validation,
     };
     let bodies = arguments.bodies.map(|n| n as usize);
-    let text = anthronet_trainer::commands::evaluate(table, split, arguments.json, bodies)
-        .map_err(|e| Failure::failed(e.to_string()))?;
+    let table = match arguments.table {
+        Table::Generator => commands::Table::Generator { split, bodies },
+        _ => commands::Table::Statistics,
+    };
+    let text = commands::evaluate(table, arguments.json)?;
     crate::progress::print(&text)
 }
 
 #[cfg(feature = "train")]
 pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
-    use crate::failure::Failure;
-    let Network::Generator(generator) = &arguments.network else {
-        return anthronet_trainer::commands::lay_measures(std::path::Path::new("model/measures.json"))
-            .map_err(|e| Failure::failed(e.to_string()));
-    };
-    anthronet_trainer::commands::train_generator(
-        generator.resume,
-        generator.epochs.map(|n| n as usize),
-        generator.out.as_deref(),
-        generator.plain,
-    )
-    .map_err(|e| Failure::failed(e.to_string()))
+    use anthronet_trainer::commands;
+    match &arguments.network {
+        Network::Generator(generator) => commands::train_generator(&commands::GeneratorOptions {
+            resume: generator.resume,
+            epochs: generator.epochs.map(|n| n as usize),
+            out: generator.out.clone(),
+            plain: generator.plain,
+            fourier: generator.fourier,
+            sigma: generator.sigma,
+        }),
+        Network::Measures => commands::lay_measures(Path::new("model/measures.json")),
+        Network::Scores => commands::rescore(),
+    }?;
+    Ok(())
+}
+
+#[cfg(feature = "train")]
+impl From<anthronet_trainer::Error> for crate::failure::Failure {
+    fn from(error: anthronet_trainer::Error) -> Self {
+        Self::failed(error.to_string())
+    }
 }

@@ -3,6 +3,7 @@
 //! The components are found by randomised subspace iteration (Halko, Martinsson and Tropp 2011) on training
 //! bodies. Accessories and joints follow by least squares on the same coefficients.
 
+use anthronet::mesh::Topology;
 use anthronet::random::Random;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -133,13 +134,13 @@ pub fn flatten(points: &[Vec3]) -> Vec<f32> {
 /// The cotangent weights are those of the mean body, so the loss is exactly quadratic; each unordered pair of
 /// neighbours counts twice, as in the paper's sum over rings. The sum is divided by the cage's 3V coordinates, a mean as
 /// the reconstruction loss is, m².
-pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
+pub fn laplacian(basis: &Basis, cage: &Topology) -> QuadraticForm {
     let at = |v: u32| {
         let i = 3 * v as usize;
         Vec3::new(basis.mean[i], basis.mean[i + 1], basis.mean[i + 2]).as_dvec3()
     };
     let mut weights: std::collections::BTreeMap<[u32; 2], f64> = Default::default();
-    for &[a, b, c, d] in &corpus.cage().quads {
+    for &[a, b, c, d] in &cage.quads {
         for triangle in [[a, b, c], [a, c, d]] {
             for k in 0..3 {
                 let (p, q, r) = (triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
@@ -150,7 +151,7 @@ pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
         }
     }
     let pairs: Vec<([u32; 2], f64)> = weights.into_iter().collect();
-    let k = COMPONENTS;
+    let k = basis.rows.ncols();
     let scaled = |pair: &([u32; 2], f64), axis: usize, j: usize| {
         let ([p, q], w) = *pair;
         let row = |v: u32| f64::from(basis.rows[(3 * v as usize + axis, j)]);
@@ -164,10 +165,73 @@ pub fn laplacian(basis: &Basis, corpus: &Corpus) -> QuadraticForm {
     let matrix = differences.transpose() * &differences;
     let vector = differences.transpose() * &at_mean;
     let constant: f64 = (0..at_mean.nrows()).map(|i| at_mean[(i, 0)] * at_mean[(i, 0)]).sum();
-    let coordinates = 3.0 * CAGE_VERTICES as f64;
+    let coordinates = 3.0 * cage.vertex_count as f64;
     QuadraticForm {
         matrix: (0..k * k).map(|i| 2.0 * matrix[(i / k, i % k)] / coordinates).collect(),
         vector: (0..k).map(|i| 4.0 * vector[(i, 0)] / coordinates).collect(),
         constant: 2.0 * constant / coordinates,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// A cube of unit sides with its corners moved at random, as a basis of `components` random directions.
+    fn cube(components: usize) -> (Basis, Topology) {
+        let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let mut random = Random::new(3, 0);
+        let mean = (0..24).map(|i| (i / 3 >> (i % 3) & 1) as f32 + 0.2 * random.uniform() as f32).collect();
+        let rows = Mat::from_fn(24, components, |_, _| random.uniform() as f32 - 0.5);
+        let cage = Topology { vertex_count: 8, quads, uvs: vec![[0.0; 2]], quad_uvs: vec![[0; 4]; 6] };
+        (Basis { mean, rows, std: vec![1.0; components] }, cage)
+    }
+
+    /// The paper's sum, vertex by vertex over its ring, on the decoded points themselves.
+    fn brute_force(basis: &Basis, cage: &Topology, coefficients: &[f64]) -> f64 {
+        let mean =
+            |v: u32| DVec3::from_array(std::array::from_fn(|a| f64::from(basis.mean[3 * v as usize + a])));
+        let moved = |v: u32| {
+            let row = |a: usize| 3 * v as usize + a;
+            let offset = |a: usize| -> f64 {
+                coefficients.iter().enumerate().map(|(k, c)| c * f64::from(basis.rows[(row(a), k)])).sum()
+            };
+            mean(v) + DVec3::from_array(std::array::from_fn(offset))
+        };
+        let triangles: Vec<[u32; 3]> =
+            cage.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let mut sum = 0.0;
+        for i in 0..cage.vertex_count as u32 {
+            for j in (0..cage.vertex_count as u32).filter(|&j| j != i) {
+                // Half of the cotangents of the angles opposite to the edge, zero where there is no edge.
+                let opposite = triangles.iter().filter(|t| t.contains(&i) && t.contains(&j));
+                let weight: f64 = opposite
+                    .filter_map(|t| t.iter().find(|&&v| v != i && v != j))
+                    .map(|&k| (mean(i) - mean(k)).angle_between(mean(j) - mean(k)).tan().recip() / 2.0)
+                    .sum();
+                sum += (weight * (moved(i) - moved(j))).length_squared();
+            }
+        }
+        sum / (3.0 * cage.vertex_count as f64)
+    }
+
+    #[test]
+    fn the_laplacian_form_is_the_sum_over_rings() {
+        let (basis, cage) = cube(5);
+        let form = laplacian(&basis, &cage);
+        for c in [[0.0; 5], [0.3, -0.1, 0.0, 0.7, 0.2], [1.0, 2.0, -3.0, 0.5, -0.4]] {
+            let quadratic: f64 = (0..25).map(|i| form.matrix[i] * c[i / 5] * c[i % 5]).sum::<f64>()
+                + form.vector.iter().zip(&c).map(|(v, c)| v * c).sum::<f64>()
+                + form.constant;
+            let expected = brute_force(&basis, &cage, &c);
+            assert!((quadratic / expected - 1.0).abs() < 1e-9, "{quadratic} {expected}");
+        }
+    }
+
+    #[test]
+    fn coordinates_keep_their_order() {
+        assert_eq!(flatten(&[Vec3::new(1.0, 2.0, 3.0), Vec3::X]), [1.0, 2.0, 3.0, 1.0, 0.0, 0.0]);
     }
 }

@@ -1,21 +1,20 @@
 //! What `anthronet train` and `anthronet evaluate` do.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use anthronet::export::write_atomic;
 use anthronet::measure::Definitions;
-use anthronet::model::Model;
 use anthronet::model::config::GeneratorConfig;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use anthronet::model::{Model, ModelParts};
 use serde_json::json;
 
 use crate::basis::{COMPONENTS, laplacian};
 use crate::corpus::{CACHE, Corpus, Split};
-use crate::dataset::{Bodies, Dataset};
-use crate::evaluation::{GeneratorScores, generator, statistics};
+use crate::dataset::{Bodies, Dataset, first_of};
+use crate::evaluation::{GeneratorScores, Statistics, generator};
 use crate::generator::{ShapeStatistics, TrainingOptions, TrainingSet, train};
 use crate::pack::pack;
+use crate::progress::Bar;
 use crate::{Error, Result};
 
 /// Where the model is kept in the source tree.
@@ -26,31 +25,58 @@ const BODIES: usize = 1_000;
 const GAMMA: f64 = 1e-4;
 const TRAINING_SEED: u64 = 1;
 
+/// What of the training of the generator is asked for differently.
+#[derive(Clone, Debug, Default)]
+pub struct GeneratorOptions {
+    /// Goes on from the last checkpoint.
+    pub resume: bool,
+    /// Passes over the bodies.
+    pub epochs: Option<usize>,
+    /// A folder for model and checkpoint; without it the model of the source tree is replaced and the checkpoint is
+    /// kept in `target`.
+    pub out: Option<PathBuf>,
+    /// The paper's network without linear paths, for comparison.
+    pub plain: bool,
+    /// Fourier components f of a measure.
+    pub fourier: Option<usize>,
+    /// Deviation σ of their frequencies.
+    pub sigma: Option<f64>,
+}
+
+impl GeneratorOptions {
+    /// The network that these options ask for.
+    fn config(&self) -> GeneratorConfig {
+        let mut config = if self.plain { GeneratorConfig::paper() } else { GeneratorConfig::default() };
+        config.coefficients = COMPONENTS;
+        config.gamma = GAMMA;
+        config.fourier.components = self.fourier.unwrap_or(config.fourier.components);
+        config.fourier.sigma = self.sigma.unwrap_or(config.fourier.sigma);
+        config
+    }
+}
+
 /// Trains the generator and writes the model file: data set, basis, network, scores.
-///
-/// `out` is a folder for model and checkpoint; without it the model of the source tree is replaced and the
-/// checkpoint is kept in `target`. `plain` trains the paper's network without linear paths, for comparison.
 ///
 /// # Errors
 /// When the source of bodies cannot be had, a file cannot be written, or training diverges.
-pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, plain: bool) -> Result<()> {
+pub fn train_generator(options: &GeneratorOptions) -> Result<()> {
+    let config = options.config();
+    config.validate()?;
     let cache = PathBuf::from(CACHE);
     let (corpus, definitions, dataset) = data(&cache)?;
     let statistics = ShapeStatistics {
         vertex_count: crate::assets::CAGE_VERTICES,
         coefficient_std: dataset.basis.std.clone(),
-        laplacian: Some(laplacian(&dataset.basis, &corpus)),
+        laplacian: Some(laplacian(&dataset.basis, corpus.cage())),
     };
-    let config = if plain { GeneratorConfig::paper() } else { GeneratorConfig::default() };
-    let config = GeneratorConfig { coefficients: COMPONENTS, gamma: GAMMA, ..config };
     let defaults = TrainingOptions::default();
-    let out_dir = out.map_or_else(|| cache.join("generator"), Path::to_path_buf);
+    let out_dir = options.out.clone().unwrap_or_else(|| cache.join("generator"));
     std::fs::create_dir_all(&out_dir).map_err(Error::io(&out_dir))?;
-    let options = TrainingOptions {
+    let training = TrainingOptions {
         out_dir,
         seed: TRAINING_SEED,
-        epochs: epochs.unwrap_or(defaults.epochs),
-        resume,
+        epochs: options.epochs.unwrap_or(defaults.epochs),
+        resume: options.resume,
         ..defaults
     };
     let trained = train(
@@ -58,68 +84,78 @@ pub fn train_generator(resume: bool, epochs: Option<usize>, out: Option<&Path>, 
         &training_set(&dataset.validation),
         &statistics,
         &config,
-        &options,
+        &training,
     )?;
-
     let mut parts = pack(&corpus, &definitions, &dataset, &trained, TRAINING_SEED)?;
-    let scores = score(&Model::from_parts(&parts, "(trained)")?, &corpus, &dataset, Split::HeldOut, BODIES)?;
+    let path = match &options.out {
+        Some(folder) => folder.join("anthronet.safetensors"),
+        None => PathBuf::from(MODEL),
+    };
+    write_scored(&corpus, &mut parts, &path)
+}
+
+/// Scores the model of the source tree again and writes the scores into its file; its arrays stay as they are.
+///
+/// # Errors
+/// When the source of bodies cannot be had, or the file is no model or cannot be written.
+pub fn rescore() -> Result<()> {
+    let path = Path::new(MODEL);
+    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+    let mut parts = ModelParts::from_bytes(&bytes, MODEL)?;
+    write_scored(&Corpus::open(Path::new(CACHE))?, &mut parts, path)
+}
+
+/// Scores a model on held-out bodies and writes it with its scores.
+fn write_scored(corpus: &Corpus, parts: &mut ModelParts, path: &Path) -> Result<()> {
+    // Of what the file will hold: its numbers are rounded.
+    let model = Model::from_bytes(&parts.to_bytes()?)?;
+    let scores = score(&model, corpus, Split::HeldOut, BODIES)?;
     eprintln!("{scores}");
-    let told = [
-        ("bodies", scores.bodies as f64),
-        ("p2p_mm", scores.p2p_mm),
-        ("p2p_z0_mm", scores.p2p_z0_mm),
-        ("measures_mean_mm", scores.measures_mm.get("mean").copied().unwrap_or(f64::NAN)),
-        ("after_solve_max_mm", scores.after_solve_max_mm),
-    ];
-    parts.provenance.scores = told.map(|(name, value)| (name.to_owned(), value)).into();
-    let path = out.map_or_else(|| PathBuf::from(MODEL), |folder| folder.join("anthronet.safetensors"));
+    parts.provenance.scores = scores.told();
     let bytes = parts.to_bytes()?;
-    write_atomic(&path, &bytes)?;
+    write_atomic(path, &bytes)?;
     eprintln!("{}: {:.1} MB", path.display(), bytes.len() as f64 / 1e6);
     Ok(())
 }
 
-/// The table `generator` or `statistics`, as text or JSON.
-///
-/// The generator is scored on the first `bodies` of `split`; settings are chosen on the validation split, so that the
-/// held-out one stays unseen. The statistics are those of all splits.
+/// A table that [`evaluate`] makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// Errors of the generator on the first `bodies` of `split`. Settings are chosen on the validation split, so that
+    /// the held-out one stays unseen.
+    Generator {
+        /// Which bodies.
+        split: Split,
+        /// How many; `None` for 1000.
+        bodies: Option<usize>,
+    },
+    /// The measures of all bodies beside the paper's.
+    Statistics,
+}
+
+/// A table as text or JSON.
 ///
 /// # Errors
-/// For an unknown table, or when the source of bodies or the model cannot be had.
-pub fn evaluate(table: &str, split: Split, as_json: bool, bodies: Option<usize>) -> Result<String> {
-    let (corpus, _, dataset) = data(Path::new(CACHE))?;
-    let to_json = |value: serde_json::Value| {
-        serde_json::to_string_pretty(&value).map_err(|e| Error::Invalid(e.to_string()))
-    };
-    match table {
-        "generator" => {
+/// When the source of bodies or the model cannot be had.
+pub fn evaluate(table: Table, as_json: bool) -> Result<String> {
+    let cache = Path::new(CACHE);
+    let (json, text) = match table {
+        Table::Generator { split, bodies } => {
             let model = Model::from_environment()?;
-            let scores = score(&model, &corpus, &dataset, split, bodies.unwrap_or(BODIES))?;
-            if as_json { to_json(json!(scores)) } else { Ok(scores.to_string()) }
+            let scores = score(&model, &Corpus::open(cache)?, split, bodies.unwrap_or(BODIES))?;
+            (json!(scores), scores.to_string())
         }
-        "statistics" => {
+        Table::Statistics => {
+            let (_, _, dataset) = data(cache)?;
             let splits = [&dataset.train, &dataset.validation, &dataset.held_out];
-            let rows = statistics(&splits);
-            let count: usize = splits.iter().map(|b| b.len()).sum();
-            if as_json {
-                return to_json(json!({"bodies": count, "rejected": dataset.rejected, "measures": rows}));
-            }
-            let mut text = format!(
-                "{count} bodies ({} rejected); metres; ours, then the paper's\n{:28} {:>6} {:>6} {:>6} {:>6} | {:>6} {:>6} {:>6} {:>6}\n",
-                dataset.rejected, "measure", "mean", "std", "min", "max", "mean", "std", "min", "max"
-            );
-            for row in rows {
-                let [a, b, c, d] = row.ours;
-                let [p, q, r, s] = row.paper;
-                text += &format!(
-                    "{:28} {a:6.3} {b:6.3} {c:6.3} {d:6.3} | {p:6.3} {q:6.3} {r:6.3} {s:6.3}\n",
-                    row.name
-                );
-            }
-            Ok(text)
+            let statistics = Statistics::of(&splits, dataset.rejected);
+            (json!(statistics), statistics.to_string())
         }
-        other => Err(Error::Invalid(format!("table: expected `generator` or `statistics`, got `{other}`"))),
+    };
+    if !as_json {
+        return Ok(text);
     }
+    serde_json::to_string_pretty(&json).map_err(|e| Error::Invalid(e.to_string()))
 }
 
 /// Makes `model/measures.json` anew from the landmarks.
@@ -141,39 +177,19 @@ pub fn lay_measures(path: &Path) -> Result<()> {
 fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {
     let corpus = Corpus::open(cache)?;
     let definitions = Definitions::embedded()?;
-    let bar = bar(1, "bodies");
-    let dataset = Dataset::load_or_make(&corpus, &definitions, cache, &|what, done, of| {
-        bar.set_message(what.to_owned());
-        bar.set_length(of.max(1));
-        bar.set_position(done);
-    })?;
-    bar.finish_and_clear();
+    let bar = Bar::new("bodies", 1);
+    let dataset =
+        Dataset::load_or_make(&corpus, &definitions, cache, &|what, done, of| bar.set(what, done, of))?;
+    bar.finish();
     Ok((corpus, definitions, dataset))
 }
 
-fn score(
-    model: &Model,
-    corpus: &Corpus,
-    dataset: &Dataset,
-    split: Split,
-    count: usize,
-) -> Result<GeneratorScores> {
-    let count = count.min(dataset.split(split).len());
-    let bar = bar(count as u64, "scored bodies");
-    let scores = generator(model, corpus, dataset, split, count, &|| bar.inc(1));
-    bar.finish_and_clear();
+fn score(model: &Model, corpus: &Corpus, split: Split, count: usize) -> Result<GeneratorScores> {
+    let numbers = first_of(corpus, model.definitions(), split, count);
+    let bar = Bar::new("scored bodies", numbers.len() as u64);
+    let scores = generator(model, corpus, split, &numbers, &|| bar.inc());
+    bar.finish();
     scores
-}
-
-fn bar(length: u64, message: &'static str) -> ProgressBar {
-    let bar = ProgressBar::new(length).with_message(message);
-    if !std::io::stderr().is_terminal() {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
-    }
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 fn training_set(bodies: &Bodies) -> TrainingSet {
@@ -183,5 +199,22 @@ fn training_set(bodies: &Bodies) -> TrainingSet {
         coefficients: bodies.coefficients.clone(),
         measures: bodies.measures.clone(),
         sex: bodies.sex.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_choose_the_network() {
+        let default = GeneratorOptions::default().config();
+        assert_eq!((default.fourier.components, default.skip, default.gamma), (0, true, GAMMA));
+        let options =
+            GeneratorOptions { plain: true, fourier: Some(4), sigma: Some(0.01), ..Default::default() };
+        let config = options.config();
+        assert_eq!((config.fourier.components, config.fourier.sigma, config.skip), (4, 0.01, false));
+        let absurd = GeneratorOptions { sigma: Some(f64::NAN), ..Default::default() };
+        assert!(train_generator(&absurd).unwrap_err().to_string().contains("fourier.sigma"));
     }
 }

@@ -42,6 +42,22 @@ pub struct Dataset {
     pub rejected: usize,
 }
 
+/// The numbers of the first `count` bodies of a split, those of the data set, without making it.
+pub fn first_of(corpus: &Corpus, definitions: &Definitions, split: Split, count: usize) -> Vec<u64> {
+    let gauge = Gauge::new(definitions, &corpus.subdivision);
+    let drawn: Vec<u64> = (0..DRAWN).filter(|&n| Split::of(n) == split).collect();
+    let mut numbers = Vec::new();
+    for batch in drawn.chunks(BATCH as usize) {
+        if numbers.len() >= count {
+            break;
+        }
+        let people = batch.par_iter().filter(|&&n| plausible(&gauge.read(&corpus.specimen(n).points)));
+        numbers.extend(people.copied().collect::<Vec<u64>>());
+    }
+    numbers.truncate(count);
+    numbers
+}
+
 impl Dataset {
     /// Reads the data set from the cache, or makes it there.
     ///
@@ -65,15 +81,6 @@ impl Dataset {
         dataset.rejected = DRAWN as usize - dataset.count();
         dataset.write(&path)?;
         Ok(dataset)
-    }
-
-    /// Bodies of a split.
-    pub fn split(&self, split: Split) -> &Bodies {
-        match split {
-            Split::Train => &self.train,
-            Split::Validation => &self.validation,
-            Split::HeldOut => &self.held_out,
-        }
     }
 
     fn count(&self) -> usize {
@@ -222,5 +229,57 @@ impl Bodies {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bodies(numbers: &[u64]) -> Bodies {
+        let n = numbers.len();
+        Bodies {
+            numbers: numbers.to_vec(),
+            coefficients: (0..n * COMPONENTS).map(|i| i as f32 * 1e-3).collect(),
+            measures: (0..n * MEASURE_COUNT).map(|i| i as f32 * 1e-2).collect(),
+            sex: numbers.iter().map(|n| (n % 2) as u8).collect(),
+        }
+    }
+
+    #[test]
+    fn what_was_written_is_read_and_damage_is_named() {
+        let basis = Basis {
+            mean: vec![0.5; 6],
+            rows: Mat::from_fn(6, COMPONENTS, |i, j| (i * COMPONENTS + j) as f32),
+            std: vec![0.25; COMPONENTS],
+        };
+        let written = Dataset {
+            basis,
+            train: bodies(&[0, 1, 2, 3]),
+            validation: bodies(&[7]),
+            held_out: bodies(&[13, 33]),
+            rejected: 0,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dataset.safetensors");
+        written.write(&path).unwrap();
+        let read = Dataset::read(&path).unwrap();
+        assert_eq!(read.basis.mean, written.basis.mean);
+        assert_eq!(read.basis.std, written.basis.std);
+        assert!(
+            (0..6).all(|i| (0..COMPONENTS).all(|j| read.basis.rows[(i, j)] == written.basis.rows[(i, j)]))
+        );
+        assert_eq!(
+            (&read.train, &read.validation, &read.held_out),
+            (&written.train, &written.validation, &written.held_out)
+        );
+        assert_eq!(read.rejected, DRAWN as usize - 7);
+        assert_eq!((read.held_out.len(), read.held_out.sex(0)), (2, Sex::Male));
+        assert_eq!(read.train.measures(1), &written.train.measures[36..72]);
+
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+        let Err(error) = Dataset::read(&path) else { panic!("half a data set was read") };
+        assert!(error.to_string().contains("delete the file"), "{error}");
     }
 }

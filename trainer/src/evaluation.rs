@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::corpus::{Corpus, Gauge, Split, cage_of};
-use crate::dataset::{Bodies, Dataset};
+use crate::dataset::Bodies;
 use crate::{Error, Result};
 
 /// Scores of the generator, millimetres unless said.
@@ -68,25 +68,23 @@ const PARTIAL: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Scores a model on the first `count` bodies of a split.
+/// Scores a model on bodies of a split, given by their numbers.
 ///
 /// # Errors
 /// When a body cannot be generated for another reason than being refused.
 pub fn generator(
     model: &Model,
     corpus: &Corpus,
-    dataset: &Dataset,
     split: Split,
-    count: usize,
+    numbers: &[u64],
     progress: &(dyn Fn() + Sync),
 ) -> Result<GeneratorScores> {
     let gauge = Gauge::new(model.definitions(), &corpus.subdivision);
-    let bodies = dataset.split(split);
-    let count = count.min(bodies.len());
-    let of_bodies = (0..count)
-        .into_par_iter()
-        .map(|i| {
-            let result = score(model, corpus, &gauge, bodies.numbers[i]);
+    let count = numbers.len();
+    let of_bodies = numbers
+        .par_iter()
+        .map(|&number| {
+            let result = score(model, corpus, &gauge, number);
             progress();
             result
         })
@@ -131,9 +129,7 @@ fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Resu
     let truth = corpus.subdivision.refine(cage)?;
     let measures = gauge.read(&specimen.points);
     let own = model.shape_space().project(cage);
-    let z = model
-        .encode(&measures, specimen.sex, &own)
-        .ok_or_else(|| Error::Invalid("the model file carries no encoder".into()))?;
+    let z = model.encode(&measures, specimen.sex, &own)?;
     let distance = |coefficients: &[f64]| -> Result<f64> {
         let body = model.shape_space().body(coefficients);
         Ok(1000.0 * mean_distance(&corpus.subdivision.refine(cage_of(&body))?, &truth))
@@ -203,6 +199,38 @@ fn mean_distance(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(p, q)| DVec3::distance(p.as_dvec3(), q.as_dvec3())).sum::<f64>() / a.len() as f64
 }
 
+/// The paper's mean errors before the solve, millimetres ("generative_ablation_table").
+const PAPERS: [(&str, f64); 6] = [
+    ("chest_circumference", 46.9),
+    ("hip_circumference", 9.79),
+    ("waist_circumference", 12.3),
+    ("arm_circumference_left", 6.22),
+    ("calf_circumference_left", 4.53),
+    ("thigh_circumference_left", 9.93),
+];
+
+impl GeneratorScores {
+    /// What a model file carries of them.
+    pub fn told(&self) -> BTreeMap<String, f64> {
+        let measure = |name: &str| self.measures_mm.get(name).copied().unwrap_or(f64::NAN);
+        let mut told: BTreeMap<String, f64> =
+            PAPERS.iter().map(|(name, _)| (format!("{name}_mm"), measure(name))).collect();
+        told.extend(
+            [
+                ("bodies", self.bodies as f64),
+                ("refused", self.refused as f64),
+                ("p2p_mm", self.p2p_mm),
+                ("p2p_z0_mm", self.p2p_z0_mm),
+                ("p2p_shape_space_mm", self.p2p_shape_space_mm),
+                ("measures_mean_mm", measure("mean")),
+                ("after_solve_max_mm", self.after_solve_max_mm),
+            ]
+            .map(|(name, value)| (name.to_owned(), value)),
+        );
+        told
+    }
+}
+
 impl std::fmt::Display for GeneratorScores {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "generator on {} {} bodies (the paper's number in brackets)", self.bodies, self.split)?;
@@ -210,16 +238,8 @@ impl std::fmt::Display for GeneratorScores {
         writeln!(f, "  mean vertex distance, z = 0              {:8.3} mm", self.p2p_z0_mm)?;
         writeln!(f, "  mean vertex distance of the shape space  {:8.3} mm", self.p2p_shape_space_mm)?;
         writeln!(f, "measures before the solve, mean absolute error")?;
-        let papers = [
-            ("chest_circumference", "46.9"),
-            ("hip_circumference", "9.79"),
-            ("waist_circumference", "12.3"),
-            ("arm_circumference_left", "6.22"),
-            ("calf_circumference_left", "4.53"),
-            ("thigh_circumference_left", "9.93"),
-        ];
         for (name, error) in &self.measures_mm {
-            let paper = papers.iter().find(|p| p.0 == name).map_or(String::new(), |p| format!("  ({})", p.1));
+            let paper = PAPERS.iter().find(|p| p.0 == name).map_or(String::new(), |p| format!("  ({})", p.1));
             writeln!(f, "  {name:40} {error:8.3} mm{paper}")?;
         }
         writeln!(f, "after the solve, measured again from the written .glb")?;
@@ -240,6 +260,19 @@ impl std::fmt::Display for GeneratorScores {
     }
 }
 
+/// The measures of the sampled bodies beside the paper's.
+#[derive(Clone, Debug, Serialize)]
+pub struct Statistics {
+    /// Bodies counted.
+    pub bodies: usize,
+    /// Drawn bodies that were left out.
+    pub rejected: usize,
+    /// Root of the mean square of the rows' z.
+    pub rms_z: f64,
+    /// One row per measure.
+    pub measures: Vec<StatisticsRow>,
+}
+
 /// One row of the table of statistics: ours over all sampled bodies, and the paper's.
 #[derive(Clone, Debug, Serialize)]
 pub struct StatisticsRow {
@@ -249,6 +282,8 @@ pub struct StatisticsRow {
     pub ours: [f64; 4],
     /// The same of the paper's 100k bodies ("statistics-anthro").
     pub paper: [f64; 4],
+    /// Our mean minus the paper's, in the paper's deviations.
+    pub z: f64,
 }
 
 /// Mean, deviation, least, most of the paper's table, in the order of the measures (sided rows once).
@@ -284,24 +319,112 @@ pub fn paper_row(index: usize) -> [f64; 4] {
     PAPER[if index < 24 { index } else { index - 12 }]
 }
 
-/// Statistics of all measures over some splits of the data set.
-pub fn statistics(splits: &[&Bodies]) -> Vec<StatisticsRow> {
-    MeasureId::all()
-        .map(|id| {
-            let values: Vec<f64> = splits
-                .iter()
-                .flat_map(|b| (0..b.len()).map(|i| f64::from(b.measures(i)[id.index()])))
-                .collect();
-            let n = values.len() as f64;
-            let mean = values.iter().sum::<f64>() / n;
-            let deviation = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = values.iter().copied().fold(0.0, f64::max);
-            StatisticsRow {
-                name: id.name().to_owned(),
-                ours: [mean, deviation, least, most],
-                paper: paper_row(id.index()),
-            }
-        })
-        .collect()
+impl Statistics {
+    /// Of all measures over some splits of the data set.
+    pub fn of(splits: &[&Bodies], rejected: usize) -> Self {
+        let measures: Vec<StatisticsRow> = MeasureId::all()
+            .map(|id| {
+                let values: Vec<f64> = splits
+                    .iter()
+                    .flat_map(|b| (0..b.len()).map(|i| f64::from(b.measures(i)[id.index()])))
+                    .collect();
+                let n = values.len() as f64;
+                let mean = values.iter().sum::<f64>() / n;
+                let deviation = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
+                let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = values.iter().copied().fold(0.0, f64::max);
+                let paper = paper_row(id.index());
+                StatisticsRow {
+                    name: id.name().to_owned(),
+                    ours: [mean, deviation, least, most],
+                    paper,
+                    z: (mean - paper[0]) / paper[1],
+                }
+            })
+            .collect();
+        let squares: f64 = measures.iter().map(|row| row.z * row.z).sum();
+        Self {
+            bodies: splits.iter().map(|b| b.len()).sum(),
+            rejected,
+            rms_z: (squares / measures.len() as f64).sqrt(),
+            measures,
+        }
+    }
+}
+
+impl std::fmt::Display for Statistics {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let columns = ["mean", "std", "min", "max"];
+        writeln!(f, "{} bodies ({} rejected); metres; ours, then the paper's", self.bodies, self.rejected)?;
+        writeln!(
+            f,
+            "z: our mean minus the paper's, in the paper's deviations; its rms is {:.2}",
+            self.rms_z
+        )?;
+        let titles = columns.map(|c| format!(" {c:>6}")).concat();
+        writeln!(f, "{:28}{titles} |{titles} | {:>6}", "measure", "z")?;
+        for row in &self.measures {
+            let numbers = |of: [f64; 4]| of.map(|v| format!(" {v:6.3}")).concat();
+            writeln!(f, "{:28}{} |{} | {:6.2}", row.name, numbers(row.ours), numbers(row.paper), row.z)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scores_have_the_promised_fields() {
+        let scores = GeneratorScores {
+            split: "held-out",
+            bodies: 2,
+            p2p_mm: 1.5,
+            p2p_z0_mm: 9.0,
+            p2p_shape_space_mm: 0.25,
+            measures_mm: BTreeMap::from([("mean".into(), 0.2), ("chest_circumference".into(), 1.25)]),
+            requests: 2,
+            refused: 0,
+            after_solve_max_mm: 0.001,
+            after_solve_mean_of_worst_mm: 0.0005,
+            solve_steps: 2.0,
+            fill_mm: BTreeMap::from([("sex".into(), 35.0)]),
+            fill_coverage90: BTreeMap::from([("sex".into(), 0.9)]),
+        };
+        let json = serde_json::to_value(&scores).unwrap();
+        let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+        for promised in ["bodies", "p2p_mm", "p2p_z0_mm", "measures_mm", "after_solve_max_mm"] {
+            assert!(keys.contains(&promised), "{keys:?}");
+        }
+        assert_eq!(json["measures_mm"]["mean"], 0.2);
+        assert_eq!(json["split"], "held-out");
+        let told = scores.told();
+        assert_eq!((told["chest_circumference_mm"], told["measures_mean_mm"]), (1.25, 0.2));
+        let text = scores.to_string();
+        assert!(text.contains("chest_circumference") && text.contains("1.250 mm  (46.9)"), "{text}");
+    }
+
+    #[test]
+    fn statistics_tell_how_far_the_means_are() {
+        let mut bodies = Bodies { numbers: vec![0, 1], sex: vec![0, 1], ..Bodies::default() };
+        for sign in [-1.0, 1.0] {
+            // Around a mean that is one of the paper's deviations above the paper's.
+            bodies.measures.extend((0..MEASURE_COUNT).map(|i| {
+                let [mean, deviation, ..] = paper_row(i);
+                (mean + deviation + sign * 0.01) as f32
+            }));
+        }
+        let statistics = Statistics::of(&[&bodies], 3);
+        for row in &statistics.measures {
+            assert!((row.z - 1.0).abs() < 1e-4, "{row:?}");
+            assert!((row.ours[1] - 0.01).abs() < 1e-6, "{row:?}");
+            assert!((row.ours[3] - row.ours[2] - 0.02).abs() < 1e-6, "{row:?}");
+        }
+        assert!((statistics.rms_z - 1.0).abs() < 1e-4);
+        let json = serde_json::to_value(&statistics).unwrap();
+        assert_eq!((&json["bodies"], &json["rejected"]), (&2.into(), &3.into()));
+        assert_eq!(json["measures"].as_array().unwrap().len(), MEASURE_COUNT);
+        assert!(statistics.to_string().contains("its rms is 1.00"));
+    }
 }

@@ -11,6 +11,7 @@ use anthronet::measure::{Definition, Kind, MeasureId, Point};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use crate::assets::{CROWN, HEELS};
 use crate::corpus::{Corpus, cage_of};
 use crate::{Error, Result};
 
@@ -27,8 +28,6 @@ enum Landmarks {
 }
 use Landmarks::{Loop, Straight, Torso, Vertical};
 
-const CROWN: u32 = 881;
-const HEELS: [u32; 2] = [13_057, 6_461];
 const NIPPLES: [u32; 2] = [1_840, 8_512];
 
 /// Name without side, and where it lies (left side).
@@ -301,5 +300,62 @@ impl Surface {
             .map(|e| self.edges[e])
             .filter(|e| e.iter().all(|v| wide.contains(v)))
             .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_has_its_landmarks() {
+        for id in MeasureId::all() {
+            let stem = id.name().trim_end_matches("_left").trim_end_matches("_right");
+            assert_eq!(PLAN.iter().filter(|p| p.0 == stem).count(), 1, "{stem}");
+        }
+        for (name, landmarks) in &PLAN {
+            if let Loop(around, normal) = landmarks {
+                assert!(around.len() >= 20, "{name}");
+                assert!((DVec3::from(*normal).length() - 1.0).abs() < 1e-6, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tilted_plane_cuts_a_tube_in_one_planar_loop() {
+        // A tube of 12 sides and 8 floors around the y axis, radius 1.
+        let (sides, floors) = (12_u32, 8_u32);
+        let at = |floor: u32, side: u32| floor * sides + side % sides;
+        let mut triangles = Vec::new();
+        for floor in 0..floors {
+            for side in 0..sides {
+                let [a, b, c, d] =
+                    [at(floor, side), at(floor, side + 1), at(floor + 1, side + 1), at(floor + 1, side)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        let mean: Vec<DVec3> = (0..(floors + 1) * sides)
+            .map(|v| {
+                let angle = f64::from(v % sides) * std::f64::consts::TAU / f64::from(sides);
+                DVec3::new(libm::cos(angle), f64::from(v / sides), libm::sin(angle))
+            })
+            .collect();
+        let surface = Surface { edges: Vec::new(), triangles };
+        let around: Vec<u32> = (0..sides).map(|side| at(4, side)).collect();
+        let normal = DVec3::new(0.1, 1.0, 0.05).normalize();
+        let cut = surface.planar_loop(&mean, &around, normal).unwrap();
+        // Through every side's upright edge and its diagonal, and twice through the floor that it is tilted across.
+        assert_eq!(cut.len(), 2 * sides as usize + 2);
+        let place = |p: &Point| -> DVec3 { p.0.iter().map(|(v, w)| mean[*v as usize] * *w).sum() };
+        let origin = DVec3::new(0.0, 4.0, 0.0);
+        for point in &cut {
+            assert!((place(point) - origin).dot(normal).abs() < 1e-6, "{point:?}");
+            assert!((point.0.iter().map(|p| p.1).sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+        // Neighbours in the loop are neighbours on the tube.
+        let longest = cut.iter().zip(cut.iter().cycle().skip(1)).map(|(a, b)| place(a).distance(place(b)));
+        assert!(longest.fold(0.0, f64::max) < 0.6);
+        // A plane beside the tube cuts nothing.
+        assert!(surface.planar_loop(&mean, &[at(0, 0)], DVec3::Y).is_none());
     }
 }

@@ -1,5 +1,6 @@
 //! From what training decided to the parts of a model file.
 
+use anthronet::condition::QUANTILE_COUNT;
 use anthronet::measure::{Definitions, MEASURE_COUNT};
 use anthronet::model::config::GeneratorConfig;
 use anthronet::model::{Accessory, ModelParts, Provenance};
@@ -16,8 +17,6 @@ use crate::{Error, Result};
 
 /// Components stored as half floats; the rest are bytes.
 const FINE: usize = 40;
-/// Quantiles per measure: 0 %, 1 %, … 100 %.
-const QUANTILES: usize = 101;
 /// How far beyond the training bodies a request may go, as a share of a measure's range.
 const RANGE_SLACK: f64 = 0.25;
 
@@ -140,8 +139,9 @@ fn prior(bodies: &Bodies) -> Result<[Vec<f64>; 3]> {
         for m in 0..MEASURE_COUNT {
             let mut values: Vec<f32> = rows.iter().map(|r| r[m]).collect();
             values.sort_by(f32::total_cmp);
-            out[2]
-                .extend((0..QUANTILES).map(|q| f64::from(values[q * (values.len() - 1) / (QUANTILES - 1)])));
+            out[2].extend(
+                (0..QUANTILE_COUNT).map(|q| f64::from(values[q * (values.len() - 1) / (QUANTILE_COUNT - 1)])),
+            );
         }
         out[0].extend(mean);
         out[1].extend(covariance);
@@ -161,4 +161,75 @@ fn ranges(bodies: &Bodies) -> Vec<f64> {
             [millimetres((low - slack).max(0.5 * low)), millimetres(high + slack)]
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use anthronet::random::Random;
+    use faer::Mat;
+
+    use super::*;
+
+    /// Bodies whose measures are normal around 1 m for women and 2 m for men; the first two go together.
+    fn bodies(count: usize) -> Bodies {
+        let mut random = Random::new(2, 0);
+        let mut bodies = Bodies::default();
+        for i in 0..count {
+            let sex = (i % 2) as u8;
+            let first = random.normal();
+            bodies.numbers.push(i as u64);
+            bodies.sex.push(sex);
+            bodies.measures.extend((0..MEASURE_COUNT).map(|m| {
+                let deviation = if m < 2 { first } else { random.normal() };
+                (1.0 + f64::from(sex) + 0.1 * deviation) as f32
+            }));
+        }
+        bodies
+    }
+
+    #[test]
+    fn a_prior_is_what_the_bodies_are() {
+        let [means, covariances, quantiles] = prior(&bodies(4_000)).unwrap();
+        assert_eq!(means.len(), 2 * MEASURE_COUNT);
+        for (i, mean) in means.iter().enumerate() {
+            // Six standard errors of 2000 draws with deviation 0.1 are 0.013.
+            let expected = if i < MEASURE_COUNT { 1.0 } else { 2.0 };
+            assert!((mean - expected).abs() < 0.013, "{i} {mean}");
+        }
+        let covariance = |i: usize, j: usize| covariances[i * MEASURE_COUNT + j];
+        assert!((covariance(0, 1) - covariance(0, 0)).abs() < 1e-6 && covariance(0, 2).abs() < 1.5e-3);
+        assert!((0..36).all(|i| (0..36).all(|j| covariance(i, j) == covariance(j, i))));
+        assert!((covariance(5, 5) - 0.01).abs() < 2e-3);
+        for of_measure in quantiles.chunks_exact(QUANTILE_COUNT) {
+            assert!(of_measure.is_sorted());
+            assert!((of_measure[50] - of_measure[16] - 0.1).abs() < 0.02, "one deviation below the median");
+        }
+        anthronet::condition::Prior::from_slices(&means, &covariances, &quantiles).map(drop).unwrap();
+        assert!(prior(&bodies(100)).unwrap_err().to_string().contains("only 50 bodies"));
+    }
+
+    #[test]
+    fn ranges_reach_a_quarter_beyond_the_bodies() {
+        let mut bodies = bodies(2);
+        for (i, m) in bodies.measures.iter_mut().enumerate() {
+            *m = if i < MEASURE_COUNT { 1.0 } else { 2.0 };
+        }
+        assert!(ranges(&bodies).chunks_exact(2).all(|r| *r == [0.75, 2.25]));
+    }
+
+    #[test]
+    fn bytes_are_within_half_a_step_of_what_they_stand_for() {
+        let mut random = Random::new(7, 0);
+        let rows = Mat::from_fn(9, COMPONENTS, |_, _| random.normal() as f32);
+        let basis = Basis { mean: vec![0.0; 9], rows, std: vec![1.0; COMPONENTS] };
+        let (packed, scales) = bytes(&basis, 6);
+        assert_eq!((packed.len(), scales.len()), (6 * (COMPONENTS - FINE), COMPONENTS - FINE));
+        for (k, (row, scale)) in packed.chunks_exact(6).zip(&scales).enumerate() {
+            assert_eq!(row.iter().map(|b| b.unsigned_abs()).max(), Some(127));
+            for (i, byte) in row.iter().enumerate() {
+                let value = basis.rows[(i, FINE + k)];
+                assert!((f32::from(*byte) * scale - value).abs() <= 0.5001 * scale, "{k} {i}");
+            }
+        }
+    }
 }

@@ -1,45 +1,130 @@
-//! The progress bar of a training.
+//! Progress of long work on standard error: a bar on a terminal, lines elsewhere.
+
+use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::generator::Metrics;
 
-/// A bar on standard error, hidden when it is no terminal.
+/// How often a line is written where there is no terminal.
+const LINE_EVERY: Duration = Duration::from_secs(30);
+
+/// Steps towards a number that is known or becomes known.
 #[derive(Debug)]
-pub(crate) struct Progress(ProgressBar);
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    /// When the last line was written; `None` on a terminal.
+    line: Option<Mutex<Instant>>,
+}
+
+impl Bar {
+    pub(crate) fn new(what: &str, length: u64) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let bar =
+            styled(length, terminal, "{msg} {wide_bar} {pos}/{len} {eta}").with_message(what.to_owned());
+        Self { bar, line: (!terminal).then(|| Mutex::new(Instant::now())) }
+    }
+
+    pub(crate) fn inc(&self) {
+        self.bar.inc(1);
+        self.tell(LINE_EVERY);
+    }
+
+    /// What is being done, and how far it is: `done` of `of`, which is 0 while that is not known.
+    pub(crate) fn set(&self, what: &str, done: u64, of: u64) {
+        self.bar.set_message(what.to_owned());
+        self.bar.set_length(of.max(1));
+        self.bar.set_position(done);
+        self.tell(LINE_EVERY);
+    }
+
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    /// Writes a line when there is no terminal and the last one is so long ago; whether it did.
+    fn tell(&self, every: Duration) -> bool {
+        let Some(line) = &self.line else { return false };
+        let mut last = line.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.elapsed() < every {
+            return false;
+        }
+        *last = Instant::now();
+        eprintln!("{}: {} of {}", self.bar.message(), self.bar.position(), self.bar.length().unwrap_or(0));
+        true
+    }
+}
+
+/// The progress of a training; silent when asked to be.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    name: &'static str,
+    lines: bool,
+}
 
 impl Progress {
     pub(crate) fn new(name: &'static str, epochs: usize, done: usize, quiet: bool) -> Self {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(Some(epochs as u64), target).with_position(done as u64);
-        bar.reset_eta();
+        let terminal = std::io::stderr().is_terminal();
         let template = "{prefix} {bar:30} {pos}/{len} epochs, {elapsed} gone, {eta} to go  {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
+        let bar = styled(epochs as u64, terminal && !quiet, template).with_position(done as u64);
+        bar.reset_eta();
         bar.set_prefix(name);
         bar.tick();
-        Self(bar)
+        Self { bar, name, lines: !terminal && !quiet }
     }
 
     /// Shows the state of the network. Off a terminal the same goes to standard error as a line.
     pub(crate) fn message(&self, metrics: &Metrics) {
-        let p2p = match metrics.p2p_mm {
-            Some(p2p) => format!("p2p {p2p:.3} mm"),
-            None => format!("rms {:.3} mm", metrics.rms_mm),
-        };
-        let [loss, divergence, _] = metrics.training;
-        self.0.set_message(format!(
-            "{p2p}, z = 0 {:.2}, loss {loss:.4}, kl {divergence:.1}",
-            metrics.rms_z0_mm
-        ));
+        let message = state(metrics);
+        if self.lines {
+            let epochs = self.bar.length().unwrap_or(0);
+            eprintln!("{}: epoch {} of {epochs}, {message}", self.name, metrics.epoch);
+        }
+        self.bar.set_message(message);
     }
 
     pub(crate) fn advance(&self) {
-        self.0.inc(1);
+        self.bar.inc(1);
     }
 
     pub(crate) fn finish(&self) {
-        self.0.finish();
+        self.bar.finish();
+    }
+}
+
+fn styled(length: u64, shown: bool, template: &str) -> ProgressBar {
+    let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
+fn state(metrics: &Metrics) -> String {
+    let p2p = match metrics.p2p_mm {
+        Some(p2p) => format!("p2p {p2p:.3} mm"),
+        None => format!("rms {:.3} mm", metrics.rms_mm),
+    };
+    let [loss, divergence, _] = metrics.training;
+    format!("{p2p}, z = 0 {:.2}, loss {loss:.4}, kl {divergence:.1}", metrics.rms_z0_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_come_off_a_terminal_and_not_too_often() {
+        let off = |line| Bar { bar: ProgressBar::hidden(), line };
+        let bar = off(Some(Mutex::new(Instant::now())));
+        bar.set("bodies", 3, 9);
+        assert_eq!((bar.bar.position(), bar.bar.length()), (3, Some(9)));
+        assert!(!bar.tell(LINE_EVERY));
+        assert!(bar.tell(Duration::ZERO));
+        assert!(!off(None).tell(Duration::ZERO));
     }
 }

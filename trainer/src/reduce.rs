@@ -64,3 +64,51 @@ pub fn reduce(cage: &Topology, mean: &[Vec3], share: f64) -> Result<ReducedMesh>
         vertices,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bent sheet of n × n quads.
+    fn sheet(n: u32) -> (Topology, Vec<Vec3>) {
+        let at = |i: u32, j: u32| i * (n + 1) + j;
+        let quads: Vec<[u32; 4]> = (0..n * n)
+            .map(|q| (q / n, q % n))
+            .map(|(i, j)| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)])
+            .collect();
+        let points = |scale: f32| {
+            (0..(n + 1) * (n + 1)).map(move |v| [(v / (n + 1)) as f32 * scale, (v % (n + 1)) as f32 * scale])
+        };
+        let topology = Topology {
+            vertex_count: points(1.0).count(),
+            quad_uvs: quads.clone(),
+            quads,
+            uvs: points(1.0 / n as f32).collect(),
+        };
+        (topology, points(0.01).map(|[x, y]| Vec3::new(x, y, 4.0 * x * y)).collect())
+    }
+
+    #[test]
+    fn a_level_is_a_list_over_the_vertices_that_are_there() {
+        let (cage, mean) = sheet(24);
+        let level = reduce(&cage, &mean, 0.25).unwrap();
+        let triangles = 2 * cage.quads.len();
+        let share = level.triangles.len() as f64 / triangles as f64;
+        assert!((0.15..0.3).contains(&share), "{share}");
+        assert!(level.vertices.is_sorted() && level.vertices.len() < cage.vertex_count / 2);
+        for (triangle, uvs) in level.triangles.iter().zip(&level.triangle_uvs) {
+            let [a, b, c] = triangle.map(|v| level.vertices[v as usize]);
+            assert!(a != b && b != c && c != a);
+            // Without seams a corner's texture coordinate has its vertex's number.
+            assert_eq!(*uvs, [a, b, c]);
+        }
+        assert_eq!(level, reduce(&cage, &mean, 0.25).unwrap());
+    }
+
+    #[test]
+    fn what_cannot_be_reduced_is_refused() {
+        let (cage, mean) = sheet(1);
+        let message = reduce(&cage, &mean, 0.1).unwrap_err().to_string();
+        assert!(message.contains("levels of detail"), "{message}");
+    }
+}

@@ -10,7 +10,7 @@ use anthronet::measure::Sex;
 use anthronet::random::Random;
 use glam::Vec3;
 
-use crate::assets::{Assets, Modifier, Target};
+use crate::assets::{Assets, CROWN, HEELS, Modifier, Target};
 use crate::{Error, Result};
 
 /// Shortest and tallest stature drawn, metres: the paper's table.
@@ -44,13 +44,8 @@ pub struct Person {
 /// Draws people from a source of bodies.
 pub struct Sampler {
     locals: Vec<(Modifier, f64, Spread)>,
-    crown: usize,
-    soles: [usize; 2],
 }
 
-/// Vertices of the cage that stature is read at while solving for it.
-const CROWN: usize = 881;
-const SOLES: [usize; 2] = [13_057, 6_461];
 /// Difference between left and right of a sided slider, standard deviation.
 const ASYMMETRY: f64 = 0.03;
 /// Our own slider, and how far its sides differ: nothing else lets the toes of two feet differ, so it has to.
@@ -79,7 +74,7 @@ impl Sampler {
         if let Some(name) = biases.keys().next() {
             return Err(Error::Invalid(format!("sampling_bias.json: unknown slider {name}")));
         }
-        Ok(Self { locals, crown: CROWN, soles: SOLES })
+        Ok(Self { locals })
     }
 
     /// Draws the person with this number of this seed; the same pair gives the same person everywhere.
@@ -156,7 +151,8 @@ impl Sampler {
         }
         // Stature is linear in the height slider on either side of its middle.
         let stature = |points: &[Vec3]| {
-            f64::from(points[self.crown].y - 0.5 * (points[self.soles[0]].y + points[self.soles[1]].y))
+            let y = |v: u32| points[v as usize].y;
+            f64::from(y(CROWN) - 0.5 * (y(HEELS[0]) + y(HEELS[1])))
         };
         let now = stature(&points);
         let side = if person.stature < now { &person.shorter } else { &person.taller };
@@ -248,4 +244,55 @@ fn dirichlet<const N: usize>(random: &mut Random, names: [&'static str; N]) -> [
     let draws = names.map(|n| (n, -libm::log(random.uniform())));
     let sum: f64 = draws.iter().map(|d| d.1).sum();
     draws.map(|(n, d)| (n, d / sum))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_of_a_slider_share_it() {
+        let names = ["min", "average", "max"];
+        for (value, expected) in
+            [(0.0, [1.0, 0.0, 0.0]), (0.25, [0.5, 0.5, 0.0]), (0.5, [0.0, 1.0, 0.0]), (1.0, [0.0, 0.0, 1.0])]
+        {
+            assert_eq!(three(value, names).map(|s| s.1), expected);
+        }
+    }
+
+    #[test]
+    fn draws_have_the_distributions_they_are_named_for() {
+        let mut random = Random::new(5, 0);
+        let n = 20_000;
+        for a in [0.65, 0.7] {
+            let draws: Vec<f64> = (0..n).map(|_| beta(&mut random, a)).collect();
+            assert!(draws.iter().all(|x| (0.0..=1.0).contains(x)));
+            let mean = draws.iter().sum::<f64>() / f64::from(n);
+            let variance = draws.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(n);
+            // Beta(a, a): mean ½, variance 1 / (4 (2a + 1)); five standard errors are below 0.013 and 0.005.
+            assert!((mean - 0.5).abs() < 0.013 && (variance - 0.25 / (2.0 * a + 1.0)).abs() < 0.005);
+        }
+        let mut sums = [0.0; 3];
+        for _ in 0..n {
+            let shares = dirichlet(&mut random, ["a", "b", "c"]).map(|s| s.1);
+            assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            sums = std::array::from_fn(|i| sums[i] + shares[i] / f64::from(n));
+        }
+        // Five standard errors of a mean of uniform Dirichlet shares are 0.0083.
+        assert!(sums.iter().all(|s| (s - 1.0 / 3.0).abs() < 0.0083), "{sums:?}");
+    }
+
+    #[test]
+    fn sliders_vary_by_their_kind() {
+        let of = |name: &str, group: &str| {
+            spread(&Modifier { name: format!("{name}|{group}"), group: group.to_owned(), pairs: Vec::new() })
+        };
+        assert_eq!(of("head-fat-decr-incr", "head"), Some(Spread::Uniform(0.12)));
+        assert_eq!(of("nose-hump-decr-incr", "nose"), Some(Spread::Normal(0.2)));
+        assert_eq!(of("measure-waist-circ", "measure"), Some(Spread::Uniform(0.35)));
+        assert_eq!(of("upperarm-fat", "arms"), Some(Spread::Uniform(0.245)));
+        for left_out in ["torso-trans-in-out", "stomach-pregnant-decr-incr", "bulge-decr-incr"] {
+            assert_eq!(of(left_out, "torso"), None, "{left_out}");
+        }
+    }
 }

@@ -138,3 +138,42 @@ fn weights(assets: &Assets, joints: &[usize; 4]) -> Vec<(u32, [f32; 3])> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arm_that_hangs_is_swung_out_and_keeps_its_lengths() {
+        // Shoulder, elbow, wrist, knuckle, then a point of the chest, of the upper arm, the forearm and the hand.
+        let chain = [
+            Vec3::new(0.2, 1.4, 0.0),
+            Vec3::new(0.35, 1.15, -0.03),
+            Vec3::new(0.45, 0.95, 0.06),
+            Vec3::new(0.46, 0.87, 0.09),
+        ];
+        let [shoulder, elbow, wrist, knuckle] = chain;
+        let middle = |a: Vec3, b: Vec3| a.lerp(b, 0.5);
+        let mut points = vec![shoulder, elbow, wrist, knuckle, Vec3::new(0.0, 1.3, 0.1)];
+        points.extend([middle(shoulder, elbow), middle(elbow, wrist), middle(wrist, knuckle)]);
+        let before = points.clone();
+        let arm = Arm {
+            outward: Vec3::X,
+            chain: [0, 1, 2, 3],
+            weights: vec![(5, [1.0, 0.0, 0.0]), (6, [0.0, 1.0, 0.0]), (7, [0.0, 0.0, 1.0])],
+        };
+        arm.apply(&mut points);
+        assert_eq!((points[0], points[4]), (before[0], before[4]));
+        for i in 1..4 {
+            assert_eq!((points[i].y, points[i].z), (shoulder.y, shoulder.z));
+            let length = |p: &[Vec3]| p[i].distance(p[i - 1]);
+            assert!((length(&points) - length(&before)).abs() < 1e-6);
+            // A point on the bone stays half-way along it.
+            assert!(points[i + 4].distance(middle(points[i - 1], points[i])) < 1e-6, "{points:?}");
+        }
+        // Straight arms stay as they are.
+        let straight = points.clone();
+        arm.apply(&mut points);
+        assert!(points.iter().zip(&straight).all(|(a, b)| a.distance(*b) < 1e-6));
+    }
+}

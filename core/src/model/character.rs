@@ -59,7 +59,6 @@ impl Character {
         weights: SkinWeights,
         mean: Vec<Vec3>,
     ) -> Result<Self> {
-        let subdivision = Subdivision::new(&cage)?;
         let mut points = cage.vertex_count;
         for accessory in &accessories {
             accessory.topology.validate()?;
@@ -77,6 +76,8 @@ impl Character {
         if mean.len() != points {
             return Err(Error::invalid("mean body", format!("expected {points} points, got {}", mean.len())));
         }
+        // Only now: it makes arrays as long as the cage says that it is.
+        let subdivision = Subdivision::new(&cage)?;
         for mesh in &reduced {
             let fits = mesh.triangles.len() == mesh.triangle_uvs.len()
                 && mesh.vertices.iter().all(|v| (*v as usize) < cage.vertex_count)

@@ -79,6 +79,9 @@ pub struct Widths {
 
 impl GeneratorConfig {
     /// The network of the paper, with no linear paths: f = 8 Fourier components.
+    ///
+    /// `scale_power` stays: it says in which unit the last layer speaks, not what the network can say, and without it
+    /// Adam never gets to the small coefficients.
     pub fn paper() -> Self {
         Self {
             fourier: FourierConfig { components: 8, ..FourierConfig::default() },

@@ -1,9 +1,10 @@
 //! The model file: safetensors with everything that training decided.
 //!
-//! Format version 1. Arrays are named below in [`ModelParts::to_bytes`]; the metadata entry `anthronet` is JSON:
+//! Format version 2. Arrays are named below in [`ModelParts::to_bytes`]; the metadata entry `anthronet` is JSON:
 //! names and parents of the joints, accessories, the networks' configuration, hashes of the topology and of the
-//! measure definitions, and how the model was made and scored. Sizes in the file are checked against each other
-//! and never trusted.
+//! measure definitions, how the model was made and scored, and a checksum: the SHA-256 of the whole file with the
+//! checksum's own 64 digits as zeros, so that a change anywhere in the file is found. Sizes in the file are checked
+//! against each other and never trusted.
 
 use glam::Vec3;
 use half::f16;
@@ -22,7 +23,7 @@ use crate::rig::{Skeleton, SkinWeights};
 use crate::{Error, Result};
 
 /// Version of the file's layout; a file of another version is refused.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// How the model was made and how well it does; shown by `info`, trusted by nothing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -94,7 +95,11 @@ struct Metadata {
     accessories: Vec<String>,
     config: GeneratorConfig,
     provenance: Provenance,
+    sha256: String,
 }
+
+/// What stands in the place of the checksum while it is taken.
+const NO_CHECKSUM: [u8; 64] = [b'0'; 64];
 
 const METADATA_KEY: &str = "anthronet";
 
@@ -164,15 +169,27 @@ impl ModelParts {
             accessories: self.accessories.iter().map(|a| a.name.clone()).collect(),
             config: self.config.clone(),
             provenance: self.provenance.clone(),
+            sha256: String::from_utf8_lossy(&NO_CHECKSUM).into_owned(),
         };
-        arrays.serialize(&metadata)
+        let mut bytes = arrays.serialize(&metadata)?;
+        let checksum = hex(&Sha256::digest(&bytes));
+        let header = header_end(&bytes);
+        let place = find(&bytes[..header], &NO_CHECKSUM)
+            .ok_or_else(|| Error::invalid("model file", "the checksum has no place in the header"))?;
+        bytes[place..place + NO_CHECKSUM.len()].copy_from_slice(checksum.as_bytes());
+        Ok(bytes)
     }
 
-    /// Reads a file's bytes.
+    /// Reads a file's bytes and holds them against their checksum.
     ///
     /// # Errors
     /// [`Error::Model`] naming `origin` and what does not fit.
     pub fn from_bytes(bytes: &[u8], origin: &str) -> Result<Self> {
+        Self::read(bytes, origin, true)
+    }
+
+    /// Reads bytes; without `verify` the checksum is not taken.
+    pub(super) fn read(bytes: &[u8], origin: &str, verify: bool) -> Result<Self> {
         let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
         let (_, header) = SafeTensors::read_metadata(bytes)
             .map_err(|e| fail(format!("not a whole safetensors file: {e}")))?;
@@ -189,6 +206,9 @@ impl ModelParts {
         }
         let metadata: Metadata =
             serde_json::from_value(version).map_err(|e| fail(format!("metadata: {e}")))?;
+        if verify {
+            verify_checksum(bytes, &metadata.sha256).map_err(fail)?;
+        }
         let file = SafeTensors::deserialize(bytes).map_err(|e| fail(e.to_string()))?;
         let reader = Reader { file: &file, origin };
 
@@ -211,6 +231,14 @@ impl ModelParts {
             accessories.push(Accessory { name, start, topology });
             start += vertices;
         }
+        // Before anything as large as these counts is made from them.
+        let mean: Vec<f32> = reader.get("shape.mean", Dtype::F32)?;
+        if mean.len() != 3 * start {
+            return Err(fail(format!(
+                "the topologies have {start} vertices, the mean body has {} coordinates",
+                mean.len()
+            )));
+        }
         let mut networks = Tensors::new();
         for name in file.names() {
             if let Some(key) = name.strip_prefix("network.") {
@@ -222,7 +250,7 @@ impl ModelParts {
             reduced: [reduced("lod2")?, reduced("lod3")?],
             cage,
             accessories,
-            mean: reader.get("shape.mean", Dtype::F32)?,
+            mean,
             fine: reader.get("shape.fine", Dtype::F16)?,
             coarse: reader.get("shape.coarse", Dtype::I8)?,
             scales: reader.get("shape.scales", Dtype::F32)?,
@@ -315,7 +343,38 @@ pub fn topology_hash(cage: &Topology) -> String {
     for v in cage.quads.iter().chain(&cage.quad_uvs).flatten() {
         hash.update(v.to_le_bytes());
     }
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    hex(&hash.finalize())
+}
+
+fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Where the header ends: its length stands in the first eight bytes.
+fn header_end(bytes: &[u8]) -> usize {
+    let length = bytes.first_chunk().map_or(0, |b| u64::from_le_bytes(*b));
+    usize::try_from(length).map_or(bytes.len(), |n| n.saturating_add(8).min(bytes.len()))
+}
+
+/// Where `what` first begins in `within`.
+fn find(within: &[u8], what: &[u8]) -> Option<usize> {
+    within.windows(what.len()).position(|w| w == what)
+}
+
+/// Compares the checksum that a file carries with the one that its bytes have.
+fn verify_checksum(bytes: &[u8], carried: &str) -> std::result::Result<(), String> {
+    let place = find(&bytes[..header_end(bytes)], carried.as_bytes())
+        .filter(|_| carried.len() == NO_CHECKSUM.len())
+        .ok_or_else(|| "metadata: sha256: expected 64 hexadecimal digits".to_owned())?;
+    let mut hash = Sha256::new();
+    hash.update(&bytes[..place]);
+    hash.update(NO_CHECKSUM);
+    hash.update(&bytes[place + NO_CHECKSUM.len()..]);
+    let taken = hex(&hash.finalize());
+    if taken == carried {
+        return Ok(());
+    }
+    Err(format!("the SHA-256 of the file is {taken}, its header says {carried}: the file is damaged"))
 }
 
 #[derive(Default)]

@@ -82,7 +82,11 @@ impl Model {
     /// # Errors
     /// None; a test opens it.
     pub fn embedded() -> Result<Self> {
-        Self::read(include_bytes!("../../../model/anthronet.safetensors"), "(embedded)")
+        // Without the checksum: what is wrong with these bytes is wrong with the program around them, and taking it
+        // would add a fifth to the time of every start. A test opens the same bytes with it.
+        let bytes = include_bytes!("../../../model/anthronet.safetensors");
+        let origin = "(embedded)";
+        Self::from_parts(&ModelParts::read(bytes, origin, false)?, origin)
     }
 
     /// A model file.
@@ -163,7 +167,10 @@ impl Model {
                 .ok_or_else(|| fail("standardisation: expected 36 usable numbers".into()))
         };
         let decoder = Decoder::from_tensors(&parts.config, &parts.networks).map_err(named)?;
-        let encoder = Encoder::from_tensors(&parts.config, &parts.networks).ok();
+        // A model may come without its encoder, but not with a broken one.
+        let encoder = Encoder::is_in(&parts.networks)
+            .then(|| Encoder::from_tensors(&parts.config, &parts.networks).map_err(named))
+            .transpose()?;
         let measured = MeasuredSpace::new(&space, character.subdivision(), &definitions);
         let variances = space.deviations().iter().map(|s| s * s + SCULPT * SCULPT).collect();
         Ok(Self {
@@ -231,10 +238,14 @@ impl Model {
         self.shared.decoder.decode_exact(&self.standardised(measures), sex, z)
     }
 
-    /// The encoder's mean of z for a body; `None` when the model file carries no encoder.
-    pub fn encode(&self, measures: &Measurements, sex: Sex, coefficients: &[f64]) -> Option<Vec<f64>> {
-        let encoder = self.shared.encoder.as_ref()?;
-        Some(encoder.encode(&self.standardised(measures), sex, coefficients).ok()?.0)
+    /// The encoder's mean of z for a body with these measures (metres) and coefficients (metres).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the model file carries no encoder, or for another number of coefficients.
+    pub fn encode(&self, measures: &Measurements, sex: Sex, coefficients: &[f64]) -> Result<Vec<f64>> {
+        let encoder =
+            self.shared.encoder.as_ref().ok_or_else(|| Error::invalid("encoder", "the model has none"))?;
+        Ok(encoder.encode(&self.standardised(measures), sex, coefficients)?.0)
     }
 
     fn standardised(&self, measures: &Measurements) -> Measurements {

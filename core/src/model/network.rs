@@ -376,6 +376,11 @@ pub struct Encoder {
 }
 
 impl Encoder {
+    /// Whether the set has any array that only the encoder has: generation needs none of them.
+    pub fn is_in(tensors: &Tensors) -> bool {
+        tensors.keys().any(|name| ["mesh.", "fusion.", "latent_"].iter().any(|own| name.starts_with(own)))
+    }
+
     /// Builds the network from its arrays.
     ///
     /// # Errors

@@ -164,3 +164,44 @@ fn sorted_unique(ids: impl Iterator<Item = u32>) -> Vec<u32> {
     ids.dedup();
     ids
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_an_obj_are_read_or_refused() {
+        assert_eq!(numbers::<3>("1 -2.5 3e1 9".split_whitespace()), Some([1.0, -2.5, 30.0]));
+        assert_eq!(numbers::<2>("1".split_whitespace()), None);
+        assert_eq!(numbers::<2>("1 x".split_whitespace()), None);
+        let face = |text: &str| quad(text.split_whitespace(), 4, 5);
+        assert_eq!(face("1/5 2/1/7 3/2 4/3"), Some(([0, 1, 2, 3], [4, 0, 1, 2])));
+        for bad in [
+            "1/1 2/2 3/3",
+            "1/1 2/2 3/3 4/4 4/5",
+            "1 2 3 4",
+            "0/1 2/2 3/3 4/4",
+            "1/1 2/2 3/3 5/4",
+            "1/6 2/2 3/3 4/4",
+        ] {
+            assert_eq!(face(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_part_gets_numbers_of_its_own() {
+        let faces = vec![([9, 3, 5, 7], [4, 2, 6, 8]), ([3, 9, 11, 5], [2, 4, 6, 6])];
+        let uvs: Vec<[f32; 2]> = (0..9).map(|i| [i as f32, 0.0]).collect();
+        let (part, vertices) = compact(&faces, &uvs, None);
+        assert_eq!(vertices, [3, 5, 7, 9, 11]);
+        assert_eq!(part.vertex_count, 5);
+        assert_eq!(part.quads, [[3, 0, 1, 2], [0, 3, 4, 1]]);
+        assert_eq!(part.uvs, [[2.0, 0.0], [4.0, 0.0], [6.0, 0.0], [8.0, 0.0]]);
+        assert_eq!(part.quad_uvs, [[1, 0, 2, 3], [0, 1, 2, 2]]);
+        part.validate().unwrap();
+        // The cage keeps its numbers; a face beyond them is found by the check.
+        let (cage, vertices) = compact(&faces, &uvs, Some(12));
+        assert_eq!((vertices.len(), cage.quads[0]), (12, [9, 3, 5, 7]));
+        assert!(compact(&faces, &uvs, Some(10)).0.validate().is_err());
+    }
+}

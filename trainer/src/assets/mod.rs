@@ -18,6 +18,10 @@ use glam::Vec3;
 
 use crate::Result;
 
+/// Vertex of the cage on top of the head.
+pub(crate) const CROWN: u32 = 881;
+/// Vertices of the cage under the heels; stature is the crown's height above their mean.
+pub(crate) const HEELS: [u32; 2] = [13_057, 6_461];
 /// MakeHuman's unit is the decimetre.
 pub(crate) const METRES_PER_UNIT: f32 = 0.1;
 

@@ -317,3 +317,68 @@ impl End {
 fn json<T: serde::de::DeserializeOwned>(wheel: &mut Wheel, name: &str) -> Result<T> {
     serde_json::from_str(&wheel.read_text(name)?).map_err(|e| Error::Source(format!("{name}: {e}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_along_a_limb_sum_to_one_and_do_not_jump() {
+        let nodes = [(0.0, 7), (0.5, 8), (1.0, 6)];
+        let share = |t: f32, joint: usize| -> f32 {
+            hat(&nodes, t).iter().filter(|(j, _)| *j == joint).map(|(_, w)| w).sum()
+        };
+        for i in 0..=200 {
+            let t = i as f32 / 200.0;
+            let sum: f32 = hat(&nodes, t).iter().map(|(_, w)| w).sum();
+            assert!((sum - 1.0).abs() < 1e-6, "{t}");
+            for joint in [6, 7, 8] {
+                // The steepest a smoothed ramp over half a limb gets is 1.5 / 0.5.
+                assert!((share(t + 0.005, joint) - share(t, joint)).abs() < 0.0151, "{t}");
+            }
+        }
+        assert_eq!((share(0.0, 7), share(0.5, 8), share(1.0, 6)), (1.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn ends_name_their_vertices() {
+        let mesh = BaseMesh {
+            raw_positions: Vec::new(),
+            cage: Default::default(),
+            accessories: Vec::new(),
+            raw_of_surface: Vec::new(),
+            groups: BTreeMap::from([("joint-knee".to_owned(), vec![4, 5]), ("empty".to_owned(), vec![])]),
+            mirror: BTreeMap::new(),
+        };
+        let end = |json: &str| serde_json::from_str::<End>(json).unwrap().vertices(&mesh);
+        assert_eq!(end(r#"{"strategy": "CUBE", "cube_name": "joint-knee"}"#).unwrap(), [4, 5]);
+        assert_eq!(end(r#"{"strategy": "VERTEX", "vertex_index": 9}"#).unwrap(), [9]);
+        assert_eq!(end(r#"{"strategy": "MEAN", "vertex_indices": [1, 2]}"#).unwrap(), [1, 2]);
+        for (bad, named) in [
+            (r#"{"strategy": "CUBE", "cube_name": "joint-tail"}"#, "joint-tail"),
+            (r#"{"strategy": "CUBE", "cube_name": "empty"}"#, "empty"),
+            (r#"{"strategy": "MEAN", "vertex_indices": []}"#, "MEAN"),
+            (r#"{"strategy": "GUESS"}"#, "GUESS"),
+        ] {
+            let message = end(bad).unwrap_err().to_string();
+            assert!(message.contains(named), "{message}");
+        }
+    }
+
+    #[test]
+    fn ancestors_are_found_and_circles_end() {
+        let end = || r#"{"strategy": "VERTEX", "vertex_index": 0}"#;
+        let bone = |parent: &str| -> Bone {
+            let json = format!(r#"{{"head": {}, "tail": {}, "parent": "{parent}"}}"#, end(), end());
+            serde_json::from_str(&json).unwrap()
+        };
+        let rig = BTreeMap::from([
+            ("jaw".to_owned(), bone("head")),
+            ("head".to_owned(), bone("")),
+            ("a".to_owned(), bone("b")),
+            ("b".to_owned(), bone("a")),
+        ]);
+        assert!(hangs_below(&rig, "jaw", "head") && hangs_below(&rig, "jaw", "jaw"));
+        assert!(!hangs_below(&rig, "head", "jaw") && !hangs_below(&rig, "a", "head"));
+    }
+}

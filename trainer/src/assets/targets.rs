@@ -200,3 +200,84 @@ impl Reduction {
         Target { points: sums.keys().copied().collect(), deltas: sums.values().copied().collect() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_are_read_or_refused_by_line() {
+        let read = parse("# a comment\n\n3 1 0 -2\n0 .5 0 0\n", "fat.target", 4).unwrap();
+        // Decimetres in the file, metres here.
+        assert_eq!(read, [(3, Vec3::new(0.1, 0.0, -0.2)), (0, Vec3::new(0.05, 0.0, 0.0))]);
+        for bad in ["4 0 0 0", "1 0 0", "x 0 0 0", "1 0 0 z"] {
+            let message = parse(&format!("0 0 0 0\n{bad}"), "fat.target", 4).unwrap_err().to_string();
+            assert!(message.contains("fat.target line 2") && message.contains(bad), "{message}");
+        }
+    }
+
+    #[test]
+    fn joints_move_by_the_mean_of_their_vertices() {
+        // Raw vertex 5 is surface point 0; vertices 5 and 6 make the joint that is point 1; vertex 7 is a helper.
+        let points_of_raw = HashMap::from([(5, vec![(0, 1.0), (1, 0.5)]), (6, vec![(1, 0.5)])]);
+        let reduction = Reduction { points_of_raw };
+        let target = reduction.apply(&[(6, Vec3::X * 4.0), (7, Vec3::Y), (5, Vec3::X * 2.0)]);
+        assert_eq!(target.points, [0, 1]);
+        assert_eq!(target.deltas, [Vec3::X * 2.0, Vec3::X * 3.0]);
+        let mut points = [Vec3::ZERO, Vec3::ONE];
+        target.add_to(&mut points, 0.5);
+        assert_eq!(points, [Vec3::X, Vec3::new(2.5, 1.0, 1.0)]);
+    }
+
+    fn set() -> TargetSet {
+        let numbers = [
+            "head/fat-decr",
+            "head/fat-incr",
+            "arms/l-decr",
+            "arms/l-incr",
+            "arms/r-decr",
+            "arms/r-incr",
+            "nose/hump",
+        ];
+        TargetSet {
+            targets: vec![Target::default(); numbers.len()],
+            numbers: numbers.iter().enumerate().map(|(i, name)| ((*name).to_owned(), i)).collect(),
+            modifiers: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn modifiers_pair_their_targets() {
+        let category = |json: &str| -> Category { serde_json::from_str(json).unwrap() };
+        let fat = category(
+            r#"{"name": "fat", "has_left_and_right": false, "targets": ["a", "b"],
+                "opposites": {"negative-unsided": "fat-decr", "positive-unsided": "fat-incr"}}"#,
+        );
+        let fat = set().modifier("head", &fat).unwrap();
+        assert_eq!((fat.name.as_str(), fat.pairs), ("fat|head", vec![[Some(0), Some(1)]]));
+        let arms = category(
+            r#"{"name": "arms", "has_left_and_right": true, "targets": ["a", "b"],
+                "opposites": {"negative-left": "l-decr", "positive-left": "l-incr",
+                              "negative-right": "r-decr", "positive-right": ""}}"#,
+        );
+        assert_eq!(set().modifier("arms", &arms).unwrap().pairs, [[Some(2), Some(3)], [Some(4), None]]);
+        let hump = category(r#"{"name": "hump", "has_left_and_right": false, "targets": ["hump"]}"#);
+        assert_eq!(set().modifier("nose", &hump).unwrap().pairs, [[None, Some(6)]]);
+        // Nothing that MakeHuman has no target for.
+        assert!(set().modifier("mouth", &hump).is_none());
+    }
+
+    #[test]
+    fn a_slider_of_our_own_goes_both_ways() {
+        let mut set = set();
+        let side = |x: f32| Target { points: vec![1], deltas: vec![Vec3::X * x] };
+        set.add_procedural("toe", "feet", [side(1.0), side(2.0)]);
+        let modifier = &set.modifiers[0];
+        assert_eq!((modifier.name.as_str(), modifier.pairs.len()), ("toe|feet", 2));
+        for (pair, x) in modifier.pairs.iter().zip([1.0, 2.0]) {
+            let [negative, positive] = pair.map(|n| set.get(n.unwrap()).deltas[0].x);
+            assert_eq!((negative, positive), (-x, x));
+        }
+        assert_eq!((set.len(), set.number("head/fat-incr"), set.number("toe")), (11, Some(1), None));
+    }
+}

