@@ -29,6 +29,11 @@ impl Failure {
         Self::Failed(format!("{}: cannot {action}: {error}", path.display()))
     }
 
+    /// Something wrong in a file, by its name.
+    pub(crate) fn in_file(path: &Path, error: &impl fmt::Display) -> Self {
+        Self::Failed(format!("{}: {error}", path.display()))
+    }
+
     /// 1 failed, 2 bad usage.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
 use crate::motion::MotionArguments;
-use crate::request::{RequestArguments, check_ending, read_text};
+use crate::request::{RequestArguments, check_ending};
 
 /// Endings of the files that hold a character.
 pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
@@ -73,7 +73,8 @@ pub(crate) struct Arguments {
     #[arg(long, help_heading = "File")]
     compress: bool,
 
-    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output.
+    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output; also when the request is
+    /// refused because nobody can have such measures, with what conflicts.
     #[arg(long, value_name = "FILE", help_heading = "File")]
     report: Option<PathBuf>,
 }
@@ -107,13 +108,28 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     };
     backend::check_choice(&choice)?;
     let request = backend::request(&arguments.request)?;
-    let second = arguments.interpolate.as_deref().map(read_text).transpose()?;
+    let second = match arguments.interpolate.as_deref() {
+        Some(path) => Some((backend::request_file(path)?, path)),
+        None => None,
+    };
 
     let model = Model::open()?;
-    let typed = arguments.request.request.is_none();
-    let person = match (&second, arguments.at) {
-        (Some(text), Some(t)) => model.interpolate(&request, &backend::request_from_json(text)?, t)?,
-        _ => model.generate(&request, typed)?,
+    let made = match (&second, arguments.at) {
+        (Some((second, path)), Some(t)) => {
+            model.interpolate((&request, &arguments.request), (second, path), t)
+        }
+        _ => model.generate(&request, &arguments.request),
+    };
+    let person = match made {
+        Ok(person) => person,
+        Err(failure) => {
+            let requests = [Some(&request), second.as_ref().map(|(request, _)| request)];
+            let refusal = requests.into_iter().flatten().find_map(|request| model.refusal(request));
+            if let (Some(path), Some(refusal)) = (&arguments.report, refusal) {
+                backend::write_or_print(path, &(refusal + "\n"))?;
+            }
+            return Err(failure);
+        }
     };
     let mut scene = person.scene(&choice)?;
     backend::motion::animate(&mut scene, person.rest_pose()?, &arguments.motion)?;
@@ -128,7 +144,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     let residual = summary
         .worst_residual_mm
-        .map_or("no measure given".to_owned(), |(name, mm)| format!("measures within {mm:.3} mm ({name})"));
+        .map(|(name, mm)| format!("measures within {mm:.3} mm ({name})"))
+        .unwrap_or_else(|| if second.is_some() { "between two" } else { "no measure given" }.to_owned());
     eprintln!(
         "{}: {}, {:.3} m, {:.1} kg, {residual}",
         arguments.output.display(),

@@ -14,12 +14,12 @@ use crate::request::ending;
 
 /// Read all 36 measures, mass and body mass index off a character file.
 ///
-/// FILE is one of ours at any level of detail, or an .obj, .gltf or .glb whose body has our vertex order. The body is
-/// measured in its bind pose.
+/// FILE is one of ours at any level of detail, or another whose body has our vertex order. The body is measured in its
+/// bind pose.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  anthronet measure anna.glb\n  anthronet measure anna.obj --json")]
 pub(crate) struct Arguments {
-    /// The file: .glb, .gltf or .obj.
+    /// The file: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
     file: PathBuf,
 
     /// Print JSON: {"measures": [{"name", "value"}, …], "mass_kg", "volume_m3", "bmi"}; metres, kilograms.

@@ -22,7 +22,7 @@ const QUALITY: usize = 256;
     anthronet preview request.json -o person.png --size 2400x1000\n  \
     anthronet preview anna.glb -o head.png --views face,face-three-quarter,profile")]
 pub(crate) struct Arguments {
-    /// A .glb, .gltf or .obj, or a .json request to generate first.
+    /// A .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj, or a .json request to generate first.
     input: PathBuf,
 
     /// The picture to write, a .png.
@@ -45,9 +45,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     let figure = match ending(&arguments.input).as_str() {
         "json" => {
-            let request = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };
-            let request = backend::request(&request)?;
-            Model::open()?.generate(&request, false)?.figure(0, None)?
+            let from = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };
+            let request = backend::request(&from)?;
+            Model::open()?.generate(&request, &from)?.figure(0, None)?
         }
         "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => {
             backend::figure_from_file(&arguments.input)?

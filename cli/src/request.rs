@@ -45,7 +45,8 @@ pub(crate) struct RequestArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
-    /// The latent vector by hand instead of by seed: as many numbers as `anthronet info` says, each about -3 to 3.
+    /// The latent vector by hand instead of by seed: as many numbers as `anthronet info` says, most people's within -3
+    /// and 3, none beyond 6.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) z: Option<Vec<f64>>,
 
@@ -70,6 +71,18 @@ impl RequestArguments {
         }
         measures.sort_by_key(|(name, _)| name.ends_with("_left") || name.ends_with("_right"));
         Ok(measures)
+    }
+
+    /// Whether a field of the request was typed, and not read from the request's file. Sides count as one: what is
+    /// typed for one may be told of both.
+    pub(crate) fn typed(&self, field: &str) -> bool {
+        fn stem(name: &str) -> &str {
+            name.trim_end_matches("_left").trim_end_matches("_right")
+        }
+        match field {
+            "z" => self.z.is_some(),
+            _ => self.measures.iter().any(|(name, _)| stem(name) == stem(field)),
+        }
     }
 }
 
@@ -118,6 +131,19 @@ mod tests {
         assert_eq!(names, ["arm_length", "height", "arm_length_left"]);
         arguments.measures.push(("height".into(), 1.8));
         assert_eq!(arguments.sorted_measures().unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn fields_are_typed_or_read() {
+        let arguments = RequestArguments {
+            measures: vec![("arm_length".into(), 0.31), ("foot_width_left".into(), 0.1)],
+            z: Some(vec![0.0]),
+            ..RequestArguments::default()
+        };
+        for typed in ["arm_length", "arm_length_left", "foot_width_left", "foot_width", "z"] {
+            assert!(arguments.typed(typed), "{typed}");
+        }
+        assert!(!arguments.typed("height") && !RequestArguments::default().typed("z"));
     }
 
     #[test]

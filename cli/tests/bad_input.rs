@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{Run, anthronet, files_in, folder, model_is_built_in, write};
+use common::{Run, anthronet, files_in, folder, write};
 
 /// Runs `generate` with these options into a fresh folder, which must stay empty.
 fn generate(options: &[&str]) -> Run {
@@ -102,18 +102,13 @@ fn a_bad_request_file_is_a_failure_that_names_file_and_field() {
 
 #[test]
 fn a_millimetre_value_without_its_unit_gets_a_hint() {
-    if model_is_built_in() {
-        generate(&["-m", "height=1700"]).fails(2, &["height", "did you mean 1.7"]);
-        generate(&["-m", "height=170"]).fails(2, &["height", "did you mean 1.7"]);
-        generate(&["-m", "height=0.3"]).fails(2, &["height"]);
-    }
+    generate(&["-m", "height=1700"]).fails(2, &["height", "did you mean 1.7"]);
+    generate(&["-m", "height=170"]).fails(2, &["height", "did you mean 1.7"]);
+    generate(&["-m", "height=0.3"]).fails(2, &["height"]);
 }
 
 #[test]
 fn contradictions_are_named() {
-    if !model_is_built_in() {
-        return;
-    }
     generate(&["-m", "height=1.6", "-m", "waist_circumference=1.62"])
         .fails(2, &["waist_circumference", "height"]);
     let folder = folder();
@@ -124,6 +119,58 @@ fn contradictions_are_named() {
         .fails(1, &["thigh_length"]);
     generate(&["--z", "0,0"]).fails(2, &["z", "2"]);
     generate(&["--z", "NaN,0,0,0,0,0,0,0,0,0"]).fails(2, &["z"]);
+    generate(&["--z", "0,0,0,99,0,0,0,0,0,0"]).fails(2, &["z: expected numbers from -6 to 6, got 99"]);
+}
+
+#[test]
+fn what_is_wrong_in_a_request_file_names_the_file() {
+    let folder = folder();
+    let bad = write(&folder, "bad.json", br#"{"measures": {"height": 1700}}"#);
+    let good = write(&folder, "good.json", br#"{"sex": "female", "measures": {"height": 1.7}}"#);
+    let nobody =
+        br#"{"sex": "female", "measures": {"height": 1.95, "thigh_length": 0.3, "calf_length": 0.3}}"#;
+    let nobody = write(&folder, "nobody.json", nobody);
+    generate(&["--request", &bad]).fails(1, &["bad.json: height", "did you mean 1.7"]);
+    generate(&["--request", &nobody]).fails(1, &["nobody.json: ", "thigh_length"]);
+    // What is typed beside a file is still typed.
+    generate(&["--request", &good, "-m", "height=1700"]).fails(2, &["height", "did you mean 1.7"]);
+    generate(&["--request", &good, "--z", "1"]).fails(2, &["z"]);
+    generate(&["--request", &bad, "-m", "waist_circumference=0.8"]).fails(1, &["bad.json: height"]);
+    let between = |options: &[&str], other: &str| {
+        generate(&[options, &["--interpolate", other, "--at", "0.5"]].concat())
+    };
+    between(&["--request", &good], &bad).fails(1, &["bad.json: height"]);
+    between(&["--request", &bad], &good).fails(1, &["bad.json: height"]);
+    between(&["--request", &good], &nobody).fails(1, &["nobody.json: ", "thigh_length"]);
+    between(&["-m", "height=1700"], &good).fails(2, &["height", "did you mean 1.7"]);
+    between(&[], "/no/such/file.json").fails(1, &["/no/such/file.json", "cannot read"]);
+    let out = folder.path().join("p.png");
+    anthronet(&["preview", &bad, "-o", &out.to_string_lossy()], &[]).fails(1, &["bad.json: height"]);
+}
+
+#[test]
+fn a_refused_request_is_reported_and_makes_no_file() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let nobody =
+        br#"{"sex": "female", "measures": {"height": 1.95, "thigh_length": 0.3, "calf_length": 0.3}}"#;
+    let nobody = write(&folder, "nobody.json", nobody);
+    let (out, report) = (path("out.glb"), path("report.json"));
+    let ends = ["--interpolate", &nobody, "--at", "0.5"];
+    for options in [&["--request", &nobody][..], &ends] {
+        let all = [&["generate", "-o", &out, "--report", &report], options].concat();
+        anthronet(&all, &[]).fails(1, &["thigh_length"]);
+        let text = fs::read_to_string(&report).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let conflict = report["conflicts"][0]["measures"].as_array().unwrap();
+        assert!(conflict.len() > 1, "{report}");
+        for measure in conflict {
+            assert!(measure["asked"].is_number() && measure["nearest"].is_number(), "{measure}");
+        }
+        assert_eq!(report["measures"].as_array().unwrap().len(), 36);
+        assert_eq!(files_in(folder.path()), ["nobody.json", "report.json"]);
+        fs::remove_file(path("report.json")).unwrap();
+    }
 }
 
 #[test]
@@ -136,20 +183,19 @@ fn a_damaged_model_file_is_named() {
         ("huge_header.safetensors", b"\xff\xff\xff\xff\xff\xff\xff\x7f{}".to_vec()),
         ("no_tensors.safetensors", b"\x02\0\0\0\0\0\0\0{}".to_vec()),
     ];
-    if let Ok(good) = fs::read(source) {
-        cases.push(("truncated.safetensors", good[..good.len() / 2].to_vec()));
-        cases.push(("short.safetensors", good[..good.len().saturating_sub(1)].to_vec()));
-        let mut flipped = good;
-        if let Some(byte) = flipped.get_mut(40) {
-            *byte ^= 0x55;
-        }
-        cases.push(("flipped.safetensors", flipped));
+    let good = fs::read(source).unwrap();
+    cases.push(("truncated.safetensors", good[..good.len() / 2].to_vec()));
+    cases.push(("short.safetensors", good[..good.len() - 1].to_vec()));
+    for (name, at) in [("header.safetensors", 40), ("flipped.safetensors", good.len() / 2)] {
+        let mut flipped = good.clone();
+        flipped[at] ^= 0x55;
+        cases.push((name, flipped));
     }
     for (name, bytes) in cases {
         let model = write(&folder, name, &bytes);
         let out = folder.path().join("out.glb");
         let run = anthronet(&["generate", "-o", &out.to_string_lossy()], &[("ANTHRONET_MODEL", &model)]);
-        run.fails(1, &[name]);
+        run.fails(1, &[name, if name.starts_with("flipped") { "the file is damaged" } else { "" }]);
         assert!(!out.exists(), "{name}");
     }
     let out = folder.path().join("out.glb");
@@ -161,9 +207,6 @@ fn a_damaged_model_file_is_named() {
 
 #[test]
 fn a_place_that_cannot_be_written_is_named_and_left_alone() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let file = write(&folder, "file", b"a file, not a folder");
     let inside = format!("{file}/out.glb");
@@ -190,9 +233,6 @@ fn a_read_only_folder_is_named_and_left_alone() {
     use std::process::Command;
     /// The user that owns nothing.
     const NOBODY: u32 = 65_534;
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let read_only = folder.path().join("read-only");
     fs::create_dir(&read_only).unwrap();
@@ -219,33 +259,78 @@ fn a_read_only_folder_is_named_and_left_alone() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_device_that_is_full_is_named_and_stays_a_device() {
+fn a_device_is_named_and_stays_a_device() {
     use std::os::unix::fs::{FileTypeExt, symlink};
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
-    let out = folder.path().join("full.glb");
-    symlink("/dev/full", &out).unwrap();
-    anthronet(&["generate", "-o", &out.to_string_lossy()], &[]).fails(1, &["full.glb"]);
-    assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
-    assert_eq!(files_in(folder.path()), ["full.glb"]);
-    // Standard output on a full disk.
+    let out = folder.path().join("null.glb");
+    symlink("/dev/null", &out).unwrap();
+    anthronet(&["generate", "-o", &out.to_string_lossy()], &[]).fails(1, &["null.glb", "not a regular file"]);
+    assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+    assert_eq!(files_in(folder.path()), ["null.glb"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_is_full_is_named() {
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let status = std::process::Command::new(env!("CARGO_BIN_EXE_anthronet"))
-        .arg("info")
-        .stdout(full)
-        .output()
-        .unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_anthronet"));
+    let status = command.arg("info").stdout(full).output().unwrap();
     assert_eq!(status.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&status.stderr).starts_with("error: standard output"));
 }
 
+/// A disk that takes 4 KiB of a file and no more, as far as the command can tell: the system's limit on the size of
+/// files, which fails writes half-way as a full disk does.
+#[cfg(unix)]
+fn on_a_full_disk(arguments: &[&str]) -> Run {
+    let script = "trap '' XFSZ && ulimit -f 8 && exec \"$0\" \"$@\"";
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", script, env!("CARGO_BIN_EXE_anthronet")]).args(arguments);
+    common::run(command.env_remove("ANTHRONET_MODEL"))
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_named_and_nothing_half_written_stays() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let request = write(&folder, "r.json", br#"{"sex": "male"}"#);
+    let refused = ["-m", "height=1.95", "-m", "thigh_length=0.30", "-m", "calf_length=0.30"];
+    let report = path("report.json");
+    let mut there = vec!["r.json"];
+    for (name, command) in [
+        ("a.glb", vec!["generate", "--lod", "3"]),
+        ("a.vrm", vec!["generate", "--lod", "3"]),
+        ("a.obj", vec!["generate", "--lod", "3"]),
+        ("a.usdc", vec!["generate", "--lod", "3"]),
+        ("a.usdz", vec!["generate", "--lod", "3"]),
+        // The buffer is what fills the disk.
+        ("a.gltf", vec!["generate", "--lod", "3"]),
+        ("a.png", vec!["preview", &request, "--size", "160x72"]),
+        ("sheet.png", vec!["contact-sheet", "--count", "1"]),
+        ("b.glb", [&["generate", "--sex", "female", "--report", &report][..], &refused].concat()),
+    ] {
+        let out = path(name);
+        let command = [&command[..], &["-o", &out]].concat();
+        let named = match name {
+            "a.gltf" => "a.bin: cannot write",
+            "b.glb" => "report.json: cannot write",
+            _ => &format!("{name}: cannot write"),
+        };
+        on_a_full_disk(&command).fails(1, &[named, "too large"]);
+        assert_eq!(files_in(folder.path()), there, "{name}");
+        // Nor is what was there before touched.
+        if name == "a.glb" {
+            fs::write(&out, b"old").unwrap();
+            on_a_full_disk(&command).fails(1, &[named]);
+            assert_eq!(fs::read(&out).unwrap(), b"old");
+            there.insert(0, "a.glb");
+        }
+    }
+}
+
 #[test]
 fn files_that_are_no_characters_are_refused_by_name() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     for (name, bytes) in [
         ("empty.glb", &b""[..]),
@@ -265,12 +350,4 @@ fn files_that_are_no_characters_are_refused_by_name() {
         }
     }
     anthronet(&["measure", "/no/such/file.glb"], &[]).fails(1, &["/no/such/file.glb"]);
-}
-
-#[cfg(not(feature = "train"))]
-#[test]
-fn commands_that_need_networks_say_how_to_get_them() {
-    anthronet(&["evaluate"], &[]).fails(2, &["this build has no networks", "cargo anthronet-train"]);
-    anthronet(&["train", "generator"], &[])
-        .fails(2, &["this build has no networks", "cargo anthronet-train"]);
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{anthronet, files_in, folder, model_is_built_in, write};
+use common::{anthronet, files_in, folder, write};
 use serde_json::Value;
 
 #[test]
@@ -21,9 +21,6 @@ fn help_is_for_people() {
 
 #[test]
 fn what_is_asked_is_measured_again_from_the_file() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let asked = [
@@ -67,9 +64,6 @@ fn what_is_asked_is_measured_again_from_the_file() {
 
 #[test]
 fn the_same_request_gives_the_same_bytes() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let make = |name: &str, seed: &str| {
@@ -88,9 +82,6 @@ fn the_same_request_gives_the_same_bytes() {
 
 #[test]
 fn interpolation_meets_its_ends() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let short = write(&folder, "short.json", br#"{"sex": "female", "measures": {"height": 1.60}}"#);
     let tall = write(&folder, "tall.json", br#"{"sex": "female", "measures": {"height": 1.80}}"#);
@@ -107,9 +98,6 @@ fn interpolation_meets_its_ends() {
 
 #[test]
 fn info_is_what_programs_expect() {
-    if !model_is_built_in() {
-        return;
-    }
     let info: Value = serde_json::from_str(&anthronet(&["info", "--json"], &[]).succeeds().out).unwrap();
     let measures = info["measures"].as_array().unwrap();
     assert_eq!(measures.len(), 36);
@@ -130,9 +118,6 @@ fn info_is_what_programs_expect() {
 
 #[test]
 fn a_preview_is_a_picture_of_the_asked_size() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let request = write(&folder, "r.json", br#"{"sex": "male"}"#);
     let out = folder.path().join("p.png");

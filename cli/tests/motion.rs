@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{anthronet, files_in, folder, model_is_built_in, write};
+use common::{anthronet, files_in, folder, write};
 use serde_json::Value;
 
 /// A person of a few joints in centimetres, who bends a knee and has a tail.
@@ -48,9 +48,6 @@ fn bvh() -> String {
 
 #[test]
 fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let clip = write(&folder, "bend.bvh", bvh().as_bytes());
@@ -110,9 +107,6 @@ fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
 
 #[test]
 fn what_cannot_be_is_refused_and_nothing_is_left() {
-    if !model_is_built_in() {
-        return;
-    }
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let cut = write(&folder, "cut.bvh", &bvh().as_bytes()[..900]);

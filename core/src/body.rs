@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::Result;
-use crate::condition::{Report, Request, SolveOutcome};
+use crate::condition::{Prepared, Report, Request, SolveOutcome};
 use crate::measure::{MEASURE_COUNT, Mass, MeasureId, Measurements, Sex, enclosed_volume};
 use crate::mesh::vertex_normals;
 use crate::model::{Character, Model, Solved};
@@ -42,7 +42,7 @@ impl Model {
     }
 
     /// The body between two requests (the paper's Fig. 4): measures and identity at the share `t` of the way, met
-    /// exactly. The sex of the nearer end is reported.
+    /// exactly. Sex, seed and fill are told of the nearer end, warnings and conflicts of both.
     ///
     /// # Errors
     /// As [`generate`](Self::generate), and when `t` is not in 0..=1.
@@ -51,29 +51,18 @@ impl Model {
             return Err(crate::Error::request("t", format!("expected 0 to 1, got {t}")));
         }
         let (a, b) = (self.solve(from)?, self.solve(to)?);
-        let between = |x: f64, y: f64| x + (y - x) * t;
-        let start: Vec<f64> = a
-            .outcome
-            .coefficients
-            .iter()
-            .zip(&b.outcome.coefficients)
-            .map(|(x, y)| between(*x, *y))
-            .collect();
-        let measures: [Option<f64>; MEASURE_COUNT] =
-            std::array::from_fn(|i| Some(between(a.outcome.obtained[i], b.outcome.obtained[i])));
+        let between =
+            |x: &[f64], y: &[f64]| -> Vec<f64> { x.iter().zip(y).map(|(x, y)| x + (y - x) * t).collect() };
+        let start = between(&a.outcome.coefficients, &b.outcome.coefficients);
+        let measures = between(&a.outcome.obtained, &b.outcome.obtained);
+        let measures: [Option<f64>; MEASURE_COUNT] = std::array::from_fn(|i| measures.get(i).copied());
         let outcome: SolveOutcome = self.solve_from(&start, &measures)?;
-        let near = if t < 0.5 { &a } else { &b };
-        let mut request = if t < 0.5 { from.clone() } else { to.clone() };
-        request.measures = measures;
-        request.sex = Some(near.prepared.sex);
-        let mut prepared = near.prepared.clone();
-        prepared.given = measures;
-        for (i, value) in measures.iter().flatten().enumerate() {
-            prepared.low90[i] = *value;
-            prepared.high90[i] = *value;
-        }
-        prepared.z = a.prepared.z.iter().zip(&b.prepared.z).map(|(x, y)| between(*x, *y)).collect();
-        Body::new(self, &request, &Solved { prepared, decoded: start, outcome })
+        let (near, request) = if t < 0.5 { (&a, from) } else { (&b, to) };
+        let z = between(&a.prepared.z, &b.prepared.z);
+        let prepared = Prepared { given: measures, z, warnings: Vec::new(), ..near.prepared.clone() };
+        let mut body = Body::new(self, request, &Solved { prepared, decoded: start, outcome })?;
+        body.report = body.report.interpolated([&a.prepared, &b.prepared]);
+        Ok(body)
     }
 }
 

@@ -17,9 +17,9 @@ pub enum Error {
         /// What was expected and what came, with a hint where there is one.
         message: String,
     },
-    /// The given measures cannot belong to one person; the message carries the conflict and the nearest values.
+    /// The given measures cannot belong to one person.
     #[error("{0}")]
-    Infeasible(String),
+    Infeasible(Infeasible),
     /// The model file is damaged, of another version or does not match this library.
     #[error("model {origin}: {message}")]
     Model {
@@ -54,6 +54,46 @@ pub enum Error {
         /// What was expected and what came.
         message: String,
     },
+}
+
+/// Why a request is refused that nobody can meet; prints as one sentence per conflict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Infeasible {
+    /// What quarrels, worst first; never empty.
+    pub conflicts: Vec<Conflict>,
+}
+
+/// Given measures that do not go together, or that do not fit beside earlier conflicts; a measure is in one conflict
+/// only.
+///
+/// The set is minimal: whichever name is left out, the rest does go together. One of up to four names is also among the
+/// smallest that there are. Only a request that is wrong all over ends with a conflict of all its measures.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Conflict {
+    /// The measures, in order.
+    pub measures: Vec<ConflictMeasure>,
+    /// A sentence for people.
+    pub message: String,
+}
+
+/// One measure of a [`Conflict`], metres.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ConflictMeasure {
+    /// Identifier, with its side.
+    pub name: &'static str,
+    /// What the request gives.
+    pub asked: f64,
+    /// What would do.
+    pub nearest: f64,
+}
+
+impl std::fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (i, conflict) in self.conflicts.iter().enumerate() {
+            write!(f, "{}{}", if i > 0 { "; " } else { "" }, conflict.message)?;
+        }
+        Ok(())
+    }
 }
 
 impl Error {

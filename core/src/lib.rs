@@ -1,4 +1,57 @@
-//! Conditional human bodies from tape measures.
+//! Conditional human bodies from tape measures: a request goes in, a rigged and skinned person comes out.
+//!
+//! ```
+//! use anthronet::condition::Request;
+//! use anthronet::export::{Scene, SceneOptions, gltf::to_glb};
+//! use anthronet::measure::Sex;
+//! use anthronet::mesh::Lod;
+//! use anthronet::model::Model;
+//!
+//! let model = Model::embedded()?;
+//! let request = Request { sex: Some(Sex::Female), ..Request::default() }
+//!     .with("height", 1.70)?
+//!     .with("waist_circumference", 0.74)?;
+//! let body = model.generate(&request)?;
+//! assert!((body.measurements()[3] - 1.70).abs() < 1e-6); // metres, in the order of `MeasureId`
+//! assert_eq!(body.vertices().len(), 53_514);
+//!
+//! let options = SceneOptions { lod: Lod::Lod2, ..SceneOptions::default() };
+//! let glb: Vec<u8> = to_glb(&Scene::from_body(&body, &options)?)?;
+//! assert_eq!(&glb[..4], b"glTF");
+//! # Ok::<(), anthronet::Error>(())
+//! ```
+//!
+//! # Tour
+//!
+//! | Type | What it is | To share, to keep, to clone |
+//! |---|---|---|
+//! | [`model::Model`] | networks, shape space, prior, definitions: what training decided | immutable; open once, share between threads, clones are a pointer |
+//! | [`model::Character`] | what is the same for everybody: topology, levels of detail, skeleton, skin weights | inside the model, behind an `Arc` |
+//! | [`condition::Request`] | what is asked: any subset of the measures, sex, seed or z | plain data |
+//! | [`Body`] | one person in the bind pose, with joints and [`condition::Report`] | immutable; owns about 2 MB of vertices and normals, shares the character |
+//! | [`measure::Definitions`] | where each measure lies, as data | inside the model |
+//! | [`pose::RestPose`] | the joints at rest | plain data of a few kilobytes |
+//! | [`pose::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
+//! | [`clip::Clip`], [`clip::Sampler`] | a motion; reads poses off it | a clip is immutable and shared, a sampler is two words |
+//! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one skinning of it | a skinner is immutable and shared, a job borrows the caller's buffers |
+//! | [`export::Scene`] | meshes, skeleton, materials, clips; knows nothing of bodies | plain data, what every file format is written from |
+//! | [`import::ImportedScene`] | what was read back of a character file | plain data |
+//!
+//! Data flows one way: `condition` → `model` → [`Body`] → `pose`, `clip`, `skin` → `export`. ARCHITECTURE.md has the rooms
+//! and which may use which.
+//!
+//! # Conventions
+//!
+//! Metres, radians, seconds, kilograms; other units, axes and handedness are converted in [`space`] alone. Right-handed,
+//! +Y up, +Z forward, +X the character's left, as glTF. The bind pose is a T-pose with the feet on y = 0 and the pelvis
+//! over the origin. Column vectors: `model_from_joint * point_in_joint`, names say both spaces and the matrix nearest to
+//! the point is applied first. Quaternions x, y, z, w. Joints stand after their parents.
+//!
+//! Vertices are in one order everywhere: ids of level 0 are what measures speak of, level 1 is its first 13,380, levels 2
+//! and 3 are index lists over those.
+//!
+//! The same request gives the same bits on every machine and on any number of threads. Errors name the field or file,
+//! what was expected and what came; bad input never panics.
 
 mod body;
 pub mod clip;
@@ -17,4 +70,4 @@ pub mod skin;
 pub mod space;
 
 pub use body::Body;
-pub use error::{Error, Result};
+pub use error::{Error, Infeasible, Result};

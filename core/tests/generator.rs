@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use anthronet::condition::{Fill, MeasuredShape, Request};
+use anthronet::condition::{Fill, Filled, LATENT_LIMIT, MeasuredShape, Request};
 use anthronet::export::gltf::to_glb;
 use anthronet::export::{Scene, SceneOptions};
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
@@ -197,6 +197,22 @@ fn a_person_between_two_has_measures_between() {
         let [x, y, z] = [&first, &last, &middle].map(|body| measured(body)[id.index()]);
         assert!((z - (x + 0.25 * (y - x))).abs() < 1e-5, "{id}");
     }
+    // Nothing of it was asked for.
+    let report = middle.report();
+    for row in &report.measures {
+        assert!(!row.given && row.asked.is_none() && row.residual.is_none(), "{row:?}");
+        assert_eq!((row.filled, row.low90, row.high90), (Filled::Interpolated, row.obtained, row.obtained));
+    }
+    assert!(report.converged && report.solve_residual < 1e-6, "{report:?}");
+    // What is odd about either end is told, from either side, once.
+    let odd = Request { nearest: true, ..Request::default() };
+    let odd = odd.with("waist_circumference", 0.55).unwrap().with("hip_circumference", 1.38).unwrap();
+    for (from, to) in [(&a, &odd), (&odd, &a), (&odd, &odd)] {
+        let report = model().interpolate(from, to, 0.25).unwrap().report().clone();
+        assert_eq!(report.conflicts.len(), 1, "{report:?}");
+        let replaced = report.warnings.iter().filter(|w| w.contains("nearest feasible")).count();
+        assert_eq!(replaced, 1, "{:?}", report.warnings);
+    }
     assert!(matches!(model().interpolate(&a, &b, 1.5), Err(Error::Request { .. })));
     assert!(matches!(model().interpolate(&a, &b, f64::NAN), Err(Error::Request { .. })));
 }
@@ -230,4 +246,18 @@ fn nobody_is_made_of_a_contradiction() {
     request.nearest = true;
     let body = model().generate(&request).unwrap();
     assert!(!body.report().conflicts.is_empty() && !body.report().warnings.is_empty());
+}
+
+#[test]
+fn the_farthest_latent_vectors_still_make_somebody() {
+    for sign in [1.0, -1.0] {
+        let z = vec![sign * LATENT_LIMIT; model().latent_size()];
+        let request = Request { z: Some(z), ..Request::default() }.with("height", 1.70).unwrap();
+        let body = model().generate(&request).unwrap();
+        assert!((measured(&body)[3] - 1.70).abs() < 2e-6 && body.report().converged);
+    }
+    let request = Request { z: Some(vec![1e3; model().latent_size()]), ..Request::default() };
+    assert!(
+        model().generate(&request).unwrap_err().to_string().starts_with("z: expected numbers from -6 to 6")
+    );
 }

@@ -72,6 +72,8 @@ fn tapes_read_what_a_planar_cut_reads() {
         ("neck_circumference", 0.006, 0.0095),
         ("arm_circumference_left", 0.004, 0.006),
         ("forearm_circumference_right", 0.004, 0.004),
+        ("thigh_circumference_left", 0.004, 0.006),
+        ("thigh_circumference_right", 0.004, 0.006),
         ("calf_circumference_left", 0.004, 0.005),
     ];
     for (name, bias, spread) in limits {
@@ -86,7 +88,9 @@ fn tapes_read_what_a_planar_cut_reads() {
                 let centre = places.iter().sum::<DVec3>() / places.len() as f64;
                 let reach = 1.45 * places.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
                 let quads = &body.character().subdivision().refined().quads;
-                let plane = cut(body.vertices(), quads, centre, definition.normal, reach);
+                let mut plane = cut(body.vertices(), quads, centre, definition.normal, reach);
+                // The other thigh is within reach.
+                plane.retain(|p| !name.starts_with("thigh") || p.x * centre.x > 0.0);
                 // The tape itself, by the slow hull: the definition is what it says.
                 assert!((hull_perimeter(&flat(&places, definition.normal)) - tape).abs() < 1e-9);
                 tape - hull_perimeter(&flat(&plane, definition.normal))
@@ -105,6 +109,7 @@ fn the_chest_is_the_cut_at_the_nipples() {
     let model = Model::embedded().unwrap();
     let definition = model.definitions().iter().find(|d| d.1.name == "chest_circumference").unwrap().1;
     assert_eq!(definition.kind, Kind::Slice);
+    let mut compared = 0;
     for seed in 1..=12 {
         let sex = Some(Sex::ALL[seed as usize % 2]);
         let body = model.generate(&Request { sex, seed, fill: Fill::Sample, ..Request::default() }).unwrap();
@@ -122,5 +127,7 @@ fn the_chest_is_the_cut_at_the_nipples() {
         let plane = cut(body.vertices(), quads, level, DVec3::Y, 2.0);
         let whole = hull_perimeter(&flat(&plane, DVec3::Y));
         assert!((whole - definition.read(at)).abs() < 1e-6, "seed {seed}: {whole} {}", definition.read(at));
+        compared += 1;
     }
+    assert!(compared >= 8, "only {compared} of 12 chests were compared");
 }

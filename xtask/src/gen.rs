@@ -32,9 +32,11 @@ fn pictures() -> Outcome {
     }
     let person = scratch.join("person.glb");
     tools::run(Command::new(&anthronet).arg("generate").args(requests::README).arg("-o").arg(&person))?;
-    let pictures: [(&[&std::ffi::OsStr], &str); 2] = [
-        (&["preview".as_ref(), person.as_os_str()], "docs/preview.png"),
-        (&["contact-sheet".as_ref()], "docs/people.png"),
+    let person = person.to_string_lossy();
+    let pictures: [(&[&str], &str); 3] = [
+        (&["preview", &person], "docs/preview.png"),
+        (&["contact-sheet"], "docs/people.png"),
+        (&["contact-sheet", "--close", "--count", "10", "--columns", "1"], "docs/closeups.png"),
     ];
     for (arguments, picture) in pictures {
         let picture = root.join(picture);
@@ -43,6 +45,6 @@ fn pictures() -> Outcome {
             return Err(format!("{}: the command succeeded and wrote nothing", picture.display()));
         }
     }
-    println!("look at docs/preview.png and docs/people.png before you commit them");
+    println!("look at the pictures in docs before you commit them");
     Ok(())
 }

@@ -6,7 +6,7 @@ pub(crate) mod motion_table;
 use std::path::Path;
 
 use anthronet::Error;
-use anthronet::condition::{Fill, Request};
+use anthronet::condition::{Fill, Request, refusal_json};
 use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
@@ -51,15 +51,34 @@ impl Model {
         Ok(Self(anthronet::model::Model::from_environment()?))
     }
 
-    /// Makes a person. With `typed` a bad field is the command line's: bad usage instead of a failure.
-    pub(crate) fn generate(&self, request: &Request, typed: bool) -> Result<Person> {
-        let body = self.0.generate(request);
-        body.map(Person).map_err(|error| if typed { usage_if_request(error) } else { error.into() })
+    /// Makes the person that a request asks for. A bad field is bad usage where `from` says that it was typed, else a
+    /// failure that names the request's file.
+    pub(crate) fn generate(&self, request: &Request, from: &RequestArguments) -> Result<Person> {
+        self.0.generate(request).map(Person).map_err(|error| blame(error, from))
     }
 
-    /// The person at `t`, 0 to 1, between two requests.
-    pub(crate) fn interpolate(&self, first: &Request, second: &Request, t: f64) -> Result<Person> {
-        Ok(Person(self.0.interpolate(first, second, t)?))
+    /// The person at `t`, 0 to 1, between two requests; the second comes from a file.
+    pub(crate) fn interpolate(
+        &self,
+        first: (&Request, &RequestArguments),
+        second: (&Request, &Path),
+        t: f64,
+    ) -> Result<Person> {
+        self.0.interpolate(first.0, second.0, t).map(Person).map_err(|error| {
+            // Whose fault it is shows when the first is made alone.
+            match self.0.solve(first.0) {
+                Ok(_) => Failure::in_file(second.1, &error),
+                Err(own) => blame(own, first.1),
+            }
+        })
+    }
+
+    /// The JSON report of a request that is refused because nobody can have its measures; `None` for any other.
+    pub(crate) fn refusal(&self, request: &Request) -> Option<String> {
+        match self.0.solve(request) {
+            Err(Error::Infeasible(why)) => Some(refusal_json(request, &why)),
+            _ => None,
+        }
     }
 
     /// Measures, joints, versions and scores, as documented for `info --json`.
@@ -89,6 +108,12 @@ impl Person {
     /// The joints at rest.
     pub(crate) fn rest_pose(&self) -> Result<RestPose> {
         Ok(RestPose::of_joints(self.0.joints())?)
+    }
+
+    /// Where a joint of the bind pose is, metres.
+    pub(crate) fn joint(&self, name: &str) -> Option<Vec3> {
+        let joint = self.0.skeleton().find(name).and_then(|j| self.0.joints().get(j));
+        joint.map(|joint| joint.model_from_joint.translation.into())
     }
 
     /// The person as files take it.
@@ -180,8 +205,7 @@ pub(crate) fn check_choice(choice: &FileChoice<'_>) -> Result<()> {
 /// The request that the options describe: the file's, then what the command line says.
 pub(crate) fn request(arguments: &RequestArguments) -> Result<Request> {
     let mut request = match &arguments.request {
-        Some(path) => request_from_json(&read_text(path)?)
-            .map_err(|failure| Failure::failed(format!("{}: {failure}", path.display())))?,
+        Some(path) => request_file(path)?,
         None => Request::default(),
     };
     if let Some(sex) = arguments.sex {
@@ -206,9 +230,23 @@ pub(crate) fn request(arguments: &RequestArguments) -> Result<Request> {
     Ok(request)
 }
 
-/// A request from its JSON.
-pub(crate) fn request_from_json(text: &str) -> Result<Request> {
-    Ok(Request::from_json(text)?)
+/// The request in a JSON file.
+pub(crate) fn request_file(path: &Path) -> Result<Request> {
+    Request::from_json(&read_text(path)?).map_err(|error| Failure::in_file(path, &error))
+}
+
+/// What is wrong with a request, and with which exit code: a field that was typed is bad usage, the file's fields and
+/// what nobody can have are failures.
+fn blame(error: Error, from: &RequestArguments) -> Failure {
+    let typed = match &error {
+        Error::Request { field, .. } => from.request.is_none() || from.typed(field),
+        _ => false,
+    };
+    match (&error, &from.request) {
+        _ if typed => Failure::usage(error.to_string()),
+        (Error::Request { .. } | Error::Infeasible(_), Some(file)) => Failure::in_file(file, &error),
+        _ => error.into(),
+    }
 }
 
 /// A wrong field is bad usage where the field was typed on the command line.

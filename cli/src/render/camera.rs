@@ -20,13 +20,16 @@ pub(crate) enum View {
     FaceThreeQuarter,
     /// The head from the person's left.
     Profile,
+    /// From above, the person's left to the right.
+    #[value(skip)]
+    Above,
 }
 
 impl View {
     /// Angle about +Y that turns the figure into this view, in radians.
     pub(crate) fn yaw(self) -> f32 {
         match self {
-            Self::Front | Self::Face => 0.0,
+            Self::Front | Self::Face | Self::Above => 0.0,
             Self::Side | Self::Profile => -std::f32::consts::FRAC_PI_2,
             Self::Back => std::f32::consts::PI,
             Self::ThreeQuarter | Self::FaceThreeQuarter => -0.611,
@@ -40,13 +43,16 @@ impl View {
 
     /// `view_from_model`: turns model space into the view's space, whose +Z points at the camera.
     pub(crate) fn view_from_model(self) -> Mat3 {
+        if self == Self::Above {
+            return Mat3::from_cols(Vec3::X, Vec3::Z, Vec3::NEG_Y);
+        }
         let (sin, cos) = (libm::sinf(self.yaw()), libm::cosf(self.yaw()));
         Mat3::from_cols(Vec3::new(cos, 0.0, -sin), Vec3::Y, Vec3::new(sin, 0.0, cos))
     }
 }
 
 /// Distance from the camera to the plane z = 0, in metres.
-const DISTANCE: f32 = 7.0;
+pub(super) const DISTANCE: f32 = 7.0;
 
 /// A level camera in view space at (x, height, 7 m) that looks along -Z.
 #[derive(Clone, Copy, Debug)]
@@ -100,6 +106,9 @@ mod tests {
         assert!((side * Vec3::Z + Vec3::X).length() < 1e-6);
         let back = View::Back.view_from_model();
         assert!((back * Vec3::Z + Vec3::Z).length() < 1e-6);
+        // From above the head is nearest, the left hand on the right, the toes below.
+        let above = View::Above.view_from_model();
+        assert_eq!([Vec3::Y, Vec3::X, Vec3::Z].map(|v| above * v), [Vec3::Z, Vec3::X, Vec3::NEG_Y]);
     }
 
     #[test]

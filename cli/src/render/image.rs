@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::palette::indexed;
 use crate::failure::{Failure, Result};
 
 /// Rows from the top, three bytes a pixel, sRGB.
@@ -38,19 +39,34 @@ impl Image {
 
     /// The bytes of a PNG file.
     pub(crate) fn to_png(&self) -> Result<Vec<u8>> {
+        self.encode(png::ColorType::Rgb, None, &self.pixels)
+    }
+
+    /// The bytes of a PNG file of 256 colours: much smaller, for large pictures of little consequence.
+    pub(crate) fn to_small_png(&self) -> Result<Vec<u8>> {
+        let (palette, indices) = indexed(&self.pixels);
+        self.encode(png::ColorType::Indexed, Some(palette.concat()), &indices)
+    }
+
+    fn encode(&self, colour: png::ColorType, palette: Option<Vec<u8>>, data: &[u8]) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let (width, height) = (u32::try_from(self.width), u32::try_from(self.height));
         let (Ok(width), Ok(height)) = (width, height) else {
             return Err(Failure::failed("the picture is too large for PNG"));
         };
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
-        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_color(colour);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::High);
+        if let Some(palette) = palette {
+            // Differences of places in a palette mean nothing.
+            encoder.set_filter(png::Filter::NoFilter);
+            encoder.set_palette(palette);
+        }
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let failed = |e: png::EncodingError| Failure::failed(format!("cannot encode the PNG: {e}"));
         let mut writer = encoder.write_header().map_err(failed)?;
-        writer.write_image_data(&self.pixels).map_err(failed)?;
+        writer.write_image_data(data).map_err(failed)?;
         writer.finish().map_err(failed)?;
         Ok(bytes)
     }
@@ -96,5 +112,13 @@ mod tests {
         reader.next_frame(&mut out).unwrap();
         assert_eq!(out, image.pixels);
         assert_eq!(&out[15..], [200, 100, 50]);
+
+        let small = image.to_small_png().unwrap();
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(small));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().unwrap();
+        assert_eq!(reader.info().palette.as_ref().map(|p| p.len()), Some(6));
+        reader.next_frame(&mut out).unwrap();
+        assert_eq!(out, image.pixels);
     }
 }

@@ -14,6 +14,7 @@ mod font;
 mod image;
 mod light;
 mod material;
+mod palette;
 mod picture;
 mod raster;
 mod visibility;

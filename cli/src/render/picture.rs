@@ -5,7 +5,7 @@ use std::thread;
 
 use glam::{Vec2, Vec3};
 
-use super::camera::{Camera, View};
+use super::camera::{Camera, DISTANCE, View};
 use super::figure::{Figure, Material, Welded, bounds};
 use super::image::{Image, linear, srgb_from_linear};
 use super::light::Studio;
@@ -204,6 +204,8 @@ pub(crate) struct Tile {
     height: usize,
     view: View,
     camera: Camera,
+    /// Whether the shadow on the ground shows.
+    grounded: bool,
 }
 
 /// How a picture is made.
@@ -234,7 +236,17 @@ impl Tile {
         middle: f32,
     ) -> Self {
         let camera = body_camera(width, height, scale, foot, middle);
-        Self { width, height, view, camera }
+        Self { width, height, view, camera, grounded: true }
+    }
+
+    /// A square tile that shows `span` metres around a place of the figure.
+    pub(crate) fn close_up(size: usize, view: View, place: Vec3, span: f32) -> Self {
+        let seen = view.view_from_model() * place;
+        // What lies nearer to the lens is shown larger: the span is that at the place.
+        let scale = size as f32 / span * (DISTANCE - seen.z) / DISTANCE;
+        // The axis goes through the place itself, so that it stays in the middle.
+        let camera = Camera { axis: seen.truncate(), centre: Vec2::splat(size as f32 * 0.5), scale };
+        Self { width: size, height: size, view, camera, grounded: false }
     }
 }
 
@@ -289,7 +301,7 @@ pub(crate) fn draw_views(figure: &LitFigure, views: &[View], width: usize, heigh
         } else {
             body_camera(x1 - x0, height, scale, below * scale + slack, middle)
         };
-        let tile = Tile { width: x1 - x0, height, view: *view, camera };
+        let tile = Tile { width: x1 - x0, height, view: *view, camera, grounded: true };
         image.paste(&picture.draw(figure, &tile), x0, 0);
     }
     image
@@ -360,7 +372,7 @@ impl Picture {
         tile: &Tile,
         parts: &[Prepared],
         shading: &Shading<'_>,
-        ground: &[f32],
+        shadows: &[f32],
         first: usize,
         count: usize,
     ) -> Vec<u8> {
@@ -398,9 +410,10 @@ impl Picture {
                 let mut colour = sum * share;
                 let empty = 1.0 - covered * share;
                 if empty > 0.0 {
-                    let shadow = tile.camera.ground(Vec2::new(x as f32 + 0.5, row)).map_or(1.0, |g| {
+                    let ground = tile.camera.ground(Vec2::new(x as f32 + 0.5, row)).filter(|_| tile.grounded);
+                    let shadow = ground.map_or(1.0, |g| {
                         let p = model_from_view * Vec3::new(g.x, 0.0, g.y);
-                        let light = sample_ground(ground, Vec2::new(p.x, p.z) - figure.ground_centre);
+                        let light = sample_ground(shadows, Vec2::new(p.x, p.z) - figure.ground_centre);
                         1.0 - (1.0 - light) * away_from_sides(x, tile.width)
                     });
                     colour += behind * (shadow * empty);

@@ -53,16 +53,6 @@ pub(crate) fn run(command: &mut Command) -> Run {
     }
 }
 
-/// Whether the build carries a model: before the first training the file is empty. One that is there must work.
-pub(crate) fn model_is_built_in() -> bool {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../model/anthronet.safetensors");
-    let trained = fs::metadata(file).is_ok_and(|metadata| metadata.len() > 0);
-    if trained {
-        anthronet(&["info", "--json"], &[]).succeeds();
-    }
-    trained
-}
-
 /// A fresh folder.
 pub(crate) fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")

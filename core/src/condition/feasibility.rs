@@ -4,13 +4,12 @@
 //! error. In that metric the nearest point of the feasible ellipsoid lies on the line to the mean, so it has a closed
 //! form.
 
-use serde::Serialize;
-
 use super::chi_squared;
 use super::prior::{GivenMeasures, SexPrior};
 use super::request::{group_by, groups};
 use super::text::{list, metres};
 use crate::Result;
+use crate::error::{Conflict, ConflictMeasure, Infeasible};
 use crate::measure::{MEASURE_COUNT, MeasureId, Sex};
 
 /// Largest number of names (both sides of a measure count as one) that the search for a conflict goes through in
@@ -55,27 +54,6 @@ impl Limits {
     pub fn refuse(&self, count: usize) -> f64 {
         self.slack * chi_squared::upper_quantile(self.refuse_tail, count).sqrt()
     }
-}
-
-/// One measure of a [`Conflict`], metres.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ConflictMeasure {
-    /// Identifier, with its side.
-    pub name: &'static str,
-    /// What the request gives.
-    pub asked: f64,
-    /// What would do.
-    pub nearest: f64,
-}
-
-/// A smallest set of given measures that do not go together, or that do not fit beside earlier conflicts; a measure is
-/// in one conflict only.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Conflict {
-    /// The measures, in order.
-    pub measures: Vec<ConflictMeasure>,
-    /// A sentence for people.
-    pub message: String,
 }
 
 /// How plausible the given measures are.
@@ -156,10 +134,9 @@ impl Feasibility {
         ))
     }
 
-    /// The whole explanation of an infeasible request; empty for a feasible one.
-    pub fn message(&self) -> String {
-        let messages: Vec<_> = self.conflicts.iter().map(|c| c.message.as_str()).collect();
-        messages.join("; ")
+    /// Why the request is refused; without conflicts for a feasible one.
+    pub fn infeasible(&self) -> Infeasible {
+        Infeasible { conflicts: self.conflicts.clone() }
     }
 }
 

@@ -14,13 +14,14 @@ mod request;
 mod solve;
 mod text;
 
-pub use feasibility::{Conflict, ConflictMeasure, Feasibility, Limits};
+pub use crate::error::{Conflict, ConflictMeasure};
+pub use feasibility::{Feasibility, Limits};
 pub use prepare::Prepared;
 pub use prior::{
     Conditional, GivenMeasures, PROJECTION_ERROR, Prior, QUANTILE_COUNT, READING_ERROR, SexPrior,
 };
-pub use report::{Filled, MeasureReport, Report};
-pub use request::{Fill, MeasureRange, Request};
+pub use report::{Filled, MeasureReport, Report, refusal_json};
+pub use request::{Fill, LATENT_LIMIT, MeasureRange, Request};
 pub use solve::{MeasuredShape, SolveOptions, SolveOutcome, solve};
 
 #[cfg(test)]

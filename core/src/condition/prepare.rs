@@ -1,8 +1,9 @@
 //! A request made ready for the network: checked, its sex decided, its conflicts found, its open measures filled.
 
-use super::feasibility::{Conflict, Feasibility, Limits};
+use super::feasibility::{Feasibility, Limits};
 use super::prior::{Conditional, GivenMeasures, PROJECTION_ERROR, Prior, SexPrior};
 use super::request::{Fill, MeasureRange, Request};
+use crate::error::Conflict;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
 use crate::random::Random;
 use crate::{Error, Result};
@@ -59,7 +60,7 @@ impl Prepared {
         let feasibility = Feasibility::assess(prior, sex, &request.measures, limits)?;
         if !feasibility.is_feasible() {
             if !request.nearest {
-                return Err(Error::Infeasible(feasibility.message()));
+                return Err(Error::Infeasible(feasibility.infeasible()));
             }
             warnings
                 .push("the request is infeasible and was replaced by the nearest feasible one".to_owned());

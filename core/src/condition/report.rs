@@ -3,12 +3,13 @@
 use std::fmt;
 
 use serde::Serialize;
+use serde_json::json;
 
-use super::feasibility::Conflict;
 use super::prepare::Prepared;
 use super::prior::Prior;
 use super::request::{Fill, Request, group_by};
 use super::solve::SolveOutcome;
+use crate::error::{Conflict, Infeasible};
 use crate::measure::{MeasureId, Sex};
 
 /// Measures that a table for people shows even when they were not given.
@@ -26,6 +27,9 @@ pub enum Filled {
     /// Drawn from what is plausible beside the given measures.
     #[serde(rename = "prior sample")]
     PriorSample,
+    /// Between the bodies of two requests.
+    #[serde(rename = "interpolated")]
+    Interpolated,
 }
 
 /// One measure of a body; metres unless said.
@@ -43,7 +47,8 @@ pub struct MeasureReport {
     pub given: bool,
     /// Where the value came from.
     pub filled: Filled,
-    /// Lower end of the 90 % of people with the given measures; the value itself for a given measure.
+    /// Lower end of the 90 % of people with the given measures; the value itself for a measure that is given or
+    /// interpolated.
     pub low90: f64,
     /// Upper end of that interval.
     pub high90: f64,
@@ -58,7 +63,7 @@ pub struct Report {
     pub measures: Vec<MeasureReport>,
     /// Sentences about what is unusual.
     pub warnings: Vec<String>,
-    /// Which given measures did not go together; empty unless the request was replaced by the nearest feasible one.
+    /// Which given measures did not go together; empty unless a request was replaced by the nearest feasible one.
     pub conflicts: Vec<Conflict>,
     /// The request's seed.
     pub seed: u64,
@@ -76,8 +81,8 @@ pub struct Report {
     pub bmi: f64,
     /// Steps of the exact solve.
     pub iterations: usize,
-    /// Largest |obtained − asked| that the solve left over the given measures, metres. Where the request was replaced
-    /// by the nearest feasible one, the measures it aimed at were those.
+    /// Largest |obtained − asked| that the solve left over the measures it aimed at, metres: the given ones, the nearest
+    /// feasible ones where the request was replaced by those, or all between two requests.
     pub solve_residual: f64,
     /// Whether the solve reached its tolerance.
     pub converged: bool,
@@ -140,11 +145,61 @@ impl Report {
         }
     }
 
+    /// The same account of a body between two requests: nothing was given, everything was interpolated, and the
+    /// odd of both ends is told.
+    pub(crate) fn interpolated(mut self, ends: [&Prepared; 2]) -> Self {
+        for measure in &mut self.measures {
+            (measure.asked, measure.residual, measure.given) = (None, None, false);
+            measure.filled = Filled::Interpolated;
+            (measure.low90, measure.high90) = (measure.obtained, measure.obtained);
+        }
+        for end in ends {
+            add_new(&mut self.warnings, &end.warnings);
+            add_new(&mut self.conflicts, &end.conflicts);
+        }
+        self
+    }
+
     /// The JSON of `--report`, indented.
     pub fn to_json(&self) -> String {
         // Strings for keys and plain numbers: nothing here that serialising can refuse.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
+}
+
+fn add_new<T: Clone + PartialEq>(to: &mut Vec<T>, from: &[T]) {
+    for item in from {
+        if !to.contains(item) {
+            to.push(item.clone());
+        }
+    }
+}
+
+/// The JSON of `--report` for a request that is refused: the measures as they were asked, with `null` for all that only
+/// a body has, and the conflicts.
+pub fn refusal_json(request: &Request, why: &Infeasible) -> String {
+    let measures = MeasureId::all().zip(&request.measures).map(|(id, asked)| {
+        json!({
+            "name": id.name(),
+            "asked": asked,
+            "obtained": null,
+            "residual": null,
+            "given": asked.is_some(),
+            "filled": asked.map(|_| Filled::Given),
+            "low90": null,
+            "high90": null,
+            "percentile": null,
+        })
+    });
+    let report = json!({
+        "measures": measures.collect::<Vec<_>>(),
+        "warnings": [],
+        "conflicts": why.conflicts,
+        "seed": request.seed,
+        "sex": request.sex,
+        "error": why.to_string(),
+    });
+    format!("{report:#}")
 }
 
 impl fmt::Display for Report {
@@ -186,7 +241,11 @@ fn write_row(f: &mut fmt::Formatter<'_>, name: &str, row: &MeasureReport) -> fmt
     };
     let obtained = format!("{:.3} m", row.obtained);
     write!(f, "{name:<28} {asked:>9} {obtained:>9} {off:>9} {:>10.0}", row.percentile)?;
-    if row.given { writeln!(f) } else { writeln!(f, "  {:.3} to {:.3} m", row.low90, row.high90) }
+    if row.low90 == row.high90 {
+        writeln!(f)
+    } else {
+        writeln!(f, "  {:.3} to {:.3} m", row.low90, row.high90)
+    }
 }
 
 #[cfg(test)]

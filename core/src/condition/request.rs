@@ -16,6 +16,10 @@ use crate::{Error, Result};
 /// The stream of [`Random`] that a latent vector is drawn from.
 const LATENT_STREAM: u64 = 1;
 
+/// The largest number, up or down, that a latent vector given by hand may hold: entries are normally distributed with
+/// variance 1, and nobody is six deviations off.
+pub const LATENT_LIMIT: f64 = 6.0;
+
 /// How measures that a request leaves open are filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -47,7 +51,8 @@ pub struct Request {
     pub measures: GivenMeasures,
     /// 0 asks for the likeliest person; any other number for one of the people whom the measures allow.
     pub seed: u64,
-    /// The latent vector by hand instead of by seed, each entry normally distributed with variance 1.
+    /// The latent vector by hand instead of by seed, each entry normally distributed with variance 1 and at most
+    /// [`LATENT_LIMIT`] from zero.
     pub z: Option<Vec<f64>>,
     /// How open measures are filled.
     pub fill: Fill,
@@ -217,8 +222,8 @@ impl Request {
     }
 
     /// Refuses what no body can be made from: values that are not finite, not positive or outside their range, plain
-    /// contradictions such as a waist larger than the stature, and a latent vector that is not `latent_size` finite
-    /// numbers.
+    /// contradictions such as a waist larger than the stature, and a latent vector that is not `latent_size` numbers
+    /// within [`LATENT_LIMIT`].
     ///
     /// # Errors
     /// [`Error::Request`] for the first field that is wrong, with what was expected, what came, and a hint when the
@@ -235,8 +240,10 @@ impl Request {
             if z.len() != latent_size {
                 return Err(Error::request("z", format!("expected {latent_size} numbers, got {}", z.len())));
             }
-            if let Some((i, bad)) = z.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-                return Err(Error::request("z", format!("expected finite numbers, got {bad} at place {i}")));
+            let range = -LATENT_LIMIT..=LATENT_LIMIT;
+            if let Some((i, bad)) = z.iter().enumerate().find(|(_, v)| !range.contains(v)) {
+                let expected = format!("expected numbers from -{LATENT_LIMIT} to {LATENT_LIMIT}");
+                return Err(Error::request("z", format!("{expected}, got {bad} at place {i}")));
             }
         }
         Ok(())

@@ -56,18 +56,37 @@ pub fn write_scene_with(scene: &Scene, path: impl AsRef<Path>, options: &WriteOp
         return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
     };
     let files = gltf::to_gltf_with(scene, bin_name, &options.gltf)?;
-    // Both are on the disk before either gets its name; the document is named last, as it is what is opened.
     let bin = Pending::new(&bin_path, |file| file.write_all(&files.bin))?;
     let json = Pending::new(path, |file| file.write_all(&files.json))?;
-    let bin_is_new = !bin.target.exists();
+    commit_pair(bin, json)
+}
+
+/// Gives a document and its buffer their names, when both are on the disk. The document comes last, as it is what is
+/// opened; if it cannot have its name, the buffer that was there before is put back.
+///
+/// No file system renames two files at once: a program that is killed between the two renames leaves the new buffer
+/// beside the old document.
+fn commit_pair(bin: Pending, json: Pending) -> Result<()> {
     let bin_target = bin.target.clone();
+    let before = bin_target.exists().then(|| keep(&bin)).transpose()?;
     bin.commit()?;
     json.commit().inspect_err(|_| {
-        if bin_is_new {
-            // The failure itself is what the caller must hear of.
-            let _ = fs::remove_file(&bin_target);
-        }
+        // The failure itself is what the caller must hear of.
+        let _ = match before {
+            Some(before) => before.persist(&bin_target).map_err(|e| e.error),
+            None => fs::remove_file(&bin_target),
+        };
     })
+}
+
+/// A second name for the file that is about to be replaced, removed when dropped; a copy where the file system has no
+/// second names.
+fn keep(pending: &Pending) -> Result<NamedTempFile<()>> {
+    let target = &pending.target;
+    let kept = temporary().make_in(folder_of(target), |place| {
+        fs::hard_link(target, place).or_else(|_| fs::copy(target, place).map(drop))
+    });
+    kept.map_err(|source| fault(&pending.path, "create", source))
 }
 
 /// The scene as the bytes of one file, in the format of an ending without its dot, in any case: `glb`, `vrm`, `usda`,
@@ -115,17 +134,12 @@ impl Pending {
     fn new(path: &Path, write: impl FnOnce(&mut fs::File) -> io::Result<()>) -> Result<Self> {
         let create = || {
             let target = target_of(path)?;
-            let folder = match target.parent() {
-                Some(parent) if parent != Path::new("") => parent,
-                _ => Path::new("."),
-            };
-            let mut builder = Builder::new();
-            builder.prefix(".anthronet-").suffix(".part");
+            let mut builder = temporary();
             // The default is private to the user; the finished file shall be like any other that the user makes.
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
             // Only the kind: the message would name the temporary file.
-            let file = builder.tempfile_in(folder).map_err(|e| io::Error::from(e.kind()))?;
+            let file = builder.tempfile_in(folder_of(&target)).map_err(|e| io::Error::from(e.kind()))?;
             Ok((file, target))
         };
         let (mut file, target) = create().map_err(|source| fault(path, "create", source))?;
@@ -139,6 +153,16 @@ impl Pending {
         let path = self.path;
         self.file.persist(&self.target).map(drop).map_err(|e| fault(&path, "write", e.error))
     }
+}
+
+fn temporary() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".anthronet-").suffix(".part");
+    builder
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."))
 }
 
 /// The regular file that a path names or will name. Renaming over a folder fails late and over a device destroys it.
@@ -248,6 +272,35 @@ mod tests {
         fs::create_dir(folder.path().join("c.gltf")).unwrap();
         write_scene(&scene, folder.path().join("c.gltf")).unwrap_err();
         assert_eq!(names(folder.path()), ["b.bin", "c.gltf", "my ärm.GLTF", "my ärm.bin"]);
+    }
+
+    #[test]
+    fn an_old_buffer_comes_back_when_its_document_cannot_be_replaced() {
+        for had_buffer in [true, false] {
+            let folder = tempfile::tempdir().unwrap();
+            let path = |name: &str| folder.path().join(name);
+            if had_buffer {
+                fs::write(path("a.bin"), b"old").unwrap();
+            }
+            let pending = |name: &str| Pending::new(&path(name), |file| file.write_all(b"new")).unwrap();
+            let (bin, json) = (pending("a.bin"), pending("a.gltf"));
+            // What nothing can be renamed over comes into the way at the worst moment.
+            fs::create_dir(path("a.gltf")).unwrap();
+            let message = commit_pair(bin, json).unwrap_err().to_string();
+            assert!(message.contains("a.gltf: cannot write"), "{message}");
+            if had_buffer {
+                assert_eq!(fs::read(path("a.bin")).unwrap(), b"old");
+            }
+            assert_eq!(
+                names(folder.path()),
+                if had_buffer { vec!["a.bin", "a.gltf"] } else { vec!["a.gltf"] }
+            );
+
+            fs::remove_dir(path("a.gltf")).unwrap();
+            commit_pair(pending("a.bin"), pending("a.gltf")).unwrap();
+            assert_eq!(fs::read(path("a.bin")).unwrap(), b"new");
+            assert_eq!(names(folder.path()), ["a.bin", "a.gltf"]);
+        }
     }
 
     #[cfg(unix)]

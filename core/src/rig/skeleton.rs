@@ -44,8 +44,9 @@ impl SkeletonShape {
         for side in ["l", "r"] {
             let Some(shoulder) = skeleton.find(&format!("upperarm_{side}")) else { continue };
             let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
+            let own = format!("_{side}");
             for (j, name) in skeleton.names().iter().enumerate() {
-                let of_arm = name.ends_with(side)
+                let of_arm = name.ends_with(&own)
                     && ["upperarm", "lowerarm", "hand"].iter().any(|part| name.starts_with(part));
                 if !of_arm {
                     continue;

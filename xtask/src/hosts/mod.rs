@@ -32,6 +32,7 @@ pub(crate) fn run() -> Outcome {
 
     let mut tally = Tally::default();
     println!("cross-boundary tests");
+    without_networks(&anthronet, &mut tally);
     same_bytes(&anthronet, &folder, &mut tally)?;
     let files = files(&anthronet, &folder, &mut tally);
     in_other_programs(&anthronet, &environment, &folder, &files, &mut tally)?;
@@ -77,6 +78,21 @@ fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u
         command.env("RAYON_NUM_THREADS", threads.to_string());
     }
     tools::output(&mut command).map(drop)
+}
+
+/// The command that users build has no networks and says how to get one that has. The workspace's tests build it with.
+fn without_networks(anthronet: &Path, tally: &mut Tally) {
+    for arguments in [&["evaluate"][..], &["train", "generator"], &["train", "scores"]] {
+        let text = arguments.join(" ");
+        let result = Command::new(anthronet).args(arguments).output();
+        let result = result.map_err(|e| e.to_string()).and_then(|output| {
+            let said = String::from_utf8_lossy(&output.stderr);
+            let expected = format!("this build has no networks: run `cargo anthronet-train {text}`");
+            let right = output.status.code() == Some(2) && said.contains(&expected);
+            right.then_some(()).ok_or_else(|| format!("{}: {said}", output.status))
+        });
+        tally.case(&format!("without networks: {text}"), result);
+    }
 }
 
 /// The same request gives the same bytes, whatever the number of threads, and the bytes of the golden.

@@ -27,7 +27,7 @@ fn ordinary_requests_pass_without_a_word() {
     ] {
         let found = assess(pairs);
         assert!(found.is_feasible() && found.warning().is_none(), "{found:?}");
-        assert_eq!(found.message(), "");
+        assert_eq!(found.infeasible().to_string(), "");
     }
 }
 
@@ -60,7 +60,7 @@ fn a_pair_that_quarrels_is_found_among_many() {
     assert_eq!(names(&found.conflicts[0]), ["waist_circumference", "hip_circumference"]);
     let [waist, hip] = found.conflicts[0].measures.as_slice() else { panic!() };
     assert!(waist.nearest > waist.asked && hip.nearest < hip.asked);
-    let message = found.message();
+    let message = found.infeasible().to_string();
     let start = "waist_circumference 0.55 m and hip_circumference 1.38 m do not go together for a female: nearest feasible are ";
     assert!(message.starts_with(start), "{message}");
     assert_eq!(found.nearest[3], Some(1.70));
@@ -71,7 +71,7 @@ fn sides_are_one_name_and_can_quarrel_with_each_other() {
     let found = assess(&[("height", 1.69), ("arm_length_left", 0.26), ("arm_length_right", 0.38)]);
     assert_eq!(names(&found.conflicts[0]), ["arm_length_left", "arm_length_right"]);
     let found = assess(&[("height", 1.69), ("arm_length", 0.58)]);
-    let message = found.message();
+    let message = found.infeasible().to_string();
     assert!(
         message.starts_with("arm_length 0.58 m is out of reach for a female: nearest feasible is 0."),
         "{message}"
@@ -111,7 +111,7 @@ fn a_request_wrong_all_over_gets_a_short_answer() {
     let found = Feasibility::assess(&p, Sex::Female, &given, &Limits::default()).unwrap();
     let last = &found.conflicts.last().unwrap().message;
     assert!(last.contains(" measures do not go together for a female, most of all "), "{last}");
-    assert!(found.message().len() < 1000, "{}", found.message());
+    assert!(found.infeasible().to_string().len() < 1000, "{}", found.infeasible().to_string());
 }
 
 #[test]
@@ -163,13 +163,41 @@ proptest! {
                 prop_assert_eq!(found.nearest[id.index()], given[id.index()]);
             }
         }
-        // The first conflict is one by itself.
+        // The first conflict is one by itself, and no longer when any one name is left out.
         if let Some(first) = found.conflicts.first() {
-            let mut alone = [None; MEASURE_COUNT];
-            for m in &first.measures {
-                alone[MeasureId::from_name(m.name).unwrap().index()] = Some(m.asked);
+            let values = |keep: &dyn Fn(&str) -> bool| {
+                let mut values = [None; MEASURE_COUNT];
+                for m in first.measures.iter().filter(|m| keep(stem(m.name))) {
+                    values[MeasureId::from_name(m.name).unwrap().index()] = Some(m.asked);
+                }
+                values
+            };
+            prop_assert!(!is_feasible(&p, &values(&|_| true), &limits));
+            let mut stems: Vec<_> = first.measures.iter().map(|m| stem(m.name)).collect();
+            stems.dedup();
+            for left_out in &stems {
+                prop_assert!(is_feasible(&p, &values(&|s| s != *left_out), &limits), "{left_out} {:?}", first);
             }
-            prop_assert!(!is_feasible(&p, &alone, &limits));
+            // Nor are there smaller ones: no name and no pair of names of the request, sides together.
+            let mut all: Vec<_> =
+                MeasureId::all().filter(|id| mask[id.index()]).map(|id| stem(id.name())).collect();
+            all.sort_unstable();
+            all.dedup();
+            let of = |names: &[&str]| {
+                std::array::from_fn(|i| {
+                    given[i].filter(|_| names.contains(&stem(MeasureId::from_index(i).unwrap().name())))
+                })
+            };
+            for (i, a) in all.iter().enumerate() {
+                prop_assert!(stems.len() == 1 || is_feasible(&p, &of(&[a]), &limits), "{a}");
+                for b in &all[..i] {
+                    prop_assert!(stems.len() <= 2 || is_feasible(&p, &of(&[a, b]), &limits), "{a} {b}");
+                }
+            }
         }
     }
+}
+
+fn stem(name: &str) -> &str {
+    name.trim_end_matches("_left").trim_end_matches("_right")
 }

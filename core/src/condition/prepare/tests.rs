@@ -59,7 +59,11 @@ fn the_infeasible_is_refused_or_replaced() {
         .with("hip_circumference", 1.38)
         .unwrap();
     let error = prepare(&request).unwrap_err();
-    assert!(matches!(&error, Error::Infeasible(m) if m.contains("do not go together")), "{error}");
+    let Error::Infeasible(infeasible) = &error else { panic!("{error}") };
+    assert!(error.to_string().contains("do not go together"), "{error}");
+    let [waist, hip] = infeasible.conflicts[0].measures.as_slice() else { panic!("{infeasible:?}") };
+    assert_eq!((waist.name, hip.name), ("waist_circumference", "hip_circumference"));
+    assert!(waist.nearest > waist.asked && hip.nearest < hip.asked);
     let prepared = prepare(&Request { nearest: true, ..request.clone() }).unwrap();
     assert_eq!(prepared.conflicts.len(), 1);
     assert!(prepared.warnings.iter().any(|w| w.contains("nearest feasible")));

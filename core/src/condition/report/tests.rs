@@ -96,3 +96,26 @@ fn a_replaced_request_says_so() {
         "{text}"
     );
 }
+
+#[test]
+fn a_refused_request_is_reported_with_its_conflicts() {
+    let request = Request { sex: Some(Sex::Female), seed: 3, ..Request::default() };
+    let request = request.with("waist_circumference", 0.55).unwrap().with("hip_circumference", 1.38).unwrap();
+    let error = Prepared::new(&request, &prior(), &ranges(), &Limits::default(), 2).unwrap_err();
+    let crate::Error::Infeasible(why) = &error else { panic!("{error}") };
+    let json: serde_json::Value = serde_json::from_str(&refusal_json(&request, why)).unwrap();
+    let measures = json["measures"].as_array().unwrap();
+    assert_eq!(measures.len(), MEASURE_COUNT);
+    assert_eq!((&measures[0]["asked"], &measures[0]["given"]), (&0.55.into(), &true.into()));
+    assert!(measures[0]["obtained"].is_null() && measures[1]["asked"].is_null());
+    let conflict = &json["conflicts"][0]["measures"];
+    assert_eq!(conflict[0]["name"], "waist_circumference");
+    assert!(conflict[0]["nearest"].as_f64().unwrap() > 0.55);
+    assert_eq!((&json["seed"], &json["sex"]), (&3.into(), &"female".into()));
+    assert_eq!(json["error"], error.to_string());
+    // A body's report has every one of its fields.
+    let whole = serde_json::to_value(report(&self::request())).unwrap();
+    for (key, _) in measures[0].as_object().unwrap() {
+        assert!(!whole["measures"][0][key].is_null() || key == "asked" || key == "residual", "{key}");
+    }
+}

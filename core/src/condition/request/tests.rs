@@ -107,6 +107,10 @@ fn latent_vectors_are_checked_and_seeded() {
     let z = |z: Vec<f64>| Request { z: Some(z), ..Request::default() };
     assert!(message(&z(vec![0.0; 9])).contains("z: expected 10 numbers, got 9"));
     assert!(message(&z([vec![0.0; 9], vec![f64::NAN]].concat())).contains("got NaN at place 9"));
+    for bad in [1e300, 40.0, -6.1, f64::INFINITY] {
+        let expected = format!("z: expected numbers from -6 to 6, got {bad} at place 2");
+        assert_eq!(message(&z(vec![0.0, -6.0, bad, 6.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])), expected);
+    }
     assert_eq!(z(vec![1.0; 10]).latent(10), vec![1.0; 10]);
     assert_eq!(Request::default().latent(3), vec![0.0; 3]);
     let seeded = |seed| Request { seed, ..Request::default() }.latent(10);
