@@ -72,7 +72,7 @@ pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tall
     same_bytes(&bench, tally)?;
     leaks(&bench, tally);
     if let Some(program) = bench.build(tally, "speed", "gcc", &[&C99[..], &["-O2"]].concat(), &["speed.c"]) {
-        tools::run(&mut Command::new(program))?;
+        tally.script("speed of the C ABI", &mut Command::new(program));
     }
     Ok(())
 }
@@ -142,16 +142,19 @@ impl Bench {
     }
 }
 
-/// What every function returns: C99 and C++17, both libraries, both compilers, and once with the sanitizers.
+/// What every function returns: C99 and C++17, both libraries, both compilers, the sanitizers, and valgrind.
 fn values(bench: &Bench, tally: &mut Tally) {
     let clang = tools::output(Command::new("clang").arg("--version")).is_ok();
-    let sanitized = [&C99[..], &SANITIZERS].concat();
+    let sanitized = |standard: &[&'static str]| [standard, &SANITIZERS].concat();
     let mut programs = vec![
-        bench.build(tally, "values in C99", "gcc", &C99, &VALUES),
-        bench.build(tally, "values in C++17", "g++", &CPP17, &VALUES),
+        bench.build(tally, "values in C99 under sanitizers", "gcc", &sanitized(&C99), &VALUES),
+        bench.build(tally, "values in C++17 under sanitizers", "g++", &sanitized(&CPP17), &VALUES),
         bench.build_static(tally, "values, linked statically", &C99, &VALUES),
-        bench.build(tally, "values under sanitizers", "gcc", &sanitized, &VALUES),
     ];
+    if let Some(program) = bench.build(tally, "values in C99", "gcc", &[&C99[..], &["-g"]].concat(), &VALUES)
+    {
+        tally.script("values in C99 under valgrind", bench.tests(&program, &VALGRIND).arg("few"));
+    }
     if clang {
         programs.push(bench.build(tally, "values in clang's C99", "clang", &C99, &VALUES));
         programs.push(bench.build(tally, "values in clang's C++17", "clang++", &CPP17, &VALUES));
@@ -207,6 +210,9 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
     let mut test = cargo("test");
     test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", library);
     tally.case("same bytes: 200 requests through the crate and through the library", tools::run(&mut test));
+    let runner = VALGRIND.map(|word| format!("{word:?}")).join(",");
+    test.args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")]).env("ANTHRONET_REQUESTS", "4");
+    tally.case("valgrind: a program in Rust that opens the library, 4 requests", tools::run(&mut test));
     let list = tools::target().join("tmp/same_bytes");
     let expected = tools::read(&list.join("sha256.txt"))?;
     for (name, compiler, flags, source) in [

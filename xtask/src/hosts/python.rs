@@ -26,6 +26,10 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     };
     tally.script("the Python wheel", environment.python_script("python_wheel.py")?.arg(&wheel));
     let folder = folder.join("python");
+    tally.script(
+        "type hints of the Python package",
+        environment.python_script("python_types.py")?.arg(&folder),
+    );
     let header = tools::root().join(bindings::HEADER);
     for version in environment::PYTHONS {
         let clean = match environment::python_with(version, &wheel)? {
@@ -56,7 +60,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             case("files", "python_files.py", &[anthronet, &folder]);
             // The consumers in C, which come first, have left the list.
             case("same bytes", "python_same_bytes.py", &[&tools::target().join("tmp/same_bytes")]);
-            let _ = tools::run(&mut script("python_speed.py", &[]));
+            case("speed", "python_speed.py", &[]);
         }
     }
     let mut measures = environment.python_script("python_measures.py")?;
