@@ -1018,14 +1018,14 @@ anthronet_status anthronet_clip_blend_masked(const struct anthronet_clip *first,
                                              struct anthronet_error *error);
 
 // Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `joint_count` joints,
+// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
 // each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
 // `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
 anthronet_status anthronet_clip_additive(const struct anthronet_clip *base,
                                          const struct anthronet_clip *layer,
                                          float weight,
                                          const struct anthronet_transform *reference,
-                                         uint32_t joint_count,
+                                         uint32_t count,
                                          uint32_t in_space,
                                          const float *mask,
                                          uint32_t mask_count,

@@ -274,7 +274,7 @@ pub unsafe extern "C" fn anthronet_clip_blend_masked(
 }
 
 /// Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-/// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `joint_count` joints,
+/// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
 /// each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
 /// `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
 #[unsafe(no_mangle)]
@@ -283,7 +283,7 @@ pub unsafe extern "C" fn anthronet_clip_additive(
     layer: *const anthronet_clip,
     weight: f32,
     reference: *const anthronet_transform,
-    joint_count: u32,
+    count: u32,
     in_space: u32,
     mask: *const f32,
     mask_count: u32,
@@ -294,12 +294,12 @@ pub unsafe extern "C" fn anthronet_clip_additive(
         finite("weight", weight.into())?;
         let space = space(in_space)?;
         let (base, layer) = (&read(base, "base")?.0, &read(layer, "layer")?.0);
-        let reference = match reference.is_null() && joint_count == 0 {
+        let reference = match reference.is_null() && count == 0 {
             true => layer.pose(0),
             false => {
                 let rest = base.rest();
-                exactly("joint_count", rest.len(), joint_count.into())?;
-                let joints = slice(reference, joint_count.into(), "reference")?;
+                exactly("count", rest.len(), count.into())?;
+                let joints = slice(reference, count.into(), "reference")?;
                 Pose { locals: crate::motion::locals(joints, rest.parents(), space) }
             }
         };

@@ -374,7 +374,7 @@ FUNCTIONS = {
     "anthronet_clip_looped": (c_int32, [c_void_p, c_double, c_void_p, POINTER(Error)]),
     "anthronet_clip_blend": (c_int32, [c_void_p, c_void_p, c_float, c_void_p, POINTER(Error)]),
     "anthronet_clip_blend_masked": (c_int32, [c_void_p, c_void_p, c_float, c_void_p, c_uint32, c_void_p, POINTER(Error)]),
-    "anthronet_clip_additive": (c_int32, [c_void_p, c_void_p, c_float, POINTER(Transform), c_uint32, c_uint32, c_void_p, c_uint32, c_void_p, POINTER(Error)]),
+    "anthronet_clip_additive": (c_int32, [c_void_p, c_void_p, c_float, c_void_p, c_uint32, c_uint32, c_void_p, c_uint32, c_void_p, POINTER(Error)]),
     "anthronet_clip_joint_mask": (c_int32, [c_void_p, c_char_p, c_uint64, c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_clip_crossfade": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, POINTER(Error)]),
     "anthronet_motion_open_path": (c_int32, [c_char_p, c_uint64, POINTER(MotionOptions), c_void_p, POINTER(Error)]),

@@ -757,12 +757,12 @@ namespace Anthronet.Native
 
         /// <summary>
         ///  Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-        ///  `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `joint_count` joints,
+        ///  `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
         ///  each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
         ///  `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_additive", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_clip_additive(anthronet_clip* @base, anthronet_clip* layer, float weight, anthronet_transform* reference, uint joint_count, uint in_space, float* mask, uint mask_count, anthronet_clip** out_clip, anthronet_error* error);
+        internal static extern int anthronet_clip_additive(anthronet_clip* @base, anthronet_clip* layer, float weight, anthronet_transform* reference, uint count, uint in_space, float* mask, uint mask_count, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
         ///  The mask of a part of the body: fills `count` entries, one per joint of the clip, with 1 for the joint of that name
