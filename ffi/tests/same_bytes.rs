@@ -113,7 +113,7 @@ const NOBODY: ErrorOut = std::ptr::null_mut();
 
 /// The shared library with its model.
 struct Shared {
-    library: Library,
+    library: &'static Library,
     model: Handle,
 }
 
