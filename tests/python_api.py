@@ -386,6 +386,18 @@ def test_clip():
     assert np.abs(walk.in_place().bake("model")[:, 1, 6]).max() < np.abs(walk.bake("model")[:, 1, 6]).max()
     joined, mixed, looped = walk.crossfade(idle, 0.3), walk.blend(idle, 0.5), idle.looped(0.2)
     assert joined.duration > walk.duration and mixed.frame_count > 0
+    mask = walk.joint_mask("spine_01", "thigh_l")
+    assert mask.shape == (walk.joint_count,) and set(mask) == {0, 1} and walk.joint_mask().max() == 0
+    names = list(WOMAN.joint_names())
+    assert mask[names.index("head")] == mask[names.index("foot_l")] == 1 and mask[names.index("foot_r")] == 0
+    half, layered = walk.blend(idle, 1, mask).bake(), idle.additive(walk, mask=mask).bake()
+    assert np.allclose(half[3, mask == 0], walk.bake()[3, mask == 0], atol=1e-6)
+    assert np.allclose(half[3, mask == 1], idle.bake()[3, mask == 1], atol=1e-6)
+    assert np.allclose(layered[:, mask == 0], idle.bake()[:, mask == 0], atol=1e-6)
+    assert np.abs(layered[:, mask == 1] - idle.bake()[:, mask == 1]).max() > 0.01
+    for space in ("gltf", "unity"):
+        same = idle.additive(walk, 1, walk.sample(0.3, space=space), space=space)
+        assert np.allclose(same.sample(0.3), idle.sample(0.3), atol=1e-5), "what differs from itself by nothing"
     pose = looped.bake()
     assert np.allclose(pose[0, :, 5], pose[-1, :, 5], atol=1e-6), "heights meet"
     assert np.abs((pose[0, :, :4] * pose[-1, :, :4]).sum(1)).min() > 1 - 1e-6, "and rotations do"
@@ -405,6 +417,12 @@ def test_clip():
         assert isinstance(raises_any(bad), anthronet.Error), bad
     raises(ValueError, lambda: anthronet.Clip.from_poses(WOMAN, "x", 30, frames[:, :-1]), "frames", "shape")
     raises(TypeError, lambda: walk.blend(3, 0.5), "other", "int")
+    raises(ValueError, lambda: walk.blend(idle, 0.5, mask[1:]), "mask", "shape")
+    raises(anthronet.InvalidError, lambda: walk.blend(idle, 0.5, mask * 2), "joint mask", "0 to 1")
+    raises(anthronet.InvalidError, lambda: walk.joint_mask("tail"), "tail")
+    raises(TypeError, lambda: walk.joint_mask(3), "joints", "int")
+    raises(TypeError, lambda: walk.additive(3), "layer", "int")
+    raises(ValueError, lambda: walk.additive(idle, reference=walk.bake()), "reference", "shape")
     raises(TypeError, lambda: anthronet.builtin_clip("walk", None), "body", "NoneType")
 
 
@@ -490,7 +508,8 @@ def test_skinning():
     assert anthronet.skin([]) == []
     count, job = skinner.vertex_count, anthronet.SkinJob
     shared = np.zeros((count, 3), np.float32)
-    raises(ValueError, lambda: anthronet.skin([job(skinner, pose, shared), job(skinner, pose, shared[::-1][::-1])]), "overlap")
+    raises(anthronet.ArgumentError, lambda: anthronet.skin([job(skinner, pose, shared), job(skinner, pose, shared[::-1][::-1])]), "overlap")
+    raises(anthronet.ArgumentError, lambda: skinner.skin(pose, shared, offsets=shared), "overlap", "offsets")
     raises(ValueError, lambda: skinner.skin(pose, shared[:-1]), "positions", "shape")
     raises(TypeError, lambda: skinner.skin(pose, shared.astype(np.float64)), "positions", "float32")
     raises(TypeError, lambda: skinner.skin(pose, shared.tolist()), "positions", "ndarray")
@@ -501,7 +520,7 @@ def test_skinning():
     raises(ValueError, lambda: skinner.skin(pose, method="magic"), "method", "magic")
     raises(ValueError, lambda: skinner.skin(pose, offsets=offsets[1:]), "offsets")
     raises(ValueError, lambda: skinner.skin(pose[:, :6]), "joints", "(n, 7)")
-    raises(anthronet.InvalidError, lambda: skinner.skin(pose[1:]), "joints")
+    raises(anthronet.ArgumentError, lambda: skinner.skin(pose[1:]), "joint")
     before = shared.copy()
     assert isinstance(raises_any(lambda: skinner.skin(pose * np.nan, shared)), anthronet.Error)
     assert isinstance(raises_any(lambda: anthronet.skin([job(skinner, pose, shared), job(skinner, pose[1:])])), anthronet.Error)

@@ -6,10 +6,12 @@
 import ctypes
 import gc
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time
+import warnings
 import weakref
 from pathlib import Path
 
@@ -335,6 +337,58 @@ def test_exit():
                   "view = anthronet.generate().mesh()[0].positions\n"
                   "print(job.progress.state)\n")
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "running", ""), done
+
+
+def in_a_fork(work):
+    """What a forked child makes of `work`: its exit status, 0 where `work` returns True; killed after a minute."""
+    child = os.fork()
+    if child == 0:
+        status = 1
+        try:
+            status = 0 if work() else 2
+        finally:
+            os._exit(status)
+    for _ in range(1200):
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(0.05)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return "hangs"
+
+
+def test_fork():
+    """a forked child, as of multiprocessing, has what its parent has and waits for none of its threads"""
+    if not hasattr(os, "fork"):
+        return "there is no fork here"
+    warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of forks beside threads: this test is about them.
+    skinner, walk = WOMAN.mesh().skinner(), anthronet.builtin_clip("walk", WOMAN)
+    pose = walk.sample(0.4, relative="model")
+    expected = skinner.skin(pose)[0]  # On the threads of the pool, which the child has not.
+    body = MODEL.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
+
+    def work():
+        made = MODEL.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
+        return np.array_equal(skinner.skin(pose)[0], expected) and made == body
+
+    assert in_a_fork(work) == 0
+    job = MODEL.start([anthronet.Request(seed=i) for i in range(100)])
+
+    def of_the_parent():
+        try:
+            job.take(99)
+        except anthronet.CancelledError:
+            state = job.wait(60).state
+            job.close()
+            gc.collect()
+            with MODEL.start([anthronet.Request("male")]) as own:
+                return state == "cancelled" and [b.to_bytes("obj", lod=3) for b in own.results()] == [body]
+
+    assert in_a_fork(of_the_parent) == 0
+    job.cancel()
+    job.close()
+    assert np.array_equal(skinner.skin(pose)[0], expected), "the parent goes on"
 
 
 def test_default_model_file():

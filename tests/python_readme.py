@@ -15,20 +15,25 @@ from glb import Cases
 README = Path(__file__).resolve().parent.parent / "python" / "README.md"
 
 
+def examples():
+    """The examples in their order: the line that each begins at, and its code."""
+    text = README.read_text("utf-8")
+    found = re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return [(text[: example.start()].count("\n") + 2, example[1]) for example in found]
+
+
 def main(folder):
     cases, names = Cases(), {"__name__": "readme"}
-    text = README.read_text("utf-8")
     folder = Path(folder) / "readme"
     folder.mkdir(parents=True, exist_ok=True)
     os.chdir(folder)
-    examples = list(re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL))
-    cases.case(f"the README has {len(examples)} examples", len(examples) >= 10)
-    for example in examples:
-        line = text[: example.start()].count("\n") + 2
-        name = f"example at line {line}, `{example[1].strip().splitlines()[0]}`"
+    found = examples()
+    cases.case(f"the README has {len(found)} examples", len(found) >= 10)
+    for line, code in found:
+        name = f"example at line {line}, `{code.strip().splitlines()[0]}`"
         try:
             with contextlib.redirect_stdout(io.StringIO()):
-                exec(compile("\n" * (line - 1) + example[1], str(README), "exec"), names)  # noqa: S102
+                exec(compile("\n" * (line - 1) + code, str(README), "exec"), names)  # noqa: S102
         except Exception as error:
             cases.case(name, False, f"{type(error).__name__}: {error}")
         else:

@@ -7,6 +7,7 @@ import base64
 import csv
 import hashlib
 import io
+import os
 import re
 import subprocess
 import sys
@@ -47,6 +48,20 @@ def main(wheel):
     cases.case(f"{len(licences)} licences are inside", licences and licences <= set(content), licences)
     size = len(content[libraries[0]]) / 1e6
     cases.case(f"the library has {size:.1f} MB, at most 40", size < 40)
+
+    sys.path.insert(0, str(ROOT / "python"))
+    import build_backend
+
+    # The wheel at hand was made without: cargo built the library.
+    os.environ["ANTHRONET_LIBRARY"] = str(wheel)
+    cases.case("ANTHRONET_LIBRARY names the file that goes into a wheel", build_backend.library() == wheel)
+    os.environ["ANTHRONET_LIBRARY"] = "no such library"
+    try:
+        build_backend.library()
+        said = "nothing"
+    except SystemExit as error:
+        said = str(error)
+    cases.case("and is refused by name where there is none", "ANTHRONET_LIBRARY" in said and "no such library" in said, said)
 
     if not sys.platform.startswith("linux"):
         print("skipped auditwheel: it reads wheels for Linux alone")

@@ -256,8 +256,8 @@ pub(crate) mod ffi {
         root_motion: bool,
         /// Frames per second of the result; 0 keeps those of the motion.
         frames_per_second: f64,
-        /// Which joint of the source drives which of ours, as JSON: `{"upperarm_l": "LeftArm", "jaw": null}`; empty to
-        /// find all of them.
+        /// Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail":
+        /// null}`; those that it does not name are found. Empty to find all of them.
         mapping_json: String,
     }
 
@@ -307,7 +307,8 @@ pub(crate) mod ffi {
         /// Names of the built-in clips, such as `walk`.
         fn builtin_clips() -> Vec<String>;
 
-        /// Poses the surfaces of all jobs, on all cores. Nothing is written unless all of them are in order.
+        /// Poses the surfaces of all jobs, on all cores. Nothing is written unless all of them are in order; buffers that
+        /// overlap are not.
         fn skin_many(jobs: &mut [SkinJob]) -> Result<()>;
 
         /// A trained model: makes bodies. May be used by many threads at once, and freed before its bodies.
@@ -505,6 +506,21 @@ pub(crate) mod ffi {
             normals: &mut [f32],
         ) -> Result<()>;
 
+        /// As `skin`, into one buffer as graphics cards have it: the position and normal of vertex v begin at
+        /// `position_offset` and `normal_offset`, bytes, from v x `stride`; other bytes stay as they are. `offsets` are
+        /// those of a `SkinJob`, or none.
+        #[allow(clippy::too_many_arguments)]
+        fn skin_interleaved(
+            self: &Skinner,
+            method: SkinMethod,
+            pose: &[Transform],
+            offsets: &[f32],
+            vertices: &mut [u8],
+            stride: usize,
+            position_offset: usize,
+            normal_offset: usize,
+        ) -> Result<()>;
+
         /// A motion of a body's joints, frame by frame. Immutable.
         type Clip;
 
@@ -554,6 +570,17 @@ pub(crate) mod ffi {
 
         /// This clip and another of the same body at once: `weight` 0 is this one, 1 the other.
         fn blend(self: &Clip, other: &Clip, weight: f32) -> Result<Box<Clip>>;
+
+        /// The mask of a part of the body, one number per joint: 1 for the joint of that name in the rig and all below
+        /// it, else 0. `spine_01` is the upper body.
+        fn joint_mask(self: &Clip, joint: &str) -> Result<Vec<f32>>;
+
+        /// As `blend`, with a share of each joint: 0 stays with this clip, 1 takes part fully.
+        fn blend_masked(self: &Clip, other: &Clip, weight: f32, mask: &[f32]) -> Result<Box<Clip>>;
+
+        /// This clip with all that `layer`, of the same body, differs from its own first frame by; `weight` 0 adds
+        /// nothing, 1 all. An empty mask is every joint. A layer shorter than this clip starts anew.
+        fn additive(self: &Clip, layer: &Clip, weight: f32, mask: &[f32]) -> Result<Box<Clip>>;
 
         /// This clip and then another of the same body, overlapping by `seconds`.
         fn crossfade(self: &Clip, next: &Clip, seconds: f64) -> Result<Box<Clip>>;

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use anthronet::Error;
-use anthronet::clip::feet::FeetOptions;
-use anthronet::clip::{self, BUILTIN, OntoOptions, ReadOptions, RootMotion, Sampler};
+use anthronet::clip::{self, BUILTIN, JointMask, OntoOptions, OntoSwitches, ReadOptions, Sampler};
 use anthronet::pose::{Local, Pose};
-use anthronet::space::{Space, Unit};
+use anthronet::space::Space;
 
 use crate::Result;
 use crate::body::Body;
@@ -115,6 +114,27 @@ impl Clip {
         Ok(clip::blend(&self.clip, &other.clip, weight, None)?.into())
     }
 
+    pub(crate) fn joint_mask(&self, joint: &str) -> Result<Vec<f32>> {
+        let mask = JointMask::below(self.clip.rest(), &[joint])?;
+        Ok((0..self.joint_count()).map(|joint| mask.weight(joint)).collect())
+    }
+
+    pub(crate) fn blend_masked(&self, other: &Self, weight: f32, mask: &[f32]) -> Result<Box<Self>> {
+        finite("weight", weight.into())?;
+        let mask = JointMask::of_weights(self.clip.rest(), mask)?;
+        Ok(clip::blend(&self.clip, &other.clip, weight, Some(&mask))?.into())
+    }
+
+    pub(crate) fn additive(&self, layer: &Self, weight: f32, mask: &[f32]) -> Result<Box<Self>> {
+        finite("weight", weight.into())?;
+        let mask = match mask {
+            [] => None,
+            weights => Some(JointMask::of_weights(self.clip.rest(), weights)?),
+        };
+        let reference = layer.clip.pose(0);
+        Ok(clip::additive(&self.clip, &layer.clip, &reference, weight, mask.as_ref())?.into())
+    }
+
     pub(crate) fn crossfade(&self, next: &Self, seconds: f64) -> Result<Box<Self>> {
         Ok(clip::crossfade(&self.clip, &next.clip, seconds)?.into())
     }
@@ -177,47 +197,29 @@ impl Motion {
         options: &ffi::RetargetOptions,
     ) -> Result<Box<Clip>> {
         let options = onto_options(options)?;
-        let one = clip::Motion {
-            clips: vec![at(&self.0.clips, clip, "clip")?.clone()],
-            report: self.0.report.clone(),
-        };
-        let (clips, report) = clip::onto(&one, &body.rest, &options)?;
+        let source = at(&self.0.clips, clip, "clip")?;
+        let (clip, report) = clip::onto_one(source, &body.rest, &options)?;
         let report = json("retarget report", &report)?;
-        let clip = clips.into_iter().next().map(|clip| Box::new(Clip { clip, report }));
-        clip.ok_or_else(|| Error::invalid("motion", "no clip was made"))
+        Ok(Box::new(Clip { clip, report }))
     }
 }
 
 fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
-    let unit = match asked.metres_per_unit {
-        0.0 => None,
-        metres => Some(Unit::of_metres(metres).ok_or_else(|| {
-            Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
-        })?),
-    };
-    Ok(ReadOptions { unit, up: asked.up.meaning()?, frames_per_second: rate(asked.frames_per_second) })
+    ReadOptions::of_numbers(asked.metres_per_unit, asked.up.meaning()?, asked.frames_per_second)
 }
 
 fn onto_options(asked: &ffi::RetargetOptions) -> Result<OntoOptions> {
-    let mut options = OntoOptions {
-        limits: !asked.no_limits,
-        feet: (!asked.no_feet).then(FeetOptions::default),
+    let switches = OntoSwitches {
+        fingers: asked.fingers.meaning()?,
+        no_limits: asked.no_limits,
+        no_feet: asked.no_feet,
         in_place: asked.in_place,
         looped: asked.looped,
-        frames_per_second: rate(asked.frames_per_second),
-        ..OntoOptions::default()
+        root_motion: asked.root_motion,
+        mapping_json: &asked.mapping_json,
+        frames_per_second: asked.frames_per_second,
     };
-    options.retarget.fingers = asked.fingers.meaning()?;
-    options.retarget.root = if asked.root_motion { RootMotion::Root } else { RootMotion::Pelvis };
-    if !asked.mapping_json.is_empty() {
-        options.mapping = clip::read_overrides(&asked.mapping_json, Path::new("mapping_json"))?;
-    }
-    Ok(options)
-}
-
-/// Frames per second; 0 for those that are there.
-fn rate(frames_per_second: f64) -> Option<f64> {
-    (frames_per_second != 0.0).then_some(frames_per_second)
+    switches.try_into()
 }
 
 fn json(what: &'static str, value: &impl serde::Serialize) -> Result<String> {

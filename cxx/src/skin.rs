@@ -2,7 +2,7 @@
 
 use anthronet::Error;
 use anthronet::pose::Local;
-use anthronet::skin::{SkinJob, StridedMut, SurfaceMut};
+use anthronet::skin::{BytesMut, SkinJob, StridedMut, SurfaceMut};
 use bytemuck::cast_slice_mut;
 use glam::{Quat, Vec3};
 
@@ -28,16 +28,53 @@ impl Skinner {
         positions: &mut [f32],
         normals: &mut [f32],
     ) -> Result<()> {
-        self.0.skin(method.meaning()?, &locals(pose), surface(positions, normals))
+        let job = Job { skinner: self, method, pose, offsets: &[] };
+        job.into_surface(surface(positions, normals))
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn skin_interleaved(
+        &self,
+        method: ffi::SkinMethod,
+        pose: &[ffi::Transform],
+        offsets: &[f32],
+        vertices: &mut [u8],
+        stride: usize,
+        position_offset: usize,
+        normal_offset: usize,
+    ) -> Result<()> {
+        let bytes = vertices.into();
+        let out = SurfaceMut::Interleaved { bytes, stride, position_offset, normal_offset };
+        Job { skinner: self, method, pose, offsets }.into_surface(out)
+    }
+}
+
+/// One surface to pose, wherever it goes.
+struct Job<'a> {
+    skinner: &'a Skinner,
+    method: ffi::SkinMethod,
+    pose: &'a [ffi::Transform],
+    offsets: &'a [f32],
+}
+
+impl Job<'_> {
+    fn into_surface(self, out: SurfaceMut<'_>) -> Result<()> {
+        let (pose, offsets) = (locals(self.pose), shifts(self.offsets)?);
+        anthronet::skin::skin_many(vec![SkinJob {
+            skinner: &self.skinner.0,
+            method: self.method.meaning()?,
+            model_from_joints: &pose,
+            offsets: (!offsets.is_empty()).then_some(offsets.as_slice()),
+            out,
+        }])
     }
 }
 
 pub(crate) fn skin_many(jobs: &mut [ffi::SkinJob<'_>]) -> Result<()> {
+    apart(jobs)?;
     let mut inputs = Vec::with_capacity(jobs.len());
     for job in jobs.iter() {
-        let offsets: Vec<Vec3> =
-            vectors(job.offsets, "offsets")?.iter().map(|offset| Vec3::from_array(*offset)).collect();
-        inputs.push((job.method.meaning()?, locals(job.pose), offsets));
+        inputs.push((job.method.meaning()?, locals(job.pose), shifts(job.offsets)?));
     }
     let work = jobs.iter_mut().zip(&inputs).map(|(job, (method, pose, offsets))| SkinJob {
         skinner: &job.skinner.0,
@@ -49,6 +86,30 @@ pub(crate) fn skin_many(jobs: &mut [ffi::SkinJob<'_>]) -> Result<()> {
     anthronet::skin::skin_many(work.collect())
 }
 
+/// Refuses buffers that overlap, which slices of C++ can.
+fn apart(jobs: &[ffi::SkinJob<'_>]) -> Result<()> {
+    let buffers = jobs.iter().enumerate().flat_map(|(i, job)| {
+        [("positions", &*job.positions), ("normals", &*job.normals)]
+            .map(|(what, buffer)| (buffer.as_ptr_range(), what, i))
+    });
+    let mut buffers: Vec<_> = buffers.filter(|(range, ..)| !range.is_empty()).collect();
+    buffers.sort_by_key(|(range, ..)| range.start);
+    for pair in buffers.windows(2) {
+        let [(one, what, i), (other, other_what, j)] = pair else { continue };
+        if other.start < one.end {
+            let message = format!(
+                "expected a buffer of its own, the {what} of job {i} overlap the {other_what} of {j}"
+            );
+            return Err(Error::invalid("skin job", message));
+        }
+    }
+    Ok(())
+}
+
+fn shifts(offsets: &[f32]) -> Result<Vec<Vec3>> {
+    Ok(vectors(offsets, "offsets")?.iter().map(|offset| Vec3::from_array(*offset)).collect())
+}
+
 /// Numbers in threes.
 pub(crate) fn vectors<'a>(numbers: &'a [f32], what: &'static str) -> Result<&'a [[f32; 3]]> {
     match numbers.as_chunks() {
@@ -58,8 +119,11 @@ pub(crate) fn vectors<'a>(numbers: &'a [f32], what: &'static str) -> Result<&'a 
 }
 
 fn surface<'a>(positions: &'a mut [f32], normals: &'a mut [f32]) -> SurfaceMut<'a> {
-    let packed =
-        |numbers| StridedMut { bytes: cast_slice_mut(numbers), offset: 0, stride: size_of::<[f32; 3]>() };
+    let packed = |numbers| StridedMut {
+        bytes: BytesMut::Init(cast_slice_mut(numbers)),
+        offset: 0,
+        stride: size_of::<[f32; 3]>(),
+    };
     SurfaceMut::Separate {
         positions: packed(positions),
         normals: if normals.is_empty() { None } else { Some(packed(normals)) },

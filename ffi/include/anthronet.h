@@ -32,7 +32,7 @@
 // Done.
 #define ANTHRONET_OK 0
 
-// A pointer that has to be given is NULL, or not aligned.
+// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
 #define ANTHRONET_ERROR_POINTER 101
 
 // A size, count, stride or `struct_size` is not what it must be.
@@ -546,7 +546,8 @@ typedef struct anthronet_skin_job {
     // Bytes from position to position; 0 for packed.
     uint64_t position_stride;
     // Where unit normals are written, three floats per vertex; NULL for nowhere. In the buffer of the positions, as
-    // vertex buffers are laid out, it points at the first normal, behind the first position by less than the stride.
+    // vertex buffers are laid out, it points at the first normal, less than the one stride of both from the first
+    // position.
     void *normals;
     // Bytes of that buffer.
     uint64_t normal_bytes;
@@ -1006,6 +1007,40 @@ anthronet_status anthronet_clip_blend(const struct anthronet_clip *first,
                                       struct anthronet_clip **out_clip,
                                       struct anthronet_error *error);
 
+// As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
+// part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+anthronet_status anthronet_clip_blend_masked(const struct anthronet_clip *first,
+                                             const struct anthronet_clip *second,
+                                             float weight,
+                                             const float *mask,
+                                             uint32_t count,
+                                             struct anthronet_clip **out_clip,
+                                             struct anthronet_error *error);
+
+// Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
+// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+// each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
+// `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
+anthronet_status anthronet_clip_additive(const struct anthronet_clip *base,
+                                         const struct anthronet_clip *layer,
+                                         float weight,
+                                         const struct anthronet_transform *reference,
+                                         uint32_t count,
+                                         uint32_t in_space,
+                                         const float *mask,
+                                         uint32_t mask_count,
+                                         struct anthronet_clip **out_clip,
+                                         struct anthronet_error *error);
+
+// The mask of a part of the body: fills `count` entries, one per joint of the clip, with 1 for the joint of that name
+// in the rig and all below it, else with 0. `spine_01` is the upper body.
+anthronet_status anthronet_clip_joint_mask(const struct anthronet_clip *clip,
+                                           const char *name,
+                                           uint64_t name_length,
+                                           float *out_mask,
+                                           uint32_t count,
+                                           struct anthronet_error *error);
+
 // Two clips of one body one after the other, overlapping by `seconds`.
 anthronet_status anthronet_clip_crossfade(const struct anthronet_clip *first,
                                           const struct anthronet_clip *second,
@@ -1078,9 +1113,11 @@ anthronet_status anthronet_skinner_vertex_count(const struct anthronet_skinner *
                                                 uint32_t *out_count,
                                                 struct anthronet_error *error);
 
-// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. Buffers of
-// different jobs must not overlap.
-anthronet_status anthronet_skin(const struct anthronet_skin_job *jobs, uint32_t count, struct anthronet_error *error);
+// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
+// to its last, what a job writes must not overlap what another writes nor what any of them reads.
+anthronet_status anthronet_skin(const struct anthronet_skin_job *jobs,
+                                uint32_t count,
+                                struct anthronet_error *error);
 
 // Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
 // .obj. The file appears whole or not at all. `options` may be NULL.

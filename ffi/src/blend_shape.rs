@@ -10,7 +10,7 @@ use crate::mesh::{
     anthronet_view,
 };
 use crate::options::choice;
-use crate::pointer::{Out, anthronet_text, at, buffer, change, read, text, write_rows};
+use crate::pointer::{Out, anthronet_text, at, change, read, text, write_rows};
 use crate::status::{ANTHRONET_ERROR_INVALID, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
@@ -100,8 +100,7 @@ pub unsafe extern "C" fn anthronet_mesh_read_blend_shape(
     guard(error, || {
         let parts = at(&read(mesh, "mesh")?.blend_shapes, shape, "shape")?;
         let array = array(at(parts, part, "part")?, attribute)?;
-        let out = buffer(out_rows, buffer_bytes, "out_rows")?;
-        write_rows(array.bytes, array.width(), out, stride, "out_rows")
+        write_rows(array.bytes, array.width(), out_rows, buffer_bytes, stride, "out_rows")
     })
 }
 

@@ -10,7 +10,7 @@ use anthronet::pose::RestPose;
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut};
-use crate::pointer::{Out, exactly, free, read, slice_mut};
+use crate::pointer::{Out, OutSlice, exactly, free, read};
 use crate::request::{ANTHRONET_SEX_FEMALE, ANTHRONET_SEX_MALE, anthronet_request};
 use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
 
@@ -148,19 +148,17 @@ pub unsafe extern "C" fn anthronet_body_measures(
     guard(error, || {
         exactly("count", MEASURE_COUNT, count.into())?;
         let report = read(body, "body")?.body.report();
-        let out = slice_mut(out_measures, count.into(), "out_measures")?;
-        for (out, measure) in out.iter_mut().zip(&report.measures) {
-            *out = anthronet_measure_report {
-                asked: measure.asked.unwrap_or_default(),
-                obtained: measure.obtained,
-                residual: measure.residual.unwrap_or_default(),
-                low90: measure.low90,
-                high90: measure.high90,
-                percentile: measure.percentile,
-                given: measure.given.into(),
-                filled: (measure.filled == Filled::PriorSample).into(),
-            };
-        }
+        let mut out = OutSlice::new(out_measures, count.into(), "out_measures")?;
+        out.write(report.measures.iter().map(|measure| anthronet_measure_report {
+            asked: measure.asked.unwrap_or_default(),
+            obtained: measure.obtained,
+            residual: measure.residual.unwrap_or_default(),
+            low90: measure.low90,
+            high90: measure.high90,
+            percentile: measure.percentile,
+            given: measure.given.into(),
+            filled: (measure.filled == Filled::PriorSample).into(),
+        }));
         Ok(())
     })
 }
@@ -207,7 +205,7 @@ pub unsafe extern "C" fn anthronet_body_latent(
     guard(error, || {
         let z = &read(body, "body")?.body.report().z;
         exactly("count", z.len(), count.into())?;
-        slice_mut(out_latent, count.into(), "out_latent")?.copy_from_slice(z);
+        OutSlice::new(out_latent, count.into(), "out_latent")?.write(z.iter().copied());
         Ok(())
     })
 }

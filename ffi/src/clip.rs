@@ -2,15 +2,17 @@
 
 use std::ffi::c_char;
 
-use anthronet::clip::{self, BUILTIN, Clip, Sampler, Wrap};
-use anthronet::pose::Local;
+use anthronet::clip::{self, BUILTIN, Clip, JointMask, MAX_FRAMES, MAX_ROTATIONS, Sampler, Wrap};
+use anthronet::pose::{Local, Pose};
 use anthronet::space::Space;
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, choice, space};
-use crate::pointer::{Out, anthronet_text, at, exactly, free, read, slice, slice_mut, text};
+use crate::pointer::{Out, OutSlice, anthronet_text, at, at_most, exactly, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
-use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::status::{
+    ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
+};
 
 /// Outside its duration a clip holds its first or last frame.
 pub const ANTHRONET_WRAP_ONCE: u32 = 0;
@@ -111,6 +113,12 @@ pub unsafe extern "C" fn anthronet_clip_new(
     make(out_clip, error, || {
         let name = text(name, name_length, "name")?.to_owned();
         let rest = &read(body, "body")?.rest;
+        let joints = rest.len() as u64;
+        at_most("count", "transforms", (MAX_FRAMES as u64 * joints).min(MAX_ROTATIONS as u64), count)?;
+        if !count.is_multiple_of(joints) {
+            let message = format!("count: expected frames x {joints} joints, got {count}");
+            return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+        }
         let poses = crate::motion::locals(slice(frames, count, "frames")?, rest.parents(), space(in_space)?);
         Ok(Clip::of_poses(name, rest.clone(), frames_per_second, &poses)?)
     })
@@ -164,10 +172,10 @@ pub unsafe extern "C" fn anthronet_clip_sample(
         time(seconds)?;
         let clip = &read(clip, "clip")?.0;
         exactly("count", clip.rest().len(), count.into())?;
-        let out = slice_mut(out_joints, count.into(), "out_joints")?;
+        let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
         scratch(|pose, model| {
             Sampler::new(clip, wrap).sample_into(seconds, pose);
-            write(clip, &pose.locals, model, to_model, space, out);
+            write(clip, &pose.locals, model, to_model, space, &mut out);
         });
         Ok(())
     })
@@ -187,11 +195,11 @@ pub unsafe extern "C" fn anthronet_clip_bake(
         let (to_model, space) = (to_model(relative)?, space(in_space)?);
         let clip = &read(clip, "clip")?.0;
         exactly("count", clip.frame_count() * clip.rest().len(), count)?;
-        let out = slice_mut(out_joints, count, "out_joints")?;
+        let mut out = OutSlice::new(out_joints, count, "out_joints")?;
         scratch(|pose, model| {
-            for (frame, out) in out.chunks_exact_mut(clip.rest().len().max(1)).enumerate() {
+            for frame in 0..clip.frame_count() {
                 clip.pose_into(frame, pose);
-                write(clip, &pose.locals, model, to_model, space, out);
+                write(clip, &pose.locals, model, to_model, space, &mut out);
             }
         });
         Ok(())
@@ -245,6 +253,91 @@ pub unsafe extern "C" fn anthronet_clip_blend(
     })
 }
 
+/// As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
+/// part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_blend_masked(
+    first: *const anthronet_clip,
+    second: *const anthronet_clip,
+    weight: f32,
+    mask: *const f32,
+    count: u32,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || {
+        finite("weight", weight.into())?;
+        let (first, second) = (&read(first, "first")?.0, &read(second, "second")?.0);
+        let mask = joint_mask(first, mask, count)?;
+        Ok(clip::blend(first, second, weight, Some(&mask))?)
+    })
+}
+
+/// Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
+/// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+/// each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
+/// `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_additive(
+    base: *const anthronet_clip,
+    layer: *const anthronet_clip,
+    weight: f32,
+    reference: *const anthronet_transform,
+    count: u32,
+    in_space: u32,
+    mask: *const f32,
+    mask_count: u32,
+    out_clip: *mut *mut anthronet_clip,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    make(out_clip, error, || {
+        finite("weight", weight.into())?;
+        let space = space(in_space)?;
+        let (base, layer) = (&read(base, "base")?.0, &read(layer, "layer")?.0);
+        let reference = match reference.is_null() && count == 0 {
+            true => layer.pose(0),
+            false => {
+                let rest = base.rest();
+                exactly("count", rest.len(), count.into())?;
+                let joints = slice(reference, count.into(), "reference")?;
+                Pose { locals: crate::motion::locals(joints, rest.parents(), space) }
+            }
+        };
+        let mask = match mask.is_null() && mask_count == 0 {
+            true => None,
+            false => Some(joint_mask(base, mask, mask_count)?),
+        };
+        Ok(clip::additive(base, layer, &reference, weight, mask.as_ref())?)
+    })
+}
+
+/// The mask of a part of the body: fills `count` entries, one per joint of the clip, with 1 for the joint of that name
+/// in the rig and all below it, else with 0. `spine_01` is the upper body.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_clip_joint_mask(
+    clip: *const anthronet_clip,
+    name: *const c_char,
+    name_length: u64,
+    out_mask: *mut f32,
+    count: u32,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let rest = read(clip, "clip")?.0.rest();
+        exactly("count", rest.len(), count.into())?;
+        let mut out = OutSlice::new(out_mask, count.into(), "out_mask")?;
+        let mask = JointMask::below(rest, &[text(name, name_length, "name")?])?;
+        out.write((0..rest.len()).map(|joint| mask.weight(joint)));
+        Ok(())
+    })
+}
+
+/// A mask of the caller's for the joints of a clip.
+fn joint_mask(clip: &Clip, mask: *const f32, count: u32) -> Outcome<JointMask> {
+    exactly("mask", clip.rest().len(), count.into())?;
+    Ok(JointMask::of_weights(clip.rest(), slice(mask, count.into(), "mask")?)?)
+}
+
 /// Two clips of one body one after the other, overlapping by `seconds`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_crossfade(
@@ -282,10 +375,10 @@ fn finite(what: &str, value: f64) -> Outcome {
 }
 
 /// Room for a pose that stays from call to call, so that sampling allocates nothing.
-fn scratch(work: impl FnOnce(&mut anthronet::pose::Pose, &mut Vec<Local>)) {
+fn scratch(work: impl FnOnce(&mut Pose, &mut Vec<Local>)) {
     use std::cell::RefCell;
     thread_local! {
-        static ROOM: RefCell<(anthronet::pose::Pose, Vec<Local>)> = RefCell::default();
+        static ROOM: RefCell<(Pose, Vec<Local>)> = RefCell::default();
     }
     ROOM.with_borrow_mut(|(pose, model)| work(pose, model));
 }
@@ -296,17 +389,14 @@ fn write(
     model: &mut Vec<Local>,
     to_model: bool,
     space: Space,
-    out: &mut [anthronet_transform],
+    out: &mut OutSlice<anthronet_transform>,
 ) {
     let parents = clip.rest().parents();
     if to_model {
         anthronet::pose::model_from_joints(parents, locals, model);
-        for (out, joint) in out.iter_mut().zip(model) {
-            *out = joint.model_from_joint_in(space).into();
-        }
+        out.write(model.iter().map(|joint| joint.model_from_joint_in(space).into()));
     } else {
-        for ((out, joint), parent) in out.iter_mut().zip(locals).zip(parents) {
-            *out = joint.parent_from_joint_in(space, *parent).into();
-        }
+        let joints = locals.iter().zip(parents);
+        out.write(joints.map(|(joint, parent)| joint.parent_from_joint_in(space, *parent).into()));
     }
 }

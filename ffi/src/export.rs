@@ -10,7 +10,7 @@ use crate::bytes::anthronet_bytes;
 use crate::clip::anthronet_clip;
 use crate::mesh::scene_options;
 use crate::options::{Descriptor, described, flag};
-use crate::pointer::{Out, read, slice, text};
+use crate::pointer::{Out, list, read, text};
 use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
 
 /// What of a body goes into a file; all zeros ask for the defaults.
@@ -86,7 +86,7 @@ fn scene(
         scene_options(asked.lod, asked.influences, asked.joint_names, asked.body_only, asked.skin_tone)?;
     let gltf = GltfOptions { compress: flag(asked.compress, "compress")? };
     let mut scene = Scene::from_body(&body.body, &looks)?;
-    for clip in slice(asked.clips, asked.clip_count.into(), "clips")? {
+    for clip in list(asked.clips, asked.clip_count, "clips")? {
         scene.clips.push(read(*clip, "clip")?.0.clone());
     }
     Ok((scene, WriteOptions { gltf, ..WriteOptions::default() }))

@@ -9,7 +9,7 @@ use anthronet::condition::Request;
 use crate::body::anthronet_body;
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut};
-use crate::pointer::{Out, beyond, free, read, slice};
+use crate::pointer::{Out, beyond, free, list, read};
 use crate::request::anthronet_request;
 use crate::status::{
     ANTHRONET_ERROR_BUSY, ANTHRONET_ERROR_CANCELLED, ANTHRONET_ERROR_OTHER, ANTHRONET_ERROR_TAKEN, Fault,
@@ -30,6 +30,8 @@ pub struct anthronet_job {
 }
 
 struct Shared {
+    /// The process that started it: a child made by `fork` has the job's memory, but not its thread.
+    process: u32,
     cancelled: AtomicBool,
     finished: AtomicBool,
     done: AtomicU32,
@@ -62,9 +64,13 @@ unsafe impl Descriptor for anthronet_job_progress {}
 impl Drop for anthronet_job {
     fn drop(&mut self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
+        let Some(thread) = self.thread.take() else { return };
+        if self.shared.is_here() {
             // Its panics are caught inside.
             let _ = thread.join();
+        } else {
+            // There is no such thread here, and its own memory may be another's by now.
+            std::mem::forget(thread);
         }
     }
 }
@@ -75,7 +81,11 @@ impl Shared {
             if self.cancelled.load(Ordering::Relaxed) {
                 break;
             }
-            let make = || anthronet_body::new(model.0.generate(request)?).map(Box::new);
+            let make = || {
+                #[cfg(feature = "test-hooks")]
+                crate::test_hooks::before_a_body();
+                anthronet_body::new(model.0.generate(request)?).map(Box::new)
+            };
             let made = caught(make);
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = Slot::Made(made);
             self.done.fetch_add(1, Ordering::Release);
@@ -83,7 +93,15 @@ impl Shared {
         self.finished.store(true, Ordering::Release);
     }
 
+    /// False in a child of the process that started the job: what was not made by then never will be there.
+    fn is_here(&self) -> bool {
+        self.process == std::process::id()
+    }
+
     fn state(&self) -> u32 {
+        if !self.is_here() {
+            return ANTHRONET_JOB_CANCELLED;
+        }
         if !self.finished.load(Ordering::Acquire) {
             return ANTHRONET_JOB_RUNNING;
         }
@@ -105,11 +123,12 @@ pub unsafe extern "C" fn anthronet_job_start(
     guard(error, || {
         let out = Out::new(out_job, "out_job")?;
         let model = anthronet_model(read(model, "model")?.0.clone());
-        let requests = slice(requests, count.into(), "requests")?
+        let requests = list(requests, count, "requests")?
             .iter()
             .map(|request| Ok(read(*request, "request")?.0.clone()))
             .collect::<Outcome<Vec<Request>>>()?;
         let shared = Arc::new(Shared {
+            process: std::process::id(),
             cancelled: AtomicBool::new(false),
             finished: AtomicBool::new(false),
             done: AtomicU32::new(0),
@@ -174,6 +193,12 @@ pub unsafe extern "C" fn anthronet_job_take(
         let shared = &read(job, "job")?.shared;
         let finished = shared.finished.load(Ordering::Acquire);
         let count = shared.results.len();
+        if !shared.is_here() && (index as usize) < count {
+            // The lock of a slot may be held for ever by the thread that is not here.
+            let message =
+                format!("body {index} was made in the process that started the job, this is another");
+            return Err(Fault::new(ANTHRONET_ERROR_CANCELLED, message));
+        }
         let slot = shared.results.get(index as usize).ok_or_else(|| beyond("index", index, count))?;
         let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
         match std::mem::replace(&mut *slot, Slot::Taken) {

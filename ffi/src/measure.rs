@@ -4,12 +4,15 @@ use std::ffi::{c_char, c_void};
 use std::path::Path;
 
 use anthronet::measure::{MEASURE_COUNT, MeasureId};
+use anthronet::mesh::Lod;
 use anthronet::model::MeasuredMesh;
 
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut, space};
-use crate::pointer::{Out, anthronet_text, beyond, exactly, read, read_vectors, slice_mut, text};
-use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::pointer::{Out, OutSlice, anthronet_text, beyond, exactly, read, read_vectors, text};
+use crate::status::{
+    ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
+};
 
 /// What the scales say of a mesh.
 #[repr(C)]
@@ -87,6 +90,7 @@ pub unsafe extern "C" fn anthronet_measure_mesh(
         let out = Results::new(out_metres, count, out_measured)?;
         let space = space(from_space)?;
         let model = read(model, "model")?;
+        known(model, vertex_count)?;
         let mut vertices = read_vectors(positions, vertex_count.into(), stride, "positions")?;
         for vertex in &mut vertices {
             *vertex = space.to_ours(*vertex);
@@ -118,24 +122,35 @@ pub unsafe extern "C" fn anthronet_measure_file(
     })
 }
 
+/// Refuses a number of vertices that no level of detail has.
+fn known(model: &anthronet_model, vertex_count: u32) -> Outcome {
+    let counts = Lod::ALL.map(|lod| model.0.character().vertex_count(lod));
+    if counts.contains(&(vertex_count as usize)) {
+        return Ok(());
+    }
+    let known = counts.map(|count| count.to_string()).join(", ");
+    let message = format!("positions: expected {known} vertices in the model's order, got {vertex_count}");
+    Err(Fault::new(ANTHRONET_ERROR_SIZE, message))
+}
+
 /// Where a measured mesh goes.
-struct Results<'a> {
-    metres: &'a mut [f64],
+struct Results {
+    metres: OutSlice<f64>,
     measured: Option<DescriptorOut<anthronet_measured>>,
 }
 
-impl Results<'_> {
+impl Results {
     fn new(metres: *mut f64, count: u32, measured: *mut anthronet_measured) -> Outcome<Self> {
         exactly("count", MEASURE_COUNT, count.into())?;
         let measured = match measured.is_null() {
             true => None,
             false => Some(DescriptorOut::new(measured, "out_measured")?),
         };
-        Ok(Self { metres: slice_mut(metres, count.into(), "out_metres")?, measured })
+        Ok(Self { metres: OutSlice::new(metres, count.into(), "out_metres")?, measured })
     }
 
-    fn write(self, found: &MeasuredMesh) {
-        self.metres.copy_from_slice(&found.measurements);
+    fn write(mut self, found: &MeasuredMesh) {
+        self.metres.write(found.measurements);
         if let Some(out) = self.measured {
             out.write(&anthronet_measured {
                 struct_size: 0,

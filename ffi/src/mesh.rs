@@ -7,7 +7,7 @@ use anthronet::pose::Local;
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, choice, described, flag, joint_names, lod, space};
-use crate::pointer::{Out, anthronet_text, at, buffer, change, free, read, write_rows};
+use crate::pointer::{Out, anthronet_text, at, change, free, read, write_rows};
 use crate::status::{ANTHRONET_ERROR_ENUM, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
@@ -226,8 +226,7 @@ pub unsafe extern "C" fn anthronet_mesh_read(
 ) -> anthronet_status {
     guard(error, || {
         let array = array(at(&read(mesh, "mesh")?.parts, part, "part")?, attribute)?;
-        let out = buffer(out_rows, buffer_bytes, "out_rows")?;
-        write_rows(array.bytes, array.width(), out, stride, "out_rows")
+        write_rows(array.bytes, array.width(), out_rows, buffer_bytes, stride, "out_rows")
     })
 }
 

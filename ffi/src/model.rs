@@ -7,7 +7,7 @@ use anthronet::model::Model;
 
 use crate::bytes::anthronet_bytes;
 use crate::options::lod;
-use crate::pointer::{Out, beyond, free, read, slice, text};
+use crate::pointer::{Out, beyond, file, free, read, text};
 use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
 
 /// A trained model: makes bodies. Immutable; may be used by many threads at once.
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn anthronet_model_open_memory(
     out_model: *mut *mut anthronet_model,
     error: *mut anthronet_error,
 ) -> anthronet_status {
-    open(out_model, error, || Ok(Model::from_bytes(slice(data, length, "data")?)?))
+    open(out_model, error, || Ok(Model::from_bytes(file(data, length, "data")?)?))
 }
 
 /// Frees a model; NULL is nothing. Bodies and jobs made by it stay whole.

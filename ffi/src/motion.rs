@@ -4,20 +4,19 @@ use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
 
-use anthronet::clip::feet::FeetOptions;
-use anthronet::clip::{self, Clip, FingerMode, Motion, OntoOptions, ReadOptions, RootMotion};
-use anthronet::pose::{Local, RestPose};
-use anthronet::space::{Axis, Space, Unit};
+use anthronet::clip::{
+    self, Clip, FingerMode, MAX_FRAMES, MAX_ROTATIONS, Motion, OntoOptions, OntoSwitches, ReadOptions,
+};
+use anthronet::pose::{Local, MAX_JOINTS, RestPose};
+use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
 use crate::bytes::anthronet_bytes;
 use crate::clip::anthronet_clip;
 use crate::options::{Descriptor, choice, described, flag, space};
-use crate::pointer::{Out, anthronet_text, at, free, read, slice, text};
+use crate::pointer::{Out, anthronet_text, at, at_most, file, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
-use crate::status::{
-    ANTHRONET_ERROR_INDEX, ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{ANTHRONET_ERROR_INDEX, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// Fingers as the source's where it has any, else at ease.
 pub const ANTHRONET_FINGERS_SOURCE: u32 = 0;
@@ -85,18 +84,8 @@ pub struct anthronet_motion(Motion);
 
 fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
     let asked = described(pointer, "options")?;
-    let unit = match asked.metres_per_unit {
-        0.0 => None,
-        metres => Some(Unit::of_metres(metres).ok_or_else(|| {
-            let message = format!("metres_per_unit: expected a positive number, got {metres}");
-            Fault::new(ANTHRONET_ERROR_REQUEST, message)
-        })?),
-    };
-    Ok(ReadOptions {
-        unit,
-        up: choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?,
-        frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
-    })
+    let up = choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?;
+    Ok(ReadOptions::of_numbers(asked.metres_per_unit, up, asked.frames_per_second)?)
 }
 
 fn give(out: Out<*mut anthronet_motion>, motion: Motion) {
@@ -135,7 +124,7 @@ pub unsafe extern "C" fn anthronet_motion_open_memory(
 ) -> anthronet_status {
     guard(error, || {
         let out = Out::new(out_motion, "out_motion")?;
-        let bytes = slice(data, length, "data")?;
+        let bytes = file(data, length, "data")?;
         let name = Path::new(text(name, name_length, "name")?);
         give(out, clip::from_bytes(bytes, name, &options(read_options)?)?);
         Ok(())
@@ -182,7 +171,10 @@ pub unsafe extern "C" fn anthronet_motion_new(
         let out = Out::new(out_motion, "out_motion")?;
         read(source, "source")?;
         let source = described(source, "source")?;
-        let joints = u64::from(source.joint_count);
+        let (joints, frames) = (u64::from(source.joint_count), u64::from(source.frame_count));
+        at_most("joint_count", "joints", MAX_JOINTS as u64, joints)?;
+        at_most("frame_count", "frames", MAX_FRAMES as u64, frames)?;
+        at_most("frames", "frames x joints", MAX_ROTATIONS as u64, frames * joints)?;
         let space = space(source.space)?;
         let names = slice(source.joint_names, joints, "joint_names")?
             .iter()
@@ -200,10 +192,10 @@ pub unsafe extern "C" fn anthronet_motion_new(
             rest,
             vec![None; source.joint_count as usize],
         )?;
-        let frames = slice(source.frames, joints * u64::from(source.frame_count), "frames")?;
-        let frames = locals(frames, rest.parents(), space);
+        let poses = slice(source.frames, frames * joints, "frames")?;
+        let poses = locals(poses, rest.parents(), space);
         let name = text(source.name.data, source.name.length, "name")?.to_owned();
-        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &frames)?;
+        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &poses)?;
         give(out, Motion::of_clip(clip));
         Ok(())
     })
@@ -286,17 +278,12 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
         let motion = &read(motion, "motion")?.0;
         let body = read(body, "body")?;
         let options = onto_options(&described(retarget_options, "options")?)?;
-        let one =
-            Motion { clips: vec![at(&motion.clips, clip, "clip")?.clone()], report: motion.report.clone() };
-        let (clips, report) = clip::onto(&one, &body.rest, &options)?;
-        let clip = clips.into_iter().next().map(anthronet_clip);
-        let clip =
-            clip.ok_or_else(|| Fault::new(crate::status::ANTHRONET_ERROR_OTHER, "no clip was made"))?;
+        let (clip, report) = clip::onto_one(at(&motion.clips, clip, "clip")?, &body.rest, &options)?;
         let report_json = json(&report)?;
         if !report.joints.unmatched.is_empty() {
             crate::log::info(&format!("joints that drive nothing: {}", report.joints.unmatched.join(", ")));
         }
-        out.give(clip);
+        out.give(anthronet_clip(clip));
         if let Some(out) = out_report {
             out.give(report_json);
         }
@@ -305,23 +292,21 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
 }
 
 fn onto_options(asked: &anthronet_retarget_options) -> Outcome<OntoOptions> {
-    let mut options = OntoOptions {
-        limits: !flag(asked.no_limits, "no_limits")?,
-        feet: (!flag(asked.no_feet, "no_feet")?).then(FeetOptions::default),
+    let switches = OntoSwitches {
+        fingers: choice(
+            &[FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest],
+            asked.fingers,
+            "fingers",
+        )?,
+        no_limits: flag(asked.no_limits, "no_limits")?,
+        no_feet: flag(asked.no_feet, "no_feet")?,
         in_place: flag(asked.in_place, "in_place")?,
         looped: flag(asked.looped, "looped")?,
-        frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
-        ..OntoOptions::default()
+        root_motion: flag(asked.root_motion, "root_motion")?,
+        mapping_json: text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?,
+        frames_per_second: asked.frames_per_second,
     };
-    let fingers = [FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest];
-    options.retarget.fingers = choice(&fingers, asked.fingers, "fingers")?;
-    options.retarget.root =
-        choice(&[RootMotion::Pelvis, RootMotion::Root], asked.root_motion, "root_motion")?;
-    if !asked.mapping_json.is_null() || asked.mapping_length != 0 {
-        let mapping = text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?;
-        options.mapping = clip::read_overrides(mapping, Path::new("mapping_json"))?;
-    }
-    Ok(options)
+    Ok(switches.try_into()?)
 }
 
 fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {

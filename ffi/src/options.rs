@@ -8,6 +8,7 @@ use anthronet::rig::humanoid::JointNames;
 use anthronet::skin::SkinMethod;
 use anthronet::space::Space;
 
+use crate::pointer::{MAX_LIST, at_most};
 use crate::status::{ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome};
 
 /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
@@ -83,6 +84,7 @@ pub(crate) fn described_list<T: Descriptor>(pointer: *const T, count: u32, what:
     if pointer.is_null() {
         return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
     }
+    at_most(what, "entries", MAX_LIST, count.into())?;
     let size = said_size(pointer, what)?;
     if !size.is_multiple_of(align_of::<T>()) {
         return Err(size_fault::<T>(what, size as u32));

@@ -1,6 +1,7 @@
 //! The caller's memory: every pointer that comes in is looked at here.
 
 use std::ffi::{c_char, c_void};
+use std::mem::MaybeUninit;
 
 use crate::status::{
     ANTHRONET_ERROR_INDEX, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, ANTHRONET_ERROR_TEXT, Fault,
@@ -110,29 +111,81 @@ pub(crate) fn slice<'a, T>(pointer: *const T, count: u64, what: &str) -> Outcome
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// An array that is written.
-pub(crate) fn slice_mut<'a, T>(pointer: *mut T, count: u64, what: &str) -> Outcome<&'a mut [T]> {
-    let count = length::<T>(count, what)?;
+/// An array that is written, each number once, in order. No reference to its memory is made: that may hold nothing yet,
+/// and a careless caller's may lie in another array of the call.
+pub(crate) struct OutSlice<T> {
+    next: *mut T,
+    left: usize,
+}
+
+impl<T> OutSlice<T> {
+    pub(crate) fn new(pointer: *mut T, count: u64, what: &str) -> Outcome<Self> {
+        let left = length::<T>(count, what)?;
+        if left > 0 {
+            usable(pointer, what)?;
+        }
+        Ok(Self { next: pointer, left })
+    }
+
+    /// Writes what comes, as far as there is room.
+    pub(crate) fn write(&mut self, values: impl IntoIterator<Item = T>) {
+        for value in values.into_iter().take(self.left) {
+            // SAFETY: not NULL, aligned, and one of the `left` places that are there by contract.
+            unsafe {
+                self.next.write(value);
+                self.next = self.next.add(1);
+            }
+            self.left -= 1;
+        }
+    }
+}
+
+/// A buffer of bytes that is written and may hold nothing yet.
+pub(crate) fn buffer<'a>(pointer: *mut c_void, bytes: u64, what: &str) -> Outcome<&'a mut [MaybeUninit<u8>]> {
+    let count = length::<u8>(bytes, what)?;
     if count == 0 {
         return Ok(&mut []);
     }
-    usable(pointer, what)?;
-    // SAFETY: as `slice`, and the caller's alone.
-    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
+    usable(pointer.cast::<u8>(), what)?;
+    // SAFETY: as `slice`, and the caller's alone; what it holds is not read.
+    Ok(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), count) })
 }
 
-/// A buffer of bytes that is written.
-pub(crate) fn buffer<'a>(pointer: *mut c_void, bytes: u64, what: &str) -> Outcome<&'a mut [u8]> {
-    slice_mut(pointer.cast(), bytes, what)
-}
+/// Most bytes of a text: above every path, name and mapping of joints.
+const MAX_TEXT: u64 = 1 << 20;
+/// Most bytes of a file in memory: as of one on the disk.
+const MAX_FILE: u64 = 1 << 30;
+/// Most entries of a list that nothing else limits: requests, jobs, clips.
+pub(crate) const MAX_LIST: u64 = 1 << 20;
 
 /// Text of the caller's: `length` bytes of UTF-8.
 pub(crate) fn text<'a>(data: *const c_char, length: u64, what: &str) -> Outcome<&'a str> {
+    at_most(what, "bytes", MAX_TEXT, length)?;
     let bytes: &[u8] = slice(data.cast(), length, what)?;
     std::str::from_utf8(bytes).map_err(|error| {
         let message = format!("{what}: expected UTF-8, got another byte at {}", error.valid_up_to());
         Fault::new(ANTHRONET_ERROR_TEXT, message)
     })
+}
+
+/// A file of the caller's in memory.
+pub(crate) fn file<'a>(data: *const u8, length: u64, what: &str) -> Outcome<&'a [u8]> {
+    at_most(what, "bytes", MAX_FILE, length)?;
+    slice(data, length, what)
+}
+
+/// A list of the caller's whose length only the caller knows.
+pub(crate) fn list<'a, T>(pointer: *const T, count: u32, what: &str) -> Outcome<&'a [T]> {
+    at_most(what, "entries", MAX_LIST, count.into())?;
+    slice(pointer, count.into(), what)
+}
+
+/// Refuses a count that is larger than what it counts can be, before anything is looked at.
+pub(crate) fn at_most(what: &str, unit: &str, most: u64, got: u64) -> Outcome {
+    if got <= most {
+        return Ok(());
+    }
+    Err(Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: expected at most {most} {unit}, got {got}")))
 }
 
 /// Refuses an array that is not as long as it has to be.
@@ -155,8 +208,15 @@ pub(crate) fn beyond(what: &str, index: u32, count: usize) -> Fault {
     )
 }
 
-/// Writes packed rows to a caller's buffer, `stride` bytes from row to row; 0 stands for packed.
-pub(crate) fn write_rows(rows: &[u8], width: usize, out: &mut [u8], stride: u64, what: &str) -> Outcome {
+/// Writes packed rows to a caller's buffer of `bytes` bytes, `stride` bytes from row to row; 0 stands for packed.
+pub(crate) fn write_rows(
+    rows: &[u8],
+    width: usize,
+    out: *mut c_void,
+    bytes: u64,
+    stride: u64,
+    what: &str,
+) -> Outcome {
     let stride = if stride == 0 { width } else { length::<u8>(stride, what)? };
     let count = rows.len() / width.max(1);
     if stride < width {
@@ -164,20 +224,20 @@ pub(crate) fn write_rows(rows: &[u8], width: usize, out: &mut [u8], stride: u64,
         return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
     }
     let needed = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(width));
-    if needed.is_none_or(|needed| needed > out.len()) {
+    if needed.is_none_or(|needed| needed as u64 > bytes) {
         let expected = needed.map_or("more bytes than memory holds".to_owned(), |n| format!("{n} bytes"));
         let message = format!(
-            "{what}: expected {expected} for {count} rows of {width} bytes with stride {stride}, got {} bytes",
-            out.len()
+            "{what}: expected {expected} for {count} rows of {width} bytes with stride {stride}, got {bytes} bytes"
         );
         return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
     }
+    let out = buffer(out, needed.unwrap_or_default() as u64, what)?;
     if stride == width {
-        out[..rows.len()].copy_from_slice(rows);
+        out.write_copy_of_slice(rows);
         return Ok(());
     }
     for (from, to) in rows.chunks_exact(width).zip(out.chunks_mut(stride)) {
-        to[..width].copy_from_slice(from);
+        to[..width].write_copy_of_slice(from);
     }
     Ok(())
 }

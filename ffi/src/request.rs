@@ -4,10 +4,11 @@ use std::ffi::c_char;
 
 use anthronet::condition::{Fill, Request};
 use anthronet::measure::{MEASURE_COUNT, Sex};
+use anthronet::model::config::MAX_LATENT;
 
 use crate::bytes::anthronet_bytes;
 use crate::options::{choice, flag};
-use crate::pointer::{Out, beyond, change, exactly, free, read, slice, slice_mut, text};
+use crate::pointer::{Out, OutSlice, at_most, beyond, change, exactly, free, read, slice, text};
 use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// The sex is left to the measures.
@@ -155,12 +156,10 @@ pub unsafe extern "C" fn anthronet_request_measures(
     guard(error, || {
         exactly("count", MEASURE_COUNT, count.into())?;
         let measures = &read(request, "request")?.0.measures;
-        let metres = slice_mut(out_metres, count.into(), "out_metres")?;
-        let given = slice_mut(out_given, count.into(), "out_given")?;
-        for (i, measure) in measures.iter().enumerate() {
-            metres[i] = measure.unwrap_or_default();
-            given[i] = measure.is_some().into();
-        }
+        let mut metres = OutSlice::new(out_metres, count.into(), "out_metres")?;
+        let mut given = OutSlice::new(out_given, count.into(), "out_given")?;
+        metres.write(measures.iter().map(|measure| measure.unwrap_or_default()));
+        given.write(measures.iter().map(|measure| measure.is_some().into()));
         Ok(())
     })
 }
@@ -203,6 +202,7 @@ pub unsafe extern "C" fn anthronet_request_set_latent(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     guard(error, || {
+        at_most("latent", "numbers", MAX_LATENT as u64, count.into())?;
         let latent = slice(latent, count.into(), "latent")?;
         for (i, value) in latent.iter().enumerate() {
             finite(&format!("latent {i}"), *value)?;

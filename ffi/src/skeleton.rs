@@ -4,7 +4,7 @@ use anthronet::rig::humanoid::{humanoid_bones, renamed};
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, joint_names, space};
-use crate::pointer::{Out, anthronet_text, at, exactly, read, slice_mut};
+use crate::pointer::{Out, OutSlice, anthronet_text, at, exactly, read};
 use crate::status::{anthronet_error, anthronet_status, guard};
 
 /// Where a joint is, relative to its parent or to the model: a rotation, then a translation.
@@ -73,19 +73,15 @@ pub unsafe extern "C" fn anthronet_body_joints(
         let body = read(body, "body")?;
         let joints = body.body.joints();
         exactly("count", joints.len(), count.into())?;
-        let out = slice_mut(out_joints, count.into(), "out_joints")?;
-        for ((out, joint), rest) in out.iter_mut().zip(joints).zip(&body.rest.pose().locals) {
-            let model_from_joint = joint.model_from_joint;
-            *out = anthronet_joint {
-                parent: joint.parent.map_or(-1, |parent| parent as i32),
-                length: joint.length,
-                parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
-                model_from_joint: space.model_from_joint_matrix(model_from_joint.into()).to_cols_array(),
-                joint_from_model: space
-                    .joint_from_model_matrix(model_from_joint.inverse().into())
-                    .to_cols_array(),
-            };
-        }
+        let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
+        out.write(joints.iter().zip(&body.rest.pose().locals).map(|(joint, rest)| anthronet_joint {
+            parent: joint.parent.map_or(-1, |parent| parent as i32),
+            length: joint.length,
+            parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
+            model_from_joint: space.model_from_joint_matrix(joint.model_from_joint.into()).to_cols_array(),
+            joint_from_model:
+                space.joint_from_model_matrix(joint.model_from_joint.inverse().into()).to_cols_array(),
+        }));
         Ok(())
     })
 }

@@ -3,14 +3,16 @@
 use std::ffi::c_void;
 
 use anthronet::pose::Local;
-use anthronet::skin::{SkinJob, Skinner, StridedMut, SurfaceMut, skin_many};
+use anthronet::skin::{SkinJob, SkinMethod, Skinner, StridedMut, SurfaceMut, skin_many};
 use glam::Vec3;
 
 use crate::mesh::anthronet_mesh;
 use crate::options::{Descriptor, described_list, skin_method};
-use crate::pointer::{Out, at, buffer, free, read, slice};
+use crate::pointer::{Out, at, at_most, buffer, exactly, free, read, slice};
 use crate::skeleton::anthronet_transform;
-use crate::status::{ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::status::{
+    ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
+};
 
 /// A part of a mesh ready to be posed. Immutable; may be used by many threads and jobs at once.
 pub struct anthronet_skinner(Skinner);
@@ -40,7 +42,8 @@ pub struct anthronet_skin_job {
     /// Bytes from position to position; 0 for packed.
     pub position_stride: u64,
     /// Where unit normals are written, three floats per vertex; NULL for nowhere. In the buffer of the positions, as
-    /// vertex buffers are laid out, it points at the first normal, behind the first position by less than the stride.
+    /// vertex buffers are laid out, it points at the first normal, less than the one stride of both from the first
+    /// position.
     pub normals: *mut c_void,
     /// Bytes of that buffer.
     pub normal_bytes: u64,
@@ -89,8 +92,8 @@ pub unsafe extern "C" fn anthronet_skinner_vertex_count(
     })
 }
 
-/// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. Buffers of
-/// different jobs must not overlap.
+/// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
+/// to its last, what a job writes must not overlap what another writes nor what any of them reads.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_skin(
     jobs: *const anthronet_skin_job,
@@ -98,80 +101,200 @@ pub unsafe extern "C" fn anthronet_skin(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     guard(error, || {
-        let jobs = described_list(jobs, count, "jobs")?;
-        let inputs = jobs.iter().map(Inputs::of).collect::<Outcome<Vec<_>>>()?;
-        let work =
-            jobs.iter().zip(&inputs).map(|(job, inputs)| prepare(job, inputs)).collect::<Outcome<_>>()?;
-        Ok(skin_many(work)?)
+        let described = described_list(jobs, count, "jobs")?;
+        let mut extents = Vec::new();
+        if let Some(first) = described.first() {
+            let bytes = u64::from(count) * u64::from(first.struct_size);
+            extents.push(Extent::new(0, jobs, bytes, false, "jobs")?);
+        }
+        let mut work = Vec::new();
+        for (i, job) in described.iter().enumerate() {
+            let prepared = Prepared::of(job)?;
+            prepared.extents(i, &mut extents)?;
+            work.push(prepared);
+        }
+        apart(extents)?;
+        Ok(skin_many(work.iter().map(Prepared::job).collect::<Outcome<_>>()?)?)
     })
 }
 
-/// What a job reads, in the library's own types.
-struct Inputs {
+/// A job of which everything is checked that can be before its buffers are touched.
+struct Prepared<'a> {
+    asked: &'a anthronet_skin_job,
+    skinner: &'a Skinner,
+    method: SkinMethod,
     pose: Vec<Local>,
     offsets: Vec<Vec3>,
+    positions: Rows,
+    normals: Option<Rows>,
 }
 
-impl Inputs {
-    fn of(job: &anthronet_skin_job) -> Outcome<Self> {
+impl<'a> Prepared<'a> {
+    fn of(job: &'a anthronet_skin_job) -> Outcome<Self> {
+        let skinner = &read(job.skinner, "skinner")?.0;
+        let count = skinner.vertex_count();
+        exactly("joint_count", skinner.joint_count(), job.joint_count.into())?;
+        if job.offset_count != 0 {
+            exactly("offset_count", count, job.offset_count.into())?;
+        }
         let joints = slice(job.joints, job.joint_count.into(), "joints")?;
         let offsets: &[[f32; 3]] = slice(job.offsets.cast(), job.offset_count.into(), "offsets")?;
+        let rows = |first, bytes, stride, what| Rows::new(first, bytes, stride, count, what);
         Ok(Self {
+            asked: job,
+            skinner,
+            method: skin_method(job.method)?,
             pose: joints.iter().map(Local::from).collect(),
             offsets: offsets.iter().map(|offset| Vec3::from_array(*offset)).collect(),
+            positions: rows(job.positions, job.position_bytes, job.position_stride, "positions")?,
+            normals: match job.normals.is_null() {
+                true => None,
+                false => Some(rows(job.normals, job.normal_bytes, job.normal_stride, "normals")?),
+            },
+        })
+    }
+
+    /// What the job reads and writes; one that spans both buffers where they lie in each other.
+    fn extents(&self, job: usize, extents: &mut Vec<Extent>) -> Outcome {
+        let asked = self.asked;
+        let read = |first, count: u32, width, what| {
+            Extent::new(job, first, u64::from(count) * width as u64, false, what)
+        };
+        let transform = size_of::<anthronet_transform>();
+        extents.push(read(asked.joints.cast::<u8>(), asked.joint_count, transform, "joints")?);
+        extents.push(read(asked.offsets.cast::<u8>(), asked.offset_count, WIDTH, "offsets")?);
+        let positions = self.positions.extent(job, "positions")?;
+        let Some(normals) = &self.normals else {
+            extents.push(positions);
+            return Ok(());
+        };
+        let normals = normals.extent(job, "normals")?;
+        if self.normals_between().is_some() {
+            let (start, end) = (positions.start.min(normals.start), positions.end.max(normals.end));
+            extents.push(Extent { start, end, ..positions });
+        } else {
+            extents.extend([positions, normals]);
+        }
+        Ok(())
+    }
+
+    /// The rows of the normals where they lie between those of the positions, as in vertex buffers.
+    fn normals_between(&self) -> Option<&Rows> {
+        let (positions, normals) = (&self.positions, self.normals.as_ref()?);
+        let near = positions.first.addr().abs_diff(normals.first.addr()) < positions.stride;
+        (near && positions.stride == normals.stride && positions.bytes > WIDTH as u64).then_some(normals)
+    }
+
+    fn job(&self) -> Outcome<SkinJob<'_>> {
+        let strided = |rows: &Rows, what| {
+            let bytes = buffer(rows.first, rows.bytes, what)?.into();
+            Ok::<_, Fault>(StridedMut { bytes, offset: 0, stride: rows.stride })
+        };
+        let out = match (self.normals_between(), &self.normals) {
+            (Some(normals), _) => {
+                let (one, other) = (self.positions.first, normals.first);
+                let first = if one.addr() < other.addr() { one } else { other };
+                let apart = one.addr().abs_diff(other.addr());
+                SurfaceMut::Interleaved {
+                    bytes: buffer(first, self.positions.bytes + apart as u64, "positions")?.into(),
+                    stride: normals.stride,
+                    position_offset: one.addr() - first.addr(),
+                    normal_offset: other.addr() - first.addr(),
+                }
+            }
+            (None, normals) => SurfaceMut::Separate {
+                positions: strided(&self.positions, "positions")?,
+                normals: normals.as_ref().map(|rows| strided(rows, "normals")).transpose()?,
+            },
+        };
+        Ok(SkinJob {
+            skinner: self.skinner,
+            method: self.method,
+            model_from_joints: &self.pose,
+            offsets: (!self.offsets.is_empty()).then_some(&self.offsets),
+            out,
         })
     }
 }
 
-fn prepare<'a>(job: &anthronet_skin_job, inputs: &'a Inputs) -> Outcome<SkinJob<'a>> {
-    Ok(SkinJob {
-        skinner: &read(job.skinner, "skinner")?.0,
-        method: skin_method(job.method)?,
-        model_from_joints: &inputs.pose,
-        offsets: (!inputs.offsets.is_empty()).then_some(&inputs.offsets),
-        out: surface(job)?,
-    })
+/// Bytes of three floats.
+const WIDTH: usize = 12;
+
+/// Three floats per vertex in a buffer of the caller's that is large enough.
+struct Rows {
+    first: *mut c_void,
+    /// From the first row's first to the last row's last, no more than the vertices need.
+    bytes: u64,
+    stride: usize,
 }
 
-/// The buffers of a job: one that holds both, or two that do not touch.
-fn surface<'a>(job: &anthronet_skin_job) -> Outcome<SurfaceMut<'a>> {
-    const WIDTH: u64 = 12;
-    let stride = |stride: u64| if stride == 0 { WIDTH as usize } else { stride as usize };
-    let (position_stride, normal_stride) = (stride(job.position_stride), stride(job.normal_stride));
-    let strided = |data, bytes, stride, what| {
-        Ok::<_, Fault>(StridedMut { bytes: buffer(data, bytes, what)?, offset: 0, stride })
-    };
-    if job.positions.is_null() {
-        return Err(Fault::new(
-            crate::status::ANTHRONET_ERROR_POINTER,
-            "positions: expected a pointer, got NULL",
-        ));
+impl Rows {
+    fn new(first: *mut c_void, bytes: u64, stride: u64, count: usize, what: &str) -> Outcome<Self> {
+        if first.is_null() {
+            return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
+        }
+        at_most(what, "bytes", isize::MAX as u64, bytes)?;
+        let stride = if stride == 0 { WIDTH as u64 } else { stride };
+        let rows = (count as u64).checked_sub(1);
+        let needed = rows.map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(WIDTH as u64));
+        match needed.filter(|needed| *needed <= bytes && stride >= WIDTH as u64) {
+            Some(needed) => Ok(Self { first, bytes: needed, stride: stride as usize }),
+            None => {
+                let message = format!(
+                    "{what}: expected {count} rows of {WIDTH} bytes, {stride} bytes apart, in {bytes} bytes"
+                );
+                Err(Fault::new(ANTHRONET_ERROR_SIZE, message))
+            }
+        }
     }
-    if job.normals.is_null() {
-        let positions = strided(job.positions, job.position_bytes, position_stride, "positions")?;
-        return Ok(SurfaceMut::Separate { positions, normals: None });
+
+    fn extent(&self, job: usize, what: &'static str) -> Outcome<Extent> {
+        Extent::new(job, self.first.cast_const(), self.bytes, true, what)
     }
-    let (first, second) = (job.positions.addr() as u64, job.normals.addr() as u64);
-    let apart = first.saturating_add(job.position_bytes) <= second
-        || second.saturating_add(job.normal_bytes) <= first;
-    if apart {
-        return Ok(SurfaceMut::Separate {
-            positions: strided(job.positions, job.position_bytes, position_stride, "positions")?,
-            normals: Some(strided(job.normals, job.normal_bytes, normal_stride, "normals")?),
-        });
+}
+
+/// Bytes of the caller's memory that a call reads or writes.
+struct Extent {
+    start: u64,
+    end: u64,
+    written: bool,
+    job: usize,
+    what: &'static str,
+}
+
+impl Extent {
+    fn new<T>(job: usize, first: *const T, bytes: u64, written: bool, what: &'static str) -> Outcome<Self> {
+        let start = first.addr() as u64;
+        let end = start.checked_add(bytes);
+        let beyond =
+            || Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: {bytes} is more than memory holds"));
+        Ok(Self { start, end: end.ok_or_else(beyond)?, written, job, what })
     }
-    let behind = second.checked_sub(first).filter(|behind| *behind < position_stride as u64);
-    let Some(behind) = behind.filter(|_| position_stride == normal_stride) else {
-        return Err(Fault::new(
-            ANTHRONET_ERROR_SIZE,
-            "normals: expected a buffer apart from the positions', or of the same stride and behind them by less",
-        ));
-    };
-    let bytes = job.position_bytes.max(behind.saturating_add(job.normal_bytes));
-    Ok(SurfaceMut::Interleaved {
-        bytes: buffer(job.positions, bytes, "positions")?,
-        stride: position_stride,
-        position_offset: 0,
-        normal_offset: behind as usize,
-    })
+}
+
+/// Refuses a call of which anything that is written overlaps something else.
+fn apart(mut extents: Vec<Extent>) -> Outcome {
+    extents.retain(|extent| extent.start < extent.end);
+    extents.sort_by_key(|extent| extent.start);
+    // Of those before: where the farthest ends, and where the farthest that is written does.
+    let (mut farthest, mut written): (Option<&Extent>, Option<&Extent>) = (None, None);
+    for extent in &extents {
+        let before = if extent.written { farthest } else { written };
+        if let Some(other) = before.filter(|other| extent.start < other.end) {
+            let Extent { job, what, .. } = extent;
+            let message = format!(
+                "{what} of job {job}: expected a buffer apart from all others, got one that overlaps the {} of job {}",
+                other.what, other.job
+            );
+            return Err(Fault::new(ANTHRONET_ERROR_POINTER, message));
+        }
+        let reaches = |other: Option<&Extent>| other.is_none_or(|other| other.end < extent.end);
+        if reaches(farthest) {
+            farthest = Some(extent);
+        }
+        if extent.written && reaches(written) {
+            written = Some(extent);
+        }
+    }
+    Ok(())
 }

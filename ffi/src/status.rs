@@ -10,7 +10,7 @@ pub type anthronet_status = i32;
 
 /// Done.
 pub const ANTHRONET_OK: i32 = 0;
-/// A pointer that has to be given is NULL, or not aligned.
+/// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
 pub const ANTHRONET_ERROR_POINTER: i32 = 101;
 /// A size, count, stride or `struct_size` is not what it must be.
 pub const ANTHRONET_ERROR_SIZE: i32 = 102;

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import Any, Mapping, Optional, Tuple, Type, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 import numpy as np
 
 from . import _native
 
 T = TypeVar("T")
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[Any]
+    Doubles = NDArray[np.float64]
+    Floats = NDArray[np.float32]
+    Indices = NDArray[np.uint32]
+    Places = NDArray[np.uint16]
+else:
+    # What an array holds is for checkers of types alone.
+    Array = Doubles = Floats = Indices = Places = np.ndarray
 
 #: What names a file.
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
@@ -97,7 +109,7 @@ def path(value: Any, name: str = "path") -> bytes:
         raise TypeError(f"{name}: expected a path, got {type(value).__name__}") from None
 
 
-def data(value: Any, name: str) -> np.ndarray:
+def data(value: Any, name: str) -> Array:
     """The bytes of anything that has some, not copied."""
     try:
         return np.frombuffer(value, np.uint8) if len(value) else np.empty(0, np.uint8)
@@ -112,7 +124,7 @@ def instance(value: Any, kind: Type[T], name: str) -> T:
     return value
 
 
-def floats(value: Any, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
+def floats(value: Any, name: str, shape: Tuple[Optional[int], ...]) -> Array:
     """A packed array of 32-bit floats; copied only where it is something else. None in `shape` is any number."""
     try:
         given = np.asarray(value)
@@ -125,7 +137,7 @@ def floats(value: Any, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarra
     return array if array.flags.aligned else array.copy()
 
 
-def filled(out: Any, name: str, shape: Tuple[int, ...]) -> np.ndarray:
+def filled(out: Any, name: str, shape: Tuple[int, ...]) -> Array:
     """Rows of 32-bit floats that are written: any stride from row to row, each row packed."""
     array = instance(out, np.ndarray, name)
     if array.dtype != np.float32 or not array.dtype.isnative:
@@ -138,20 +150,20 @@ def filled(out: Any, name: str, shape: Tuple[int, ...]) -> np.ndarray:
     return array
 
 
-def packed_rows(array: np.ndarray) -> bool:
+def packed_rows(array: Array) -> bool:
     """Whether each row is packed and the next lies behind it."""
     width = array.itemsize * (array.shape[1] if array.ndim == 2 else 1)
     packed = array.ndim == 1 or array.strides[1] == array.itemsize or array.shape[1] == 1
     return packed and (len(array) < 2 or array.strides[0] >= width)
 
 
-def extent(array: np.ndarray) -> int:
+def extent(array: Array) -> int:
     """Bytes from the first row's first to the last row's last."""
     width = array.itemsize * (array.shape[1] if array.ndim == 2 else 1)
     return (len(array) - 1) * array.strides[0] + width if len(array) else 0
 
 
-def shaped(array: np.ndarray, name: str, shape: Tuple[Optional[int], ...]) -> None:
+def shaped(array: Array, name: str, shape: Tuple[Optional[int], ...]) -> None:
     """Refuses an array of another shape; None in `shape` is any number."""
     if array.ndim != len(shape) or any(want not in (None, got) for want, got in zip(shape, array.shape)):
         expected = ", ".join("n" if want is None else str(want) for want in shape)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Optional, Tuple
 import numpy as np
 
 from . import _arguments, _native
-from ._arguments import Path
+from ._arguments import Array, Doubles, Path
 from ._clip import Clip
 from ._library import Handle, Owner, bytes_of, call, described, json_of, lib, text_of
 from ._request import MEASURES
@@ -58,22 +58,22 @@ class Body(Owner):
     @property
     def seed(self) -> int:
         """The request's seed."""
-        return self._summary.seed
+        return int(self._summary.seed)
 
     @property
     def mass_kg(self) -> float:
         """Mass, kilograms."""
-        return self._summary.mass_kg
+        return float(self._summary.mass_kg)
 
     @property
     def volume_m3(self) -> float:
         """Volume, cubic metres."""
-        return self._summary.volume_m3
+        return float(self._summary.volume_m3)
 
     @property
     def bmi(self) -> float:
         """Body mass index, kg/m²."""
-        return self._summary.bmi
+        return float(self._summary.bmi)
 
     @property
     def converged(self) -> bool:
@@ -83,20 +83,20 @@ class Body(Owner):
     @property
     def solve_residual(self) -> float:
         """Largest difference between a given measure and the body's, metres."""
-        return self._summary.solve_residual
+        return float(self._summary.solve_residual)
 
     @property
     def iterations(self) -> int:
         """Steps of the exact solve."""
-        return self._summary.iterations
+        return int(self._summary.iterations)
 
     @property
     def joint_count(self) -> int:
         """Number of joints."""
-        return self._summary.joint_count
+        return int(self._summary.joint_count)
 
     @property
-    def latent(self) -> np.ndarray:
+    def latent(self) -> Doubles:
         """The latent numbers of the body: (latent size,) float64. A copy."""
         latent = np.empty(self._latent_size)
         call(lib.anthronet_body_latent, self._open, latent.ctypes.data, len(latent))
@@ -106,7 +106,8 @@ class Body(Owner):
     def report(self) -> Dict[str, Any]:
         """How the body was made, as `anthronet generate --report` writes it: per measure asked, obtained, residual,
         percentile, how it was filled; warnings, conflicts; metres. A copy."""
-        return json_of(lib.anthronet_body_report, self._open)
+        said: Dict[str, Any] = json_of(lib.anthronet_body_report, self._open)
+        return said
 
     @property
     def measures(self) -> Dict[str, float]:
@@ -114,7 +115,7 @@ class Body(Owner):
         return dict(zip(MEASURES, self.measure_reports["obtained"].tolist()))
 
     @property
-    def measure_reports(self) -> np.ndarray:
+    def measure_reports(self) -> Array:
         """One row per measure, in the order of `MEASURES`: (36,) of `MEASURE_REPORT`.
 
         Fields: `asked`, `obtained`, `residual`, the 90 % interval `low90` to `high90` (metres), `percentile`, `given`
@@ -124,7 +125,7 @@ class Body(Owner):
         call(lib.anthronet_body_measures, self._open, reports.ctypes.data, len(reports))
         return reports
 
-    def joints(self, space: str = "gltf") -> np.ndarray:
+    def joints(self, space: str = "gltf") -> Array:
         """The joints in the bind pose, parents first: (joints,) of `JOINT`, metres.
 
         Fields: `parent` (−1 of the root), `length` (along +Y to where the bone ends), `rotation` (x, y, z, w) and
@@ -153,7 +154,7 @@ class Body(Owner):
         return tuple(text_of(lib.anthronet_body_joint_name, handle, i, number) for i in range(self.joint_count))
 
     @property
-    def parents(self) -> np.ndarray:
+    def parents(self) -> Array:
         """Place of each joint's parent, −1 of the root: (joints,) int32. A copy."""
         return self.joints()["parent"].copy()
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
 import numpy as np
 
 from . import _arguments, _native
+from ._arguments import Array, Floats
 from ._library import Handle, Owner, call, described, lib, new_handle, text, text_of
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Clip(Owner):
 
     @classmethod
     def from_poses(
-        cls, body: Body, name: str, frames_per_second: float, frames: np.ndarray, space: str = "gltf"
+        cls, body: Body, name: str, frames_per_second: float, frames: Array, space: str = "gltf"
     ) -> Clip:
         """A clip of poses that a program has, such as an action of an armature.
 
@@ -79,22 +80,22 @@ class Clip(Owner):
     @property
     def frame_count(self) -> int:
         """Number of frames."""
-        return self._info.frame_count
+        return int(self._info.frame_count)
 
     @property
     def joint_count(self) -> int:
         """Number of joints."""
-        return self._info.joint_count
+        return int(self._info.joint_count)
 
     @property
     def frames_per_second(self) -> float:
         """Frames per second."""
-        return self._info.frames_per_second
+        return float(self._info.frames_per_second)
 
     @property
     def duration(self) -> float:
         """From the first frame to the last, seconds."""
-        return self._info.duration
+        return float(self._info.duration)
 
     @property
     def report(self) -> Optional[Dict[str, Any]]:
@@ -108,8 +109,8 @@ class Clip(Owner):
         wrap: str = "once",
         relative: str = "parent",
         space: str = "gltf",
-        out: Optional[np.ndarray] = None,
-    ) -> np.ndarray:
+        out: Optional[Array] = None,
+    ) -> Floats:
         """The pose at a time: (joints, 7) float32.
 
         Args:
@@ -131,7 +132,7 @@ class Clip(Owner):
         call(lib.anthronet_clip_sample, self._open, seconds, wrapped, to, of, joints.ctypes.data, self.joint_count)
         return joints
 
-    def bake(self, relative: str = "parent", space: str = "gltf", out: Optional[np.ndarray] = None) -> np.ndarray:
+    def bake(self, relative: str = "parent", space: str = "gltf", out: Optional[Array] = None) -> Floats:
         """All frames: (frames, joints, 7) float32. Arguments and errors as of `sample`."""
         to, of = _arguments.choice(_arguments.RELATIVE, relative, "relative"), _space(space)
         joints = _packed(out, (self.frame_count, self.joint_count, 7))
@@ -157,10 +158,77 @@ class Clip(Owner):
         second = _arguments.instance(other, Clip, "other")._open
         return self._make(lib.anthronet_clip_crossfade, self._open, second, _arguments.number(seconds, "seconds"))
 
-    def blend(self, other: Clip, weight: float) -> Clip:
-        """This clip and another of the same body at once: `weight` 0 is this one, 1 the other."""
-        second = _arguments.instance(other, Clip, "other")._open
-        return self._make(lib.anthronet_clip_blend, self._open, second, _arguments.number(weight, "weight"))
+    def blend(self, other: Clip, weight: float, mask: Optional[Array] = None) -> Clip:
+        """This clip and another of the same body at once.
+
+        Args:
+            other: the other clip.
+            weight: 0 is this clip, 1 the other.
+            mask: (joints,) float32, the share of each joint from 0 to 1, such as `joint_mask` gives; None for all of
+                every joint.
+        """
+        second, share = _arguments.instance(other, Clip, "other")._open, _arguments.number(weight, "weight")
+        if mask is None:
+            return self._make(lib.anthronet_clip_blend, self._open, second, share)
+        shares = self._shares(mask)
+        return self._make(
+            lib.anthronet_clip_blend_masked, self._open, second, share, shares.ctypes.data, len(shares)
+        )
+
+    def additive(
+        self,
+        layer: Clip,
+        weight: float = 1.0,
+        reference: Optional[Array] = None,
+        mask: Optional[Array] = None,
+        space: str = "gltf",
+    ) -> Clip:
+        """This clip with a layer on it: what the layer differs from a pose by is added. A layer shorter than this clip
+        starts anew.
+
+        Args:
+            layer: a clip of the same body.
+            weight: 0 adds nothing, 1 all.
+            reference: (joints, 7) float32, the pose that adds nothing, each joint relative to its parent, as `sample`
+                gives it; None for the layer's first frame.
+            mask: as of `blend`.
+            space: of `reference`.
+        """
+        other, share = _arguments.instance(layer, Clip, "layer")._open, _arguments.number(weight, "weight")
+        shape = (self.joint_count, 7)
+        pose = None if reference is None else _arguments.floats(reference, "reference", shape)
+        shares = None if mask is None else self._shares(mask)
+        return self._make(
+            lib.anthronet_clip_additive,
+            self._open,
+            other,
+            share,
+            None if pose is None else pose.ctypes.data,
+            0 if pose is None else len(pose),
+            _space(space),
+            None if shares is None else shares.ctypes.data,
+            0 if shares is None else len(shares),
+        )
+
+    def joint_mask(self, *joints: str) -> Floats:
+        """The mask of parts of the body, for `blend` and `additive`: (joints,) float32, 1 for these joints and all
+        below them, else 0. `"spine_01"` is the upper body.
+
+        Args:
+            joints: names in the rig.
+
+        Raises:
+            Error: there is no such joint.
+        """
+        mask = np.zeros(self.joint_count, np.float32)
+        for joint in joints:
+            encoded, part = _arguments.text(joint, "joints"), np.empty_like(mask)
+            call(lib.anthronet_clip_joint_mask, self._open, encoded, len(encoded), part.ctypes.data, len(part))
+            np.maximum(mask, part, out=mask)
+        return mask
+
+    def _shares(self, mask: Array) -> Floats:
+        return _arguments.floats(mask, "mask", (self.joint_count,))
 
     def __repr__(self) -> str:
         return f"<Clip {self.name!r}, {self.frame_count} frames at {self.frames_per_second:g}/s>"
@@ -187,7 +255,7 @@ def _space(space: str) -> int:
     return _arguments.choice(_arguments.SPACES, space, "space")
 
 
-def _packed(out: Optional[np.ndarray], shape: Tuple[int, ...]) -> np.ndarray:
+def _packed(out: Optional[Array], shape: Tuple[int, ...]) -> Floats:
     if out is None:
         return np.empty(shape, np.float32)
     array = _arguments.instance(out, np.ndarray, "out")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import time
-from typing import Iterator, List, NamedTuple, Optional, Union
+from typing import Iterator, List, Literal, NamedTuple, Optional, Union, overload
 
 from . import _arguments, _native
 from ._body import Body
@@ -81,6 +81,12 @@ class Job(Owner):
         place = _arguments.whole(index, "index")
         handle = new_handle(lib.anthronet_job_take, lib.anthronet_body_free, self._open, place)
         return Body._of(handle, self._latent_size)
+
+    @overload
+    def results(self, return_errors: Literal[False] = False) -> Iterator[Body]: ...
+
+    @overload
+    def results(self, return_errors: bool) -> Iterator[Union[Body, Error]]: ...
 
     def results(self, return_errors: bool = False) -> Iterator[Union[Body, Error]]:
         """The bodies in the order of their requests, each as soon as it is there; waits in between.

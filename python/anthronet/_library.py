@@ -14,7 +14,7 @@ import sys
 import threading
 import weakref
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, TypeVar
 
 from . import _native
 from ._errors import error_of
@@ -107,6 +107,10 @@ def new_handle(make: Any, free: Any, *arguments: Any) -> Handle:
     return handle.kept(free)
 
 
+#: Whatever is held by `with`.
+Held = TypeVar("Held", bound="Owner")
+
+
 class Owner:
     """What holds a handle until it is closed: by `close`, by the end of `with`, or with its last reference."""
 
@@ -131,7 +135,7 @@ class Owner:
         """Frees it, as soon as calls under way and arrays that look into it are gone. Closing twice does nothing."""
         self._handle = None
 
-    def __enter__(self) -> Any:
+    def __enter__(self: Held) -> Held:
         if self._handle is None:
             raise ValueError(f"{type(self).__name__}: is closed")
         return self
@@ -186,7 +190,7 @@ def json_of(function: Any, *arguments: Any) -> Any:
 
 def abi_version() -> int:
     """Version of the C interface that library and package share."""
-    return lib.anthronet_abi_version()
+    return int(lib.anthronet_abi_version())
 
 
 _log_lock = threading.Lock()

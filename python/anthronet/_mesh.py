@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterator, NamedTuple, Optional, Tup
 import numpy as np
 
 from . import _arguments, _native
+from ._arguments import Array, Floats, Indices, Places
 from ._library import Handle, Owner, call, described, lib, new_handle, number_of, text, text_of
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _ATTRIBUTES = {
 }
 # What a blend shape moves.
 _MOVED = {name: _ATTRIBUTES[name] for name in ("positions", "normals")}
-_TYPES: Dict[int, np.dtype] = {
+_TYPES: Dict[int, np.dtype[Any]] = {
     _native.TYPE_F32: np.dtype(np.float32),
     _native.TYPE_U32: np.dtype(np.uint32),
     _native.TYPE_U16: np.dtype(np.uint16),
@@ -165,7 +166,7 @@ class Part:
     @property
     def roughness(self) -> float:
         """Perceptual roughness of the material, 0 to 1."""
-        return self._described.roughness
+        return float(self._described.roughness)
 
     @property
     def double_sided(self) -> bool:
@@ -175,60 +176,60 @@ class Part:
     @property
     def vertex_count(self) -> int:
         """Number of vertices."""
-        return self._described.vertex_count
+        return int(self._described.vertex_count)
 
     @property
-    def positions(self) -> np.ndarray:
+    def positions(self) -> Floats:
         """(vertices, 3) float32, metres."""
         return self._view("positions")
 
     @property
-    def normals(self) -> np.ndarray:
+    def normals(self) -> Floats:
         """(vertices, 3) float32, unit length."""
         return self._view("normals")
 
     @property
-    def uvs(self) -> np.ndarray:
+    def uvs(self) -> Floats:
         """(vertices, 2) float32 in the render layout, (texture coordinates, 2) in the model layout; v grows downwards
         in glTF space and upwards in the others."""
         return self._view("uvs")
 
     @property
-    def triangles(self) -> np.ndarray:
+    def triangles(self) -> Indices:
         """(triangles, 3) uint32: vertices. In the model layout the faces that are no quads: none at levels 0 and 1."""
         return self._view("triangles")
 
     @property
-    def quads(self) -> np.ndarray:
+    def quads(self) -> Indices:
         """(quads, 4) uint32: vertices. Model layout alone."""
         return self._view("quads")
 
     @property
-    def quad_uvs(self) -> np.ndarray:
+    def quad_uvs(self) -> Indices:
         """(quads, 4) uint32: texture coordinates of the corners. Model layout alone."""
         return self._view("quad_uvs")
 
     @property
-    def triangle_uvs(self) -> np.ndarray:
+    def triangle_uvs(self) -> Indices:
         """(triangles, 3) uint32: texture coordinates of the corners. Model layout alone."""
         return self._view("triangle_uvs")
 
     @property
-    def joints(self) -> np.ndarray:
+    def joints(self) -> Places:
         """(vertices, influences) uint16: joints of the body."""
         return self._view("joints")
 
     @property
-    def weights(self) -> np.ndarray:
+    def weights(self) -> Floats:
         """(vertices, influences) float32: weights of those joints, descending, of sum 1."""
         return self._view("weights")
 
     @property
-    def sources(self) -> np.ndarray:
+    def sources(self) -> Indices:
         """(vertices,) uint32: which vertex of the model each one is."""
         return self._view("sources")
 
-    def blend_shape(self, shape: Union[str, int], attribute: str = "positions") -> np.ndarray:
+    def blend_shape(self, shape: Union[str, int], attribute: str = "positions") -> Floats:
         """The way of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view.
 
         Args:
@@ -237,7 +238,7 @@ class Part:
         """
         return self._view(attribute, self._shape(shape))
 
-    def read(self, attribute: str, out: Optional[np.ndarray] = None) -> np.ndarray:
+    def read(self, attribute: str, out: Optional[Array] = None) -> Array:
         """Copies an array of the part.
 
         Args:
@@ -251,8 +252,8 @@ class Part:
         return self._read(attribute, None, out)
 
     def read_blend_shape(
-        self, shape: Union[str, int], attribute: str = "positions", out: Optional[np.ndarray] = None
-    ) -> np.ndarray:
+        self, shape: Union[str, int], attribute: str = "positions", out: Optional[Array] = None
+    ) -> Array:
         """Copies the way of a blend shape. Arguments and errors as of `blend_shape` and `read`."""
         return self._read(attribute, self._shape(shape), out)
 
@@ -262,7 +263,7 @@ class Part:
         names = self._mesh.blend_shapes
         return _arguments.choice({name: i for i, name in enumerate(names)}, shape, "shape")
 
-    def _read(self, attribute: str, shape: Optional[int], out: Optional[np.ndarray]) -> np.ndarray:
+    def _read(self, attribute: str, shape: Optional[int], out: Optional[Array]) -> Array:
         with self._mesh._lock:
             source = self._source(attribute, shape)
             array = np.empty(source.shape, source.dtype) if out is None else _arguments.instance(out, np.ndarray, "out")
@@ -279,7 +280,7 @@ class Part:
                 call(source.read, *source.place, array.ctypes.data, _arguments.extent(array), stride)
             return array
 
-    def _view(self, attribute: str, shape: Optional[int] = None) -> np.ndarray:
+    def _view(self, attribute: str, shape: Optional[int] = None) -> Array:
         with self._mesh._lock:
             return self._source(attribute, shape).array()
 
@@ -325,10 +326,10 @@ class _Source(NamedTuple):
     read: Any
     #: Of its first number; None of an empty one.
     address: Optional[int]
-    dtype: np.dtype
+    dtype: np.dtype[Any]
     shape: Tuple[int, ...]
 
-    def array(self) -> np.ndarray:
+    def array(self) -> Array:
         """A view of it."""
         if self.address:
             return np.asarray(_Memory(self))

@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _arguments, _native
-from ._arguments import Path
+from ._arguments import Array, Path
 from ._body import Body
 from ._job import Job
 from ._library import Owner, call, described, json_of, lib, new_handle, number_of
@@ -75,7 +75,8 @@ class Model(Owner):
 
     def info(self) -> Dict[str, Any]:
         """What the model is: measures with definitions and ranges, joints, versions, scores. A copy."""
-        return json_of(lib.anthronet_model_info, self._open)
+        said: Dict[str, Any] = json_of(lib.anthronet_model_info, self._open)
+        return said
 
     @property
     def latent_size(self) -> int:
@@ -130,7 +131,7 @@ class Model(Owner):
         """Starts to make the bodies of many requests, in order, beside the caller's thread."""
         return Job._new(self._open, list(requests), self._latent_size)
 
-    def measure(self, positions: np.ndarray, space: str = "gltf") -> Measured:
+    def measure(self, positions: Array, space: str = "gltf") -> Measured:
         """Measures a body in its bind pose at any level of detail, sculpted or not.
 
         Args:
@@ -139,7 +140,8 @@ class Model(Owner):
             space: `"gltf"`, `"blender"` or `"unity"`.
 
         Raises:
-            InvalidError: it is no body of ours: another number of vertices, numbers that are not finite.
+            ArgumentError: it is no body of ours: another number of vertices.
+            InvalidError: numbers that are not finite.
         """
         number = _arguments.choice(_arguments.SPACES, space, "space")
         array = positions

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from . import _arguments, _native
-from ._arguments import Path
+from ._arguments import Array, Path
 from ._clip import Clip
 from ._library import Handle, Owner, call, described, json_of, lib, new_handle, number_of, take_bytes, text_of
 
@@ -69,8 +69,8 @@ class Motion(Owner):
         name: str,
         joint_names: Sequence[str],
         parents: Sequence[int],
-        rest: np.ndarray,
-        frames: np.ndarray,
+        rest: Array,
+        frames: Array,
         frames_per_second: float,
         space: str = "gltf",
     ) -> Motion:
@@ -125,7 +125,8 @@ class Motion(Owner):
     @property
     def report(self) -> Dict[str, Any]:
         """How the file was understood: format, unit, axis, rate, how each was found, warnings. A copy."""
-        return json_of(lib.anthronet_motion_report, self._open)
+        said: Dict[str, Any] = json_of(lib.anthronet_motion_report, self._open)
+        return said
 
     def retarget(
         self,

@@ -95,7 +95,8 @@ class Request:
         return Request.from_json, (self.to_json(),)
 
     def _fields(self) -> Dict[str, Any]:
-        return json_of(lib.anthronet_request_to_json, self._handle)
+        said: Dict[str, Any] = json_of(lib.anthronet_request_to_json, self._handle)
+        return said
 
     def _change(self, change: Any, *arguments: Any) -> None:
         # A handle that others may be reading is never changed: a copy of it is, and takes its place.
@@ -116,7 +117,7 @@ class Request:
     @property
     def seed(self) -> int:
         """0 for the likeliest person, any other for one of the people with these measures."""
-        return self._fields()["seed"]
+        return int(self._fields()["seed"])
 
     @seed.setter
     def seed(self, value: int) -> None:
@@ -134,7 +135,7 @@ class Request:
     @property
     def fill(self) -> str:
         """`"mean"` or `"sample"`."""
-        return self._fields()["fill"]
+        return str(self._fields()["fill"])
 
     @fill.setter
     def fill(self, value: str) -> None:
@@ -143,7 +144,7 @@ class Request:
     @property
     def nearest(self) -> bool:
         """Whether the nearest person is taken where nobody has these measures."""
-        return self._fields()["nearest"]
+        return bool(self._fields()["nearest"])
 
     @nearest.setter
     def nearest(self, value: bool) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Iterable, List, Optional, Tuple, Union
 import numpy as np
 
 from . import _arguments, _native
+from ._arguments import Array, Floats
 from ._library import Handle, Owner, call, lib, new_handle, number_of
 
 _METHODS = {
@@ -17,7 +18,7 @@ _METHODS = {
     "joint_translation": _native.SKIN_JOINT_TRANSLATION,
 }
 
-Posed = Tuple[np.ndarray, Optional[np.ndarray]]
+Posed = Tuple[Floats, Optional[Floats]]
 
 
 class Skinner(Owner):
@@ -42,11 +43,11 @@ class Skinner(Owner):
 
     def skin(
         self,
-        joints: np.ndarray,
-        positions: Optional[np.ndarray] = None,
-        normals: Union[np.ndarray, None, bool] = None,
+        joints: Array,
+        positions: Optional[Array] = None,
+        normals: Union[Array, None, bool] = None,
         method: str = "linear",
-        offsets: Optional[np.ndarray] = None,
+        offsets: Optional[Array] = None,
     ) -> Posed:
         """Poses the surface: `(positions, normals)`. Arguments and errors as of `SkinJob` and `skin`."""
         return skin([SkinJob(self, joints, positions, normals, method, offsets)])[0]
@@ -70,11 +71,11 @@ class SkinJob:
     """
 
     skinner: Skinner
-    joints: np.ndarray
-    positions: Optional[np.ndarray] = None
-    normals: Union[np.ndarray, None, bool] = None
+    joints: Array
+    positions: Optional[Array] = None
+    normals: Union[Array, None, bool] = None
     method: str = "linear"
-    offsets: Optional[np.ndarray] = None
+    offsets: Optional[Array] = None
 
 
 def skin(jobs: Iterable[SkinJob]) -> List[Posed]:
@@ -83,12 +84,12 @@ def skin(jobs: Iterable[SkinJob]) -> List[Posed]:
     The numbers do not depend on how many jobs go together. Nothing is written unless all jobs are in order.
 
     Raises:
-        InvalidError: a pose has another number of joints, or numbers that are not finite.
-        TypeError, ValueError: an array is of another shape, type or stride, or buffers of two jobs overlap.
+        ArgumentError: a pose has another number of joints, or an array that is filled overlaps another one of the call.
+        InvalidError: a pose has numbers that are not finite.
+        TypeError, ValueError: an array is of another shape, type or stride.
     """
     jobs = [_arguments.instance(job, SkinJob, "jobs") for job in jobs]
     prepared = [_Prepared(job) for job in jobs]
-    _apart([extent for one in prepared for extent in one.extents()])
     count = len(prepared)
     described = (_native.SkinJob * count)(*[one.described for one in prepared])
     call(lib.anthronet_skin, described, count)
@@ -125,25 +126,6 @@ class _Prepared:
             self.described.normal_bytes = _arguments.extent(self.normals)
             self.described.normal_stride = self.normals.strides[0]
 
-    def extents(self) -> List[Tuple[int, int]]:
-        """First byte and end of what the job writes; one that spans both buffers where they lie in each other."""
-        first = self.positions.ctypes.data
-        positions = (first, first + _arguments.extent(self.positions))
-        if self.normals is None:
-            return [positions]
-        second = self.normals.ctypes.data
-        normals = (second, second + _arguments.extent(self.normals))
-        if positions[1] <= normals[0] or normals[1] <= positions[0]:
-            return [positions, normals]
-        return [(min(positions[0], normals[0]), max(positions[1], normals[1]))]
 
-
-def _output(array: Any, name: str, count: int) -> np.ndarray:
+def _output(array: Any, name: str, count: int) -> Array:
     return np.empty((count, 3), np.float32) if array is None else _arguments.filled(array, name, (count, 3))
-
-
-def _apart(extents: List[Tuple[int, int]]) -> None:
-    extents.sort()
-    for (_, end), (start, _) in zip(extents, extents[1:]):
-        if start < end:
-            raise ValueError("positions, normals: expected buffers that do not overlap from job to job")

@@ -32,9 +32,11 @@ void test_struct_sizes(const fixture *f);
 void test_enumerations(const fixture *f);
 void test_numbers(const fixture *f);
 void test_counts(const fixture *f);
+void test_counts_too_large(const fixture *f);
 void test_strides(const fixture *f);
 void test_texts(const fixture *f);
 void test_skin_jobs(const fixture *f);
+void test_skin_overlaps(const fixture *f);
 void test_sources(const fixture *f);
 
 void test_no_files(const fixture *f);

@@ -84,6 +84,57 @@ void test_skin_jobs(const fixture *f) {
     free(pose);
 }
 
+/* Outputs that overlap one another or what the call reads, by a byte or wholly. */
+void test_skin_overlaps(const fixture *f) {
+    anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
+    anthronet_skin_job good[3], jobs[3];
+    uint32_t count = 0, i;
+    uint64_t packed;
+    unsigned char *memory, *behind;
+    OK(anthronet_skinner_vertex_count(f->skinner, &count, &fault));
+    packed = 12 * (uint64_t)count;
+    memory = (unsigned char *)room((size_t)(6 * packed));
+    fill(memory, (size_t)(6 * packed));
+    behind = memory + 3 * packed;
+    for (i = 0; i < 3; i++) {
+        SIZED(good[i]);
+        good[i].skinner = f->skinner;
+        good[i].joints = pose;
+        good[i].joint_count = f->joints;
+        good[i].positions = memory + i * packed;
+        /* More than the vertices need does not count. */
+        good[i].position_bytes = 2 * packed;
+    }
+#define OVERLAPS(change) \
+    (memcpy(jobs, good, sizeof jobs), (void)(change), REFUSED(POINTER, anthronet_skin(jobs, 3, &fault)))
+    OVERLAPS(jobs[2].positions = memory);
+    OVERLAPS(jobs[0].positions = memory + 2 * packed);
+    OVERLAPS(jobs[1].positions = memory + packed - 1);
+    OVERLAPS(jobs[1].positions = memory + packed + 1);
+    OVERLAPS((jobs[0].positions = behind, jobs[1].positions = behind + 12, jobs[0].position_stride = jobs[1].position_stride = 24,
+              jobs[0].position_bytes = jobs[1].position_bytes = 3 * packed - 12));
+    OVERLAPS((jobs[2].normals = memory + packed - 12, jobs[2].normal_bytes = packed));
+    OVERLAPS((jobs[2].normals = memory + packed + 12, jobs[2].normal_bytes = packed, jobs[2].normal_stride = 12));
+    OVERLAPS((jobs[1].offsets = (const float *)(const void *)behind, jobs[1].offset_count = count, jobs[2].positions = behind + 4));
+    OVERLAPS((jobs[1].offsets = (const float *)(const void *)(memory + packed), jobs[1].offset_count = count));
+    OVERLAPS((memcpy(behind, pose, f->joints * sizeof *pose), jobs[0].joints = (const anthronet_transform *)(const void *)behind,
+              jobs[2].positions = behind + 8));
+    OVERLAPS(jobs[1].positions = jobs);
+    fill(behind, (size_t)packed);
+    CHECK(is_filled(memory, (size_t)(6 * packed)), "a refused buffer is written to");
+    /* Side by side, and what is read twice, is well. */
+    memcpy(jobs, good, sizeof jobs);
+    memset(behind, 0, (size_t)packed);
+    jobs[0].offsets = jobs[1].offsets = (const float *)(const void *)behind;
+    jobs[0].offset_count = jobs[1].offset_count = count;
+    OK(anthronet_skin(jobs, 3, &fault));
+    CHECK(memcmp(memory, memory + packed, (size_t)packed) == 0 && memcmp(memory, memory + 2 * packed, (size_t)packed) == 0,
+          "three alike differ");
+    CHECK(is_filled(memory + 4 * packed, (size_t)(2 * packed)), "something beyond is written");
+    free(memory);
+    free(pose);
+}
+
 static anthronet_text text_of(const char *words) {
     anthronet_text text;
     text.data = words;

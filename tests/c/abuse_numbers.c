@@ -129,6 +129,7 @@ void test_enumerations(const fixture *f) {
         REFUSED(ENUM, anthronet_clip_bake(f->walk, wrong, 0, pose, 1, &fault));
         REFUSED(ENUM, anthronet_clip_bake(f->walk, 0, wrong, pose, 1, &fault));
         REFUSED_OUT(ENUM, clip, anthronet_clip_new(f->body, TEXT("a"), 30, wrong, pose, f->joints, &clip, &fault));
+        REFUSED_OUT(ENUM, clip, anthronet_clip_additive(f->walk, f->walk, 1, NULL, 0, wrong, NULL, 0, &clip, &fault));
         for (k = 1; k < 7; k++) {
             anthronet_mesh_options options;
             SIZED(options);
@@ -196,10 +197,11 @@ void test_numbers(const fixture *f) {
     anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
     double metres[36], seen[36], latent[4] = {0, 0, 0, NAN};
     uint8_t given[36], seen_given[36];
-    float *positions;
+    float *positions, *mask = (float *)room(f->joints * sizeof *mask);
     uint32_t vertices = 0;
     size_t i;
     OK(anthronet_request_new(&request, &fault));
+    for (i = 0; i < f->joints; i++) mask[i] = 1;
     for (i = 0; i < LENGTH(NOT_FINITE); i++) {
         double bad = NOT_FINITE[i];
         REFUSED(REQUEST, anthronet_request_set_measure(request, TEXT("height"), bad, &fault));
@@ -213,6 +215,15 @@ void test_numbers(const fixture *f) {
         FAILS_OUT(clip, anthronet_clip_looped(f->walk, bad, &clip, &fault));
         FAILS_OUT(clip, anthronet_clip_crossfade(f->walk, f->walk, bad, &clip, &fault));
         FAILS_OUT(clip, anthronet_clip_blend(f->walk, f->walk, (float)bad, &clip, &fault));
+        FAILS_OUT(clip, anthronet_clip_blend_masked(f->walk, f->walk, (float)bad, mask, f->joints, &clip, &fault));
+        FAILS_OUT(clip, anthronet_clip_additive(f->walk, f->walk, (float)bad, NULL, 0, 0, NULL, 0, &clip, &fault));
+        mask[9] = (float)bad;
+        FAILS_OUT(clip, anthronet_clip_blend_masked(f->walk, f->walk, 1, mask, f->joints, &clip, &fault));
+        FAILS_OUT(clip, anthronet_clip_additive(f->walk, f->walk, 1, NULL, 0, 0, mask, f->joints, &clip, &fault));
+        mask[9] = 1;
+        pose[9].translation[1] = (float)bad;
+        FAILS_OUT(clip, anthronet_clip_additive(f->walk, f->walk, 1, pose, f->joints, 0, NULL, 0, &clip, &fault));
+        pose[9].translation[1] = 0;
     }
     REFUSED(REQUEST, anthronet_request_set_latent(request, latent, 4, &fault));
     given[7] = 2;
@@ -268,6 +279,7 @@ void test_numbers(const fixture *f) {
     FAILS_OUT(metres, anthronet_measure_mesh(f->model, positions, vertices - 1, 0, 0, metres, 36, NULL, &fault));
     FAILS_OUT(metres, anthronet_measure_mesh(f->model, NULL, 0, 0, 0, metres, 36, NULL, &fault));
     free(positions);
+    free(mask);
     free(pose);
     anthronet_request_free(request);
 }
@@ -314,12 +326,108 @@ void test_counts(const fixture *f) {
     FAILS_OUT(clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, &pose, 0, &clip, &fault));
     REFUSED_OUT(SIZE, request, anthronet_request_from_json("{}", UINT64_MAX, &request, &fault));
     REFUSED_OUT(SIZE, number, anthronet_measure_index("height", UINT64_MAX, &number, &fault));
-    REFUSED_OUT(ANTHRONET_ERROR_POINTER, job, anthronet_job_start(f->model, NULL, UINT32_MAX, &job, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_POINTER, job, anthronet_job_start(f->model, NULL, 1, &job, &fault));
     REFUSED(ANTHRONET_ERROR_POINTER, anthronet_skin(NULL, UINT32_MAX, &fault));
     SIZED(source);
     source.joint_count = source.frame_count = UINT32_MAX;
     source.frames_per_second = 30;
     FAILS_OUT(motion, anthronet_motion_new(&source, &motion, &fault));
+}
+
+/* Counts that say more than the small buffers beside them hold, by one or by far: refused before anything is read. */
+void test_counts_too_large(const fixture *f) {
+    static const uint32_t BY[] = {1, UINT32_MAX / 2, UINT32_MAX};
+    anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF), *exact;
+    uint32_t count = 0, vertices = 0;
+    anthronet_skin_job job;
+    anthronet_motion_source source, wrong;
+    anthronet_export_options export_options;
+    anthronet_retarget_options retarget;
+    anthronet_text name;
+    const anthronet_clip *clips[1];
+    const anthronet_request *requests[1];
+    anthronet_bytes *bytes;
+    anthronet_clip *clip;
+    anthronet_job *running;
+    anthronet_model *model;
+    anthronet_motion *motion;
+    anthronet_request *request, *mine = NULL;
+    int32_t parent = -1;
+    uint64_t joints = f->joints;
+    double latent[1] = {0}, metres[36];
+    float *floats, mask = 1;
+    size_t i;
+    OK(anthronet_skinner_vertex_count(f->skinner, &count, &fault));
+    OK(anthronet_model_vertex_count(f->model, 3, &vertices, &fault));
+    OK(anthronet_request_new(&mine, &fault));
+    /* Allocated exactly, so that reading one number too many is seen. */
+    floats = (float *)room(24 * (size_t)count);
+    memset(floats, 0, 24 * (size_t)count);
+    exact = (anthronet_transform *)room(f->joints * sizeof *exact);
+    memcpy(exact, pose, f->joints * sizeof *exact);
+    clips[0] = f->walk;
+    requests[0] = f->request;
+    name.data = "hips";
+    name.length = 4;
+    SIZED(source);
+    source.joint_count = source.frame_count = 1;
+    source.frames_per_second = 30;
+    source.name = name;
+    source.joint_names = &name;
+    source.parents = &parent;
+    source.rest = source.frames = exact;
+    OK(anthronet_motion_new(&source, &motion, &fault));
+    anthronet_motion_free(motion);
+    for (i = 0; i < LENGTH(BY); i++) {
+        uint32_t by = BY[i];
+#define LARGER(n) ((n) > UINT32_MAX - by ? UINT32_MAX : (uint32_t)((n) + by))
+        SIZED(job);
+        job.skinner = f->skinner;
+        job.joints = exact;
+        job.joint_count = LARGER(f->joints);
+        job.positions = floats;
+        job.position_bytes = 12 * (uint64_t)count;
+        REFUSED(SIZE, anthronet_skin(&job, 1, &fault));
+        job.joint_count = f->joints;
+        job.offsets = floats + 3 * (size_t)count;
+        job.offset_count = LARGER(count);
+        REFUSED(SIZE, anthronet_skin(&job, 1, &fault));
+        if (LARGER(1 << 20) > 1 << 20) REFUSED(SIZE, anthronet_skin(&job, LARGER(1 << 20), &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, floats, LARGER(vertices), 0, 0, metres, 36, NULL, &fault));
+        REFUSED(SIZE, anthronet_request_set_latent(mine, latent, LARGER(256), &fault));
+        wrong = source;
+        wrong.joint_count = LARGER(4096);
+        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
+        wrong = source;
+        wrong.frame_count = LARGER(1 << 20);
+        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
+        wrong.joint_count = 4096;
+        wrong.frame_count = LARGER(1 << 16);
+        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, exact, joints + by, &clip, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, exact, joints * ((1 << 20) + (uint64_t)by), &clip, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_blend_masked(f->walk, f->walk, 1, &mask, LARGER(f->joints), &clip, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_additive(f->walk, f->walk, 1, exact, LARGER(f->joints), 0, NULL, 0, &clip, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_additive(f->walk, f->walk, 1, exact, f->joints, 0, &mask, LARGER(f->joints), &clip, &fault));
+        REFUSED_OUT(SIZE, running, anthronet_job_start(f->model, requests, LARGER(1 << 20), &running, &fault));
+        SIZED(export_options);
+        export_options.clips = clips;
+        export_options.clip_count = LARGER(1 << 20);
+        REFUSED_OUT(SIZE, bytes, anthronet_export_memory(f->body, &export_options, TEXT("glb"), &bytes, &fault));
+        SIZED(retarget);
+        retarget.mapping_json = "{}";
+        retarget.mapping_length = LARGER(1 << 20);
+        REFUSED_OUT(SIZE, clip, anthronet_motion_retarget(f->motion, 0, f->body, &retarget, &clip, NULL, &fault));
+        REFUSED_OUT(SIZE, request, anthronet_request_from_json("{}", LARGER(1 << 20), &request, &fault));
+        REFUSED(SIZE, anthronet_request_set_measure(mine, "height", LARGER(1 << 20), 1.7, &fault));
+        REFUSED_OUT(SIZE, model, anthronet_model_open_path("a", LARGER(1 << 20), &model, &fault));
+        REFUSED_OUT(SIZE, model, anthronet_model_open_memory((const uint8_t *)"a", LARGER(1 << 30), &model, &fault));
+        REFUSED_OUT(SIZE, motion, anthronet_motion_open_memory((const uint8_t *)"a", LARGER(1 << 30), TEXT("a.bvh"), NULL, &motion, &fault));
+    }
+    free(floats);
+    free(exact);
+    free(pose);
+    anthronet_request_free(mine);
 }
 
 void test_strides(const fixture *f) {
@@ -329,9 +437,11 @@ void test_strides(const fixture *f) {
     unsigned char *buffer;
     double metres[36];
     size_t bytes, i;
+    uint32_t vertices = 0;
     anthronet_mesh_options options;
     SIZED(options);
     options.lod = 3;
+    OK(anthronet_model_vertex_count(f->model, 3, &vertices, &fault));
     OK(anthronet_mesh_new(f->body, &options, &mesh, &fault));
     OK(anthronet_mesh_data(mesh, 0, ANTHRONET_ATTRIBUTE_POSITIONS, &view, &fault));
     bytes = (size_t)view.rows * 12;
@@ -339,7 +449,7 @@ void test_strides(const fixture *f) {
     fill(buffer, bytes);
     for (i = 0; i < LENGTH(NO_STRIDES); i++) {
         REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes, NO_STRIDES[i], &fault));
-        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, buffer, 1000, NO_STRIDES[i], 0, metres, 36, NULL, &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, buffer, vertices, NO_STRIDES[i], 0, metres, 36, NULL, &fault));
     }
     REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes - 1, 0, &fault));
     REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes, 13, &fault));

@@ -19,6 +19,8 @@ int main(int argc, char **argv) {
         anthronet_request *request = NULL;
         anthronet_body *body = NULL;
         anthronet_bytes *bytes = NULL;
+        anthronet_clip *walk = NULL;
+        const anthronet_clip *clips[1];
         anthronet_export_options options;
         const uint8_t *data = NULL;
         uint64_t length = 0;
@@ -27,6 +29,12 @@ int main(int argc, char **argv) {
         options.lod = number % 4;
         code = anthronet_request_from_json(line, strcspn(line, "\n"), &request, NULL);
         if (code == ANTHRONET_OK) code = anthronet_generate(model, request, &body, NULL);
+        if (code == ANTHRONET_OK && number % 10 == 3) {
+            code = anthronet_clip_builtin(TEXT("walk"), body, &walk, NULL);
+            clips[0] = walk;
+            options.clips = clips;
+            options.clip_count = 1;
+        }
         if (code == ANTHRONET_OK) code = anthronet_export_memory(body, &options, TEXT("glb"), &bytes, NULL);
         if (code == ANTHRONET_OK) code = anthronet_bytes_data(bytes, &data, &length, NULL);
         if (code == ANTHRONET_OK) {
@@ -37,6 +45,7 @@ int main(int argc, char **argv) {
         }
         anthronet_request_free(request);
         anthronet_body_free(body);
+        anthronet_clip_free(walk);
         anthronet_bytes_free(bytes);
     }
     anthronet_model_free(model);

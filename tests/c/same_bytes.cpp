@@ -21,6 +21,7 @@ template <auto Free> struct Freed {
 using Model = std::unique_ptr<anthronet_model, Freed<anthronet_model_free>>;
 using Request = std::unique_ptr<anthronet_request, Freed<anthronet_request_free>>;
 using Body = std::unique_ptr<anthronet_body, Freed<anthronet_body_free>>;
+using Clip = std::unique_ptr<anthronet_clip, Freed<anthronet_clip_free>>;
 using Bytes = std::unique_ptr<anthronet_bytes, Freed<anthronet_bytes_free>>;
 
 struct Failure : std::runtime_error {
@@ -36,7 +37,7 @@ template <class Handle, class Make> Handle made(Make make) {
     return Handle(handle);
 }
 
-std::string hash_of(const Model &model, std::string_view json, std::uint32_t lod) {
+std::string hash_of(const Model &model, std::string_view json, std::uint32_t number) {
     auto request = made<Request>([&](auto out, auto error) {
         return anthronet_request_from_json(json.data(), json.size(), out, error);
     });
@@ -45,7 +46,17 @@ std::string hash_of(const Model &model, std::string_view json, std::uint32_t lod
     });
     anthronet_export_options options{};
     options.struct_size = sizeof options;
-    options.lod = lod;
+    options.lod = number % 4;
+    Clip walk;
+    const anthronet_clip *clips[1];
+    if (number % 10 == 3) {
+        walk = made<Clip>([&](auto out, auto error) {
+            return anthronet_clip_builtin("walk", 4, body.get(), out, error);
+        });
+        clips[0] = walk.get();
+        options.clips = clips;
+        options.clip_count = 1;
+    }
     auto bytes = made<Bytes>([&](auto out, auto error) {
         return anthronet_export_memory(body.get(), &options, "glb", 3, out, error);
     });
@@ -71,7 +82,7 @@ int main(int argc, char **argv) {
     std::uint32_t number = 0;
     for (std::string line; std::getline(list, line); number++) {
         try {
-            std::cout << hash_of(model, line, number % 4) << '\n';
+            std::cout << hash_of(model, line, number) << '\n';
         } catch (const Failure &failure) {
             std::cout << "error " << failure.code << '\n';
         }

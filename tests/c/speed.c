@@ -1,4 +1,5 @@
-/* What a call costs, and how fast arrays are copied out, beside the bars. */
+/* What a call costs, and how fast arrays are copied out, beside the bars. A case fails where a bar is missed by more than
+ * GENEROUS times, which no neighbour on the machine explains. */
 
 #include "check.h"
 
@@ -8,7 +9,10 @@
 #include <time.h>
 
 #define ROUNDS 400
-#define CALLS 10000000
+#define CALLS 3000000
+#define GENEROUS 3
+#define CALL_BAR 20.0
+#define COPY_BAR 60.0
 
 static double now(void) {
     struct timespec t;
@@ -17,6 +21,13 @@ static double now(void) {
 }
 
 static double nanoseconds_per_call(double since) { return 1e9 * (now() - since) / CALLS; }
+
+/* A case; how many failed. */
+static int nanoseconds(const char *what, double found) {
+    int good = found <= GENEROUS * CALL_BAR;
+    printf("%s %s: %.1f ns, bar %.0f ns, fails above %.0f ns\n", good ? "ok" : "FAILED", what, found, CALL_BAR, GENEROUS * CALL_BAR);
+    return !good;
+}
 
 static double least(double a, double b) { return a < b ? a : b; }
 
@@ -28,7 +39,8 @@ int main(void) {
     anthronet_view view;
     volatile uint32_t sum = 0;
     uint32_t count = 0;
-    double plain = 1e9, guarded = 1e9, ours = 1e9, theirs = 1e9;
+    double plain = 1e9, guarded = 1e9, ours = 1e9, theirs = 1e9, share;
+    int failed = 0;
     char *to;
     const char *from;
     uint64_t bytes;
@@ -65,14 +77,17 @@ int main(void) {
         ours = least(ours, now() - start);
         sum += (uint32_t)to[round];
     }
-    printf("a call that returns a number:    %5.1f ns (bar: 20)\n", plain);
-    printf("a call that looks into a handle: %5.1f ns (bar: 20)\n", guarded);
-    printf("LOD 0 positions copied out:      %5.1f GB/s, %.0f %% of memcpy's %.1f GB/s (bar: 60 %%)\n",
-           (double)bytes / ours * 1e-9, 100 * theirs / ours, (double)bytes / theirs * 1e-9);
+    failed += nanoseconds("a call that returns a number", plain);
+    failed += nanoseconds("a call that looks into a handle", guarded);
+    share = 100 * theirs / ours;
+    failed += share < COPY_BAR / GENEROUS;
+    printf("%s level 0 positions copied out: %.1f GB/s, %.0f %% of memcpy's %.1f GB/s, bar %.0f %%, fails below %.0f %%\n",
+           share < COPY_BAR / GENEROUS ? "FAILED" : "ok", (double)bytes / ours * 1e-9, share, (double)bytes / theirs * 1e-9,
+           COPY_BAR, COPY_BAR / GENEROUS);
     free(to);
     anthronet_mesh_free(mesh);
     anthronet_body_free(body);
     anthronet_request_free(request);
     anthronet_model_free(model);
-    return 0;
+    return failed > 0;
 }

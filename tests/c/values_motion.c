@@ -108,7 +108,10 @@ void test_sample(const fixture *f) {
 void test_clips_made_of_clips(const fixture *f) {
     anthronet_clip_info info = info_of(f->walk);
     anthronet_clip *made = NULL, *idle = NULL;
-    anthronet_transform *pose = pose_room(f), *other = pose_room(f);
+    anthronet_transform *pose = pose_room(f), *other = pose_room(f), *walked = pose_room(f);
+    float *mask = (float *)room(f->joints * sizeof *mask);
+    uint32_t above = 0, i;
+    double off, most = 0;
     OK(anthronet_clip_resample(f->walk, 2 * info.frames_per_second, &made, &fault));
     CHECK(info_of(made).frame_count == 2 * info.frame_count - 1 && fabs(info_of(made).duration - info.duration) < 1e-9,
           "twice the rate: %u frames", info_of(made).frame_count);
@@ -130,6 +133,33 @@ void test_clips_made_of_clips(const fixture *f) {
     sample(f, idle, 0, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, other);
     CHECK(all_apart(pose, other, f->joints) < 1e-3, "weight 1 is off the second by %g", all_apart(pose, other, f->joints));
     anthronet_clip_free(made);
+    /* The upper body stands, the legs walk. */
+    OK(anthronet_clip_joint_mask(f->walk, TEXT("spine_01"), mask, f->joints, &fault));
+    for (i = 0; i < f->joints; i++) above += mask[i] == 1;
+    CHECK(above > 5 && above < f->joints - 5, "%u joints of %u are above the waist", above, f->joints);
+    OK(anthronet_clip_blend_masked(f->walk, idle, 1.0f, mask, f->joints, &made, &fault));
+    sample(f, made, 0.3, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, pose);
+    sample(f, idle, 0.3, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, other);
+    sample(f, f->walk, 0.3, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, walked);
+    for (i = 0; i < f->joints; i++) {
+        off = all_apart(&pose[i], mask[i] == 1 ? &other[i] : &walked[i], 1);
+        if (!CHECK(off < 1e-3, "joint %u of a masked blend is off by %g", i, off)) break;
+    }
+    anthronet_clip_free(made);
+    /* A layer against its own pose at 0.3 s adds nothing there; by default its first frame adds nothing at 0 s. */
+    OK(anthronet_clip_additive(idle, f->walk, 1.0f, walked, f->joints, ANTHRONET_SPACE_GLTF, NULL, 0, &made, &fault));
+    sample(f, made, 0.3, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, pose);
+    CHECK(all_apart(pose, other, f->joints) < 1e-3, "nothing added is %g", all_apart(pose, other, f->joints));
+    anthronet_clip_free(made);
+    OK(anthronet_clip_additive(idle, f->walk, 1.0f, NULL, 0, ANTHRONET_SPACE_GLTF, mask, f->joints, &made, &fault));
+    sample(f, made, 0.3, ANTHRONET_WRAP_ONCE, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, pose);
+    for (i = 0; i < f->joints; i++) {
+        double moved = all_apart(&pose[i], &other[i], 1);
+        if (mask[i] == 0) CHECK(moved < 1e-3, "joint %u is not of the layer and is off by %g", i, moved);
+        else most = fmax(most, moved);
+    }
+    CHECK(most > 0.01, "the layer moves nothing above the waist: %g", most);
+    anthronet_clip_free(made);
     OK(anthronet_clip_crossfade(f->walk, idle, 0.25, &made, &fault));
     CHECK(fabs(info_of(made).duration - (info.duration + info_of(idle).duration - 0.25)) < 0.1, "%f s",
           info_of(made).duration);
@@ -141,6 +171,8 @@ void test_clips_made_of_clips(const fixture *f) {
     anthronet_clip_free(made);
     anthronet_clip_free(idle);
     free(pose);
+    free(walked);
+    free(mask);
     free(other);
 }
 

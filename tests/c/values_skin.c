@@ -141,6 +141,12 @@ void test_skin_buffers(const fixture *f) {
         }
         if (!CHECK(is_filled(row + 6, 8), "what is between the rows is written over, vertex %u", v)) break;
     }
+    /* The normal may come first. */
+    job.positions = both + 3;
+    job.normals = both;
+    job.position_bytes = job.normal_bytes;
+    OK(anthronet_skin(&job, 1, &fault));
+    CHECK(fabsf(both[3] - bind[0]) < 1e-5f && fabsf(both[0] - ((const float *)normals.data)[0]) < 1e-4f, "normals first");
     /* None at all. */
     OK(anthronet_skin(NULL, 0, &fault));
     free(pose);

@@ -1,12 +1,16 @@
 // What C++ may rely on: exceptions with the library's message, lifetimes, threads, enumerations, and the same bytes as
 // the command line.
 //
-//     checks REQUEST.json EXPECTED.glb FOLDER
+//     checks REQUEST.json EXPECTED.glb FOLDER SAME_BYTES
+//
+// SAME_BYTES is the folder that ffi/tests/same_bytes.rs leaves, and says how it is read.
 
+#include "../c/sha256.h"
 #include "anthronet/anthronet.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -242,6 +246,117 @@ void buffers(const Model &model) {
   });
 }
 
+void interleaved(const Model &model) {
+  auto body = person(model, 1.70);
+  auto mesh = body->mesh({});
+  auto skinner = mesh->skinner(0);
+  auto walk = Clip::builtin("walk", *body);
+  std::vector<Transform> pose(walk->joint_count());
+  walk->sample(0.4, Wrap::Loop, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+  const rust::Slice<const Transform> posed(pose);
+  const std::size_t count = skinner->vertex_count();
+  std::vector<float> positions(3 * count), normals(3 * count);
+  skinner->skin(SkinMethod::Linear, posed, rust::Slice<float>(positions), rust::Slice<float>(normals));
+
+  test("a vertex buffer is skinned in place of two arrays", [&] {
+    struct Vertex {
+      float uv[2], normal[3], position[3];
+    };
+    std::vector<Vertex> vertices(count, Vertex{{7.0F, 8.0F}, {}, {}});
+    const rust::Slice<std::uint8_t> bytes(reinterpret_cast<std::uint8_t *>(vertices.data()), count * sizeof(Vertex));
+    skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, sizeof(Vertex), offsetof(Vertex, position),
+                              offsetof(Vertex, normal));
+    for (std::size_t v = 0; v < count; ++v) {
+      check(std::equal(vertices[v].position, vertices[v].position + 3, positions.data() + 3 * v), "position");
+      check(std::equal(vertices[v].normal, vertices[v].normal + 3, normals.data() + 3 * v), "normal");
+      check(vertices[v].uv[0] == 7.0F && vertices[v].uv[1] == 8.0F, "what is between");
+    }
+    const std::vector<float> lift(3 * count, 0.25F);
+    skinner->skin_interleaved(SkinMethod::JointTranslation, posed, rust::Slice<const float>(lift), bytes, sizeof(Vertex),
+                              offsetof(Vertex, position), offsetof(Vertex, normal));
+    std::vector<float> plain(3 * count);
+    skinner->skin(SkinMethod::JointTranslation, posed, rust::Slice<float>(plain), {});
+    check(std::abs(vertices[9].position[1] - plain[28] - 0.25F) < 1e-5F, "offset");
+    throws({"stride"}, [&] { skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, 20, 0, 12); });
+    throws({"vertex buffer"}, [&] { skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, 33, 0, 12); });
+    throws({"offsets"}, [&] {
+      skinner->skin_interleaved(SkinMethod::Linear, posed, rust::Slice<const float>(lift.data(), 3), bytes, 32, 0, 12);
+    });
+  });
+  test("buffers that overlap throw", [&] {
+    std::vector<float> both(6 * count, 7.0F);
+    std::vector<SkinJob> jobs;
+    for (const std::size_t first : {std::size_t{0}, 3 * count - 1})
+      jobs.push_back({*skinner, SkinMethod::Linear, posed, {}, rust::Slice<float>(both.data() + first, 3 * count), {}});
+    throws({"of its own", "positions of job 0", "positions of 1"}, [&] { skin_many(rust::Slice<SkinJob>(jobs)); });
+    check(std::all_of(both.begin(), both.end(), [](float v) { return v == 7.0F; }), "something was written");
+    jobs[1].positions = rust::Slice<float>(both.data() + 3 * count, 3 * count);
+    skin_many(rust::Slice<SkinJob>(jobs));
+    check(std::equal(positions.begin(), positions.end(), both.begin() + static_cast<std::ptrdiff_t>(3 * count)), "side by side");
+  });
+}
+
+void layers(const Model &model) {
+  test("masks and layers move what they cover", [&] {
+    auto body = person(model, 1.70);
+    auto walk = Clip::builtin("walk", *body), idle = Clip::builtin("idle", *body);
+    const auto joints = walk->joint_count();
+    const auto mask = walk->joint_mask("spine_01");
+    check(mask.size() == joints, "number of joints");
+    const auto frame = [&](const Clip &clip) {
+      std::vector<Transform> pose(joints);
+      clip.sample(0.3, Wrap::Once, Relative::ToParent, Space::Gltf, rust::Slice<Transform>(pose));
+      return pose;
+    };
+    const auto apart = [](const Transform &a, const Transform &b) {
+      float most = 0.0F;
+      for (std::size_t k = 0; k < 4; ++k) most = std::max(most, std::abs(a.rotation[k] - b.rotation[k]));
+      return most;
+    };
+    const rust::Slice<const float> shares(mask);
+    const auto walking = frame(*walk), standing = frame(*idle);
+    const auto mixed = frame(*walk->blend_masked(*idle, 1.0F, shares));
+    const auto layered = frame(*idle->additive(*walk, 1.0F, shares));
+    float moved = 0.0F;
+    for (std::size_t j = 0; j < joints; ++j) {
+      check(apart(mixed[j], mask[j] == 1.0F ? standing[j] : walking[j]) < 1e-4F, "joint " + std::to_string(j));
+      if (mask[j] == 0.0F) check(apart(layered[j], standing[j]) < 1e-4F, "layer at joint " + std::to_string(j));
+      else moved = std::max(moved, apart(layered[j], standing[j]));
+    }
+    check(moved > 0.01F, "the layer moves nothing");
+    check(idle->additive(*walk, 0.5F, {})->frame_count() == idle->frame_count(), "a layer of every joint");
+    throws({"tail"}, [&] { walk->joint_mask("tail"); });
+    throws({"joint mask"}, [&] { walk->blend_masked(*idle, 1.0F, rust::Slice<const float>(mask.data(), 3)); });
+    throws({"weight"}, [&] { walk->additive(*idle, std::nanf(""), {}); });
+  });
+}
+
+// The list of all hosts, whose errors have codes that C++ has not: it has to fail where they do.
+void same_bytes(const Model &model, const std::string &folder) {
+  test("same bytes: 200 requests through C++ and cxx", [&] {
+    std::istringstream requests(read(folder + "/requests.jsonl")), hashes(read(folder + "/sha256.txt"));
+    std::size_t number = 0;
+    for (std::string request, expected; std::getline(requests, request); ++number) {
+      check(static_cast<bool>(std::getline(hashes, expected)), "fewer hashes than requests");
+      std::string got = "error";
+      try {
+        auto body = model.generate(*Request::from_json(request));
+        SceneOptions options{};
+        options.lod = static_cast<std::uint32_t>(number % 4);
+        auto scene = body->scene(options);
+        if (number % 10 == 3) scene->add_clip(*Clip::builtin("walk", *body));
+        const auto bytes = scene->to_bytes("glb");
+        char hash[65];
+        sha256(bytes.data(), bytes.size(), hash);
+        got = hash;
+      } catch (const rust::Error &) {
+      }
+      check(got == expected.substr(0, expected.find(' ')), "request " + std::to_string(number) + ": " + got);
+    }
+    check(number >= 200, std::to_string(number) + " requests");
+  });
+}
+
 void motion(const Model &model) {
   test("clips are sampled, baked and changed", [&] {
     auto body = person(model, 1.70);
@@ -416,14 +531,17 @@ void requests_and_reports(const Model &model) {
 }  // namespace
 
 int main(int argc, char **argv) {
-  if (argc != 4) {
-    std::cerr << "usage: checks REQUEST.json EXPECTED.glb FOLDER\n";
+  if (argc != 5) {
+    std::cerr << "usage: checks REQUEST.json EXPECTED.glb FOLDER SAME_BYTES\n";
     return 2;
   }
   static_assert(!std::is_copy_constructible_v<rust::Box<Model>>, "what owns is not copied");
   auto model = Model::embedded();
   exceptions(*model, argv[3]);
   buffers(*model);
+  interleaved(*model);
+  layers(*model);
+  same_bytes(*model, argv[4]);
   motion(*model);
   lifetimes(*model);
   requests_and_reports(*model);

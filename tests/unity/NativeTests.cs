@@ -277,8 +277,10 @@ namespace Anthronet.Tests
                 {
                     using (var body = AnthroModel.Default.Generate(AnthroRequest.FromJson(requests[i])))
                     using (var sha = SHA256.Create())
+                    using (var walk = i % 10 == 3 ? AnthroClip.Builtin("walk", body) : null)
                     {
-                        line = string.Concat(sha.ComputeHash(body.ToBytes("glb", i % 4)).Select(b => b.ToString("x2")));
+                        var clips = walk == null ? new AnthroClip[0] : new[] { walk };
+                        line = string.Concat(sha.ComputeHash(body.ToBytes("glb", i % 4, clips)).Select(b => b.ToString("x2")));
                     }
                 }
                 catch (AnthroException error)

@@ -14,6 +14,10 @@ pub(crate) enum Part {
     Hosts,
     /// Of those, the consumers of the C ABI alone
     C,
+    /// Of those, the package for C++ alone
+    Cpp,
+    /// Of those, the Python package alone
+    Python,
     /// Of those, the Unity package alone
     Unity,
 }
@@ -38,6 +42,12 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     }
     if only == Some(Part::C) {
         failures.extend(hosts::run_c().err());
+    }
+    if only == Some(Part::Cpp) {
+        failures.extend(hosts::run_cpp().err());
+    }
+    if only == Some(Part::Python) {
+        failures.extend(hosts::run_python().err());
     }
     if only == Some(Part::Unity) {
         failures.extend(hosts::run_unity().err());

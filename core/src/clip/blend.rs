@@ -22,6 +22,22 @@ impl JointMask {
         Self { weights: vec![1.0; rest.len()] }
     }
 
+    /// A share of each joint.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when there is not one per joint, or one is not in 0..=1.
+    pub fn of_weights(rest: &RestPose, weights: &[f32]) -> Result<Self> {
+        if weights.len() != rest.len() {
+            let message = format!("expected {} joints, got {}", rest.len(), weights.len());
+            return Err(Error::invalid("joint mask", message));
+        }
+        if let Some(joint) = weights.iter().position(|weight| !(0.0..=1.0).contains(weight)) {
+            let (name, weight) = (&rest.names()[joint], weights[joint]);
+            return Err(Error::invalid("joint mask", format!("`{name}`: expected 0 to 1, got {weight}")));
+        }
+        Ok(Self { weights: weights.to_vec() })
+    }
+
     /// The joints below and including those named: `spine_01` is the upper body, `pelvis` everything that moves.
     ///
     /// # Errors
@@ -199,6 +215,17 @@ mod tests {
         let mixed = blend(&a, &b, 1.0, Some(&mask)).unwrap();
         assert_eq!(mixed.rotations(10)[0], a.rotations(10)[0]);
         assert_eq!(mixed.rotations(10)[1], b.rotations(10)[1]);
+        let half = JointMask::of_weights(a.rest(), &[0.0, 0.5]).unwrap();
+        let mixed = blend(&a, &b, 1.0, Some(&half)).unwrap();
+        let wanted = a.rotations(10)[1].slerp(b.rotations(10)[1], 0.5);
+        assert!(
+            mixed.rotations(10)[1].dot(wanted) > 1.0 - 1e-6 && mixed.rotations(10)[0] == a.rotations(10)[0]
+        );
+        for (weights, said) in
+            [(&[1.0][..], "expected 2 joints, got 1"), (&[0.0, 1.5], "`child`"), (&[f32::NAN, 0.0], "NaN")]
+        {
+            assert!(JointMask::of_weights(a.rest(), weights).unwrap_err().to_string().contains(said));
+        }
         assert!(JointMask::below(a.rest(), &["tail"]).unwrap_err().to_string().contains("`tail`"));
     }
 

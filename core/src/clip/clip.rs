@@ -9,8 +9,8 @@ use crate::{Error, Result};
 
 /// The most frames that a clip may have.
 pub const MAX_FRAMES: usize = 1 << 20;
-/// The most numbers that a clip may hold, so that a damaged file cannot ask for all memory.
-const MAX_ROTATIONS: usize = 1 << 28;
+/// The most rotations that a clip may hold, frames × joints, so that a damaged file cannot ask for all memory.
+pub const MAX_ROTATIONS: usize = 1 << 28;
 
 /// Where one joint is in every frame.
 #[derive(Clone, Debug, PartialEq)]

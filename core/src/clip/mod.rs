@@ -28,10 +28,10 @@ pub(crate) mod usd;
 
 pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
 pub use builtin::{BUILTIN, builtin};
-pub use clip::{Clip, MAX_FRAMES, TranslationTrack};
+pub use clip::{Clip, MAX_FRAMES, MAX_ROTATIONS, TranslationTrack};
 pub use edit::{in_place, looped, resample};
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
-pub use onto::{ClipQuality, OntoOptions, OntoReport, onto, worst_excess};
+pub use onto::{ClipQuality, OntoOptions, OntoReport, OntoSwitches, onto, onto_one, worst_excess};
 pub use read::{Found, Motion, ReadOptions, ReadReport, from_bytes, read};
 pub use retarget::{
     BoneError, DirectionError, FingerMode, Floor, FootMode, Jump, RetargetOptions, Retargeter, RootMotion,

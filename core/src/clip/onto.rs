@@ -1,16 +1,19 @@
 //! The whole way of a motion onto a body of ours: matched, retargeted, limited, feet on the floor; and how well it went.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::feet::{FeetOptions, FeetReport, plant};
-use super::joint_map::{JointMap, JointMapReport, Overrides};
-use super::retarget::{DirectionError, Jump, RetargetOptions, Retargeter, direction_error, worst_jump};
+use super::joint_map::{JointMap, JointMapReport, Overrides, read_overrides};
+use super::retarget::{
+    DirectionError, FingerMode, Jump, RetargetOptions, Retargeter, RootMotion, direction_error, worst_jump,
+};
 use super::{Clip, Motion, in_place, looped, resample};
-use crate::Result;
 use crate::pose::RestPose;
 use crate::pose::limits::{JointLimits, TwistsBefore};
+use crate::{Error, Result};
 
 /// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
 const LOOP_BLEND: f64 = 0.3;
@@ -45,6 +48,48 @@ impl Default for OntoOptions {
             in_place: false,
             looped: false,
         }
+    }
+}
+
+/// [`OntoOptions`] as plain values, as hosts pass them: the default of each is the default.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OntoSwitches<'a> {
+    /// What fingers do.
+    pub fingers: FingerMode,
+    /// Leaves joints beyond what people's joints do.
+    pub no_limits: bool,
+    /// Leaves feet where the motion puts them.
+    pub no_feet: bool,
+    /// Leaves out motion over the ground.
+    pub in_place: bool,
+    /// Makes the end meet the beginning.
+    pub looped: bool,
+    /// Gives the way over the ground to the root instead of the pelvis.
+    pub root_motion: bool,
+    /// What [`read_overrides`] reads; empty to find all joints.
+    pub mapping_json: &'a str,
+    /// Frames per second of the result; 0 keeps those of the motion.
+    pub frames_per_second: f64,
+}
+
+impl TryFrom<OntoSwitches<'_>> for OntoOptions {
+    type Error = Error;
+
+    fn try_from(asked: OntoSwitches<'_>) -> Result<Self> {
+        let mapping = match asked.mapping_json {
+            "" => Overrides::new(),
+            json => read_overrides(json, Path::new("mapping_json"))?,
+        };
+        let root = if asked.root_motion { RootMotion::Root } else { RootMotion::Pelvis };
+        Ok(Self {
+            mapping,
+            retarget: RetargetOptions { fingers: asked.fingers, root, ..RetargetOptions::default() },
+            limits: !asked.no_limits,
+            feet: (!asked.no_feet).then(FeetOptions::default),
+            frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
+            in_place: asked.in_place,
+            looped: asked.looped,
+        })
     }
 }
 
@@ -90,18 +135,49 @@ pub fn onto(
     options: &OntoOptions,
 ) -> Result<(Vec<Clip>, OntoReport)> {
     let Some(first) = motion.clips.first() else {
-        return Err(crate::Error::invalid("motion", "expected at least one clip, got none"));
+        return Err(Error::invalid("motion", "expected at least one clip, got none"));
     };
-    let map = JointMap::find(first.rest(), &options.mapping)?;
-    let retargeter = Retargeter::new(first.rest(), target.clone(), &map, &options.retarget)?;
-    let limits = JointLimits::of_rig(target);
-    let mut clips = Vec::with_capacity(motion.clips.len());
-    let mut report =
-        OntoReport { joints: map.report().clone(), scale: retargeter.scale(), clips: Vec::new() };
-    for source in &motion.clips {
+    let mut way = Way::new(first.rest(), target, options)?;
+    let clips = motion.clips.iter().map(|source| way.bring(source)).collect::<Result<_>>()?;
+    Ok((clips, way.report))
+}
+
+/// Brings one clip onto a body, as [`onto`] does with every clip of a motion.
+///
+/// # Errors
+/// As [`onto`].
+pub fn onto_one(source: &Clip, target: &Arc<RestPose>, options: &OntoOptions) -> Result<(Clip, OntoReport)> {
+    let mut way = Way::new(source.rest(), target, options)?;
+    let clip = way.bring(source)?;
+    Ok((clip, way.report))
+}
+
+/// The way from one skeleton to a body.
+struct Way<'a> {
+    target: &'a Arc<RestPose>,
+    options: &'a OntoOptions,
+    map: JointMap,
+    retargeter: Retargeter,
+    limits: JointLimits,
+    /// Of the clips that went it.
+    report: OntoReport,
+}
+
+impl<'a> Way<'a> {
+    fn new(source: &RestPose, target: &'a Arc<RestPose>, options: &'a OntoOptions) -> Result<Self> {
+        let map = JointMap::find(source, &options.mapping)?;
+        let retargeter = Retargeter::new(source, target.clone(), &map, &options.retarget)?;
+        let limits = JointLimits::of_rig(target);
+        let report =
+            OntoReport { joints: map.report().clone(), scale: retargeter.scale(), clips: Vec::new() };
+        Ok(Self { target, options, map, retargeter, limits, report })
+    }
+
+    fn bring(&mut self, source: &Clip) -> Result<Clip> {
+        let Self { target, options, map, retargeter, limits, report } = self;
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
-        let mut twists = TwistsBefore::first(&limits, source.frames_per_second());
+        let mut twists = TwistsBefore::first(limits, source.frames_per_second());
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
                 limits.clamp_after(target, pose, &mut twists);
@@ -113,15 +189,15 @@ pub fn onto(
             (clip, feet) = (planted, Some(found));
         }
         // Both compare with the motion as it was, so before its end is bent to its beginning.
-        let direction = direction_error(source, &clip, &map);
-        let jump = worst_jump(source, &clip, &map);
+        let direction = direction_error(source, &clip, map);
+        let jump = worst_jump(source, &clip, map);
         if options.in_place {
             clip = in_place(&clip)?;
         }
         if options.looped {
             clip = looped(&clip, LOOP_BLEND.min(clip.duration() / 3.0))?;
         }
-        let (beyond, joint) = worst_excess(&limits, &clip);
+        let (beyond, joint) = worst_excess(limits, &clip);
         report.clips.push(ClipQuality {
             name: clip.name().to_owned(),
             frames: clip.frame_count(),
@@ -132,9 +208,8 @@ pub fn onto(
             jump,
             feet,
         });
-        clips.push(clip);
+        Ok(clip)
     }
-    Ok((clips, report))
 }
 
 /// The farthest beyond its limits that a joint turns in any frame of a clip of our rig, radians, and which joint; 0 and

@@ -23,6 +23,22 @@ pub struct ReadOptions {
     pub frames_per_second: Option<f64>,
 }
 
+impl ReadOptions {
+    /// From plain numbers, as hosts pass them: 0 metres per unit and 0 frames per second leave that to the file.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a unit that is no length.
+    pub fn of_numbers(metres_per_unit: f64, up: Option<Axis>, frames_per_second: f64) -> Result<Self> {
+        let unit = match metres_per_unit {
+            0.0 => None,
+            metres => Some(Unit::of_metres(metres).ok_or_else(|| {
+                Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
+            })?),
+        };
+        Ok(Self { unit, up, frames_per_second: (frames_per_second != 0.0).then_some(frames_per_second) })
+    }
+}
+
 /// Where a value is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]

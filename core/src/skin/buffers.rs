@@ -1,6 +1,8 @@
 //! Buffers of the caller's that skinned vertices are written to: three f32 per vertex in the machine's byte order,
 //! any number of bytes from vertex to vertex, no alignment asked for.
 
+use std::mem::MaybeUninit;
+
 use glam::Vec4;
 
 use super::block::{CHUNK_VERTICES, LANES, Lanes, transposed};
@@ -9,11 +11,73 @@ use crate::{Error, Result};
 /// Bytes of three f32.
 const WIDTH: usize = 12;
 
+/// Bytes that are written and never read.
+#[derive(Debug)]
+pub enum BytesMut<'a> {
+    /// They hold something.
+    Init(&'a mut [u8]),
+    /// They may hold nothing yet, as memory that C has just allocated.
+    Uninit(&'a mut [MaybeUninit<u8>]),
+}
+
+impl<'a> From<&'a mut [u8]> for BytesMut<'a> {
+    fn from(bytes: &'a mut [u8]) -> Self {
+        Self::Init(bytes)
+    }
+}
+
+impl<'a> From<&'a mut [MaybeUninit<u8>]> for BytesMut<'a> {
+    fn from(bytes: &'a mut [MaybeUninit<u8>]) -> Self {
+        Self::Uninit(bytes)
+    }
+}
+
+impl<'a> BytesMut<'a> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Init(bytes) => bytes.len(),
+            Self::Uninit(bytes) => bytes.len(),
+        }
+    }
+
+    /// The first `count` bytes, or all when there are no more, and the others.
+    fn split(self, count: usize) -> (Self, Self) {
+        let count = count.min(self.len());
+        match self {
+            Self::Init(bytes) => {
+                let (head, tail) = bytes.split_at_mut(count);
+                (Self::Init(head), Self::Init(tail))
+            }
+            Self::Uninit(bytes) => {
+                let (head, tail) = bytes.split_at_mut(count);
+                (Self::Uninit(head), Self::Uninit(tail))
+            }
+        }
+    }
+
+    /// Writes at a place; nothing when they do not fit there.
+    #[inline(always)]
+    fn write(&mut self, at: usize, values: &[u8]) {
+        match self {
+            Self::Init(bytes) => {
+                if let Some(out) = bytes.get_mut(at..at + values.len()) {
+                    out.copy_from_slice(values);
+                }
+            }
+            Self::Uninit(bytes) => {
+                if let Some(out) = bytes.get_mut(at..at + values.len()) {
+                    out.write_copy_of_slice(values);
+                }
+            }
+        }
+    }
+}
+
 /// Three f32 per vertex somewhere in a buffer: vertex v at `offset + v · stride`.
 #[derive(Debug)]
 pub struct StridedMut<'a> {
     /// The buffer; bytes between the vertices are left as they are.
-    pub bytes: &'a mut [u8],
+    pub bytes: BytesMut<'a>,
     /// Where the first vertex begins, bytes.
     pub offset: usize,
     /// From vertex to vertex, bytes; at least 12.
@@ -33,7 +97,7 @@ pub enum SurfaceMut<'a> {
     /// One buffer that holds both per vertex, as graphics cards like it.
     Interleaved {
         /// The buffer; bytes between the vertices' parts are left as they are.
-        bytes: &'a mut [u8],
+        bytes: BytesMut<'a>,
         /// From vertex to vertex, bytes.
         stride: usize,
         /// Where a vertex's position begins, bytes from the vertex's beginning.
@@ -45,7 +109,7 @@ pub enum SurfaceMut<'a> {
 
 impl<'a> From<&'a mut [[f32; 3]]> for StridedMut<'a> {
     fn from(vectors: &'a mut [[f32; 3]]) -> Self {
-        Self { bytes: bytemuck::cast_slice_mut(vectors), offset: 0, stride: WIDTH }
+        Self { bytes: BytesMut::Init(bytemuck::cast_slice_mut(vectors)), offset: 0, stride: WIDTH }
     }
 }
 
@@ -125,20 +189,19 @@ impl<'a> StridedMut<'a> {
             );
             return Err(Error::invalid(what, message));
         }
-        let bytes = bytes.get_mut(offset..).unwrap_or_default();
-        let parts = bytes.chunks_mut(stride.saturating_mul(CHUNK_VERTICES));
-        Ok(parts.take(count.div_ceil(CHUNK_VERTICES)).enumerate().map(move |(c, bytes)| Part {
-            bytes,
-            offset: 0,
-            stride,
-            count: CHUNK_VERTICES.min(count - c * CHUNK_VERTICES),
+        let (_, mut left) = bytes.split(offset);
+        Ok((0..count.div_ceil(CHUNK_VERTICES)).map(move |c| {
+            let all = std::mem::replace(&mut left, BytesMut::Init(&mut []));
+            let (bytes, rest) = all.split(stride.saturating_mul(CHUNK_VERTICES));
+            left = rest;
+            Part { bytes, offset: 0, stride, count: CHUNK_VERTICES.min(count - c * CHUNK_VERTICES) }
         }))
     }
 }
 
 /// What a chunk's vertices occupy of a buffer.
 pub(super) struct Part<'a> {
-    bytes: &'a mut [u8],
+    bytes: BytesMut<'a>,
     offset: usize,
     stride: usize,
     count: usize,
@@ -177,21 +240,16 @@ impl Part<'_> {
         let vectors =
             transposed([x, y, z, Vec4::ZERO]).map(|v| bytemuck::cast::<[f32; 4], [u8; 16]>(v.to_array()));
         let start = first * self.stride + offset;
-        if self.stride == WIDTH
-            && let Some(packed) = self.bytes.get_mut(start..start + LANES * WIDTH)
-        {
+        if self.stride == WIDTH && start + LANES * WIDTH <= self.bytes.len() {
             // Whole registers, each over the last one's unused fourth number.
             for (lane, vector) in vectors.iter().enumerate().take(LANES - 1) {
-                packed[lane * WIDTH..lane * WIDTH + 16].copy_from_slice(vector);
+                self.bytes.write(start + lane * WIDTH, vector);
             }
-            packed[(LANES - 1) * WIDTH..].copy_from_slice(&vectors[LANES - 1][..WIDTH]);
+            self.bytes.write(start + (LANES - 1) * WIDTH, &vectors[LANES - 1][..WIDTH]);
             return;
         }
         for (lane, vector) in vectors.iter().enumerate().take(self.count.saturating_sub(first)) {
-            let at = start + lane * self.stride;
-            if let Some(out) = self.bytes.get_mut(at..at + WIDTH) {
-                out.copy_from_slice(&vector[..WIDTH]);
-            }
+            self.bytes.write(start + lane * self.stride, &vector[..WIDTH]);
         }
     }
 }

@@ -20,8 +20,10 @@ mod dual_quaternion;
 mod joint_translation;
 mod linear;
 mod skinner;
+#[cfg(feature = "test-hooks")]
+pub mod test_hooks;
 #[cfg(test)]
 mod tests;
 
-pub use buffers::{StridedMut, SurfaceMut};
+pub use buffers::{BytesMut, StridedMut, SurfaceMut};
 pub use skinner::{SkinJob, SkinMethod, Skinner, skin_many};

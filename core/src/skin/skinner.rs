@@ -1,5 +1,7 @@
 //! A surface ready to be posed, and the work of posing it.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use glam::{DQuat, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -188,7 +190,29 @@ fn run(mut characters: Vec<Prepared<'_>>) {
             work.push((&*palette, chunk, offsets.as_mut().and_then(Iterator::next), target));
         }
     }
-    work.into_par_iter().for_each(|(palette, chunk, offsets, target)| palette.skin(chunk, offsets, target));
+    let skin =
+        |(palette, chunk, offsets, target): (&Palette, Chunk<'_>, Option<&[Vec3]>, &mut Target<'_>)| {
+            #[cfg(feature = "test-hooks")]
+            super::test_hooks::before_a_chunk();
+            palette.skin(chunk, offsets, target);
+        };
+    if work.len() > 1 && pool_has_threads() {
+        work.into_par_iter().for_each(skin);
+    } else {
+        work.into_iter().for_each(skin);
+    }
+}
+
+/// Whether the pool's threads live in this process: a child made by `fork` has the pool's memory and none of its threads,
+/// and would wait for them for ever.
+fn pool_has_threads() -> bool {
+    /// The process that was the first to pose; 0 before.
+    static OWNER: AtomicU32 = AtomicU32::new(0);
+    let here = std::process::id();
+    match OWNER.compare_exchange(0, here, Ordering::Relaxed, Ordering::Relaxed) {
+        Ok(_) => true,
+        Err(owner) => owner == here,
+    }
 }
 
 impl Palette {

@@ -215,7 +215,12 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
 
     for (stride, position_offset, normal_offset) in [(24, 0, 12), (33, 21, 3)] {
         let mut bytes = vec![0xA5; stride * 2050];
-        let out = SurfaceMut::Interleaved { bytes: &mut bytes, stride, position_offset, normal_offset };
+        let out = SurfaceMut::Interleaved {
+            bytes: bytes.as_mut_slice().into(),
+            stride,
+            position_offset,
+            normal_offset,
+        };
         skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
         for v in 0..2050 {
             assert_eq!(read(&bytes, v * stride + position_offset), positions[v]);
@@ -231,7 +236,7 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
     let mut wide = vec![0xA5; 5 + 16 * 2049 + 12];
     let mut packed = vec![[0.0; 3]; 2050];
     let out = SurfaceMut::Separate {
-        positions: StridedMut { bytes: &mut wide, offset: 5, stride: 16 },
+        positions: StridedMut { bytes: wide.as_mut_slice().into(), offset: 5, stride: 16 },
         normals: Some(packed.as_mut_slice().into()),
     };
     skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
@@ -375,7 +380,7 @@ fn buffers_that_do_not_fit_are_refused() {
         (usize::MAX, 12, "expected more than fits in memory"),
         (0, usize::MAX, "expected more than fits in memory"),
     ] {
-        let positions = StridedMut { bytes, offset, stride };
+        let positions = StridedMut { bytes: (&mut *bytes).into(), offset, stride };
         refuse(expected, SurfaceMut::Separate { positions, normals: None });
     }
     for (stride, position_offset, normal_offset, expected) in [
@@ -384,6 +389,7 @@ fn buffers_that_do_not_fit_are_refused() {
         (24, 0, usize::MAX, "side by side"),
         (44, 0, 32, "expected 220 bytes for 5 vertices"),
     ] {
+        let bytes = (&mut *bytes).into();
         refuse(expected, SurfaceMut::Interleaved { bytes, stride, position_offset, normal_offset });
     }
     let mut normals = [[0.0; 3]; 4];

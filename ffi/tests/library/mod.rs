@@ -1,6 +1,7 @@
 //! The library as a program finds it: a file that is opened.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use libloading::Library;
 
@@ -14,8 +15,14 @@ pub(crate) struct Error {
     pub(crate) message: [u8; 512],
 }
 
-/// The file that the environment variable `ANTHRONET_LIBRARY` names, or what cargo has built beside the test.
-pub(crate) fn library() -> Library {
+/// The file that the environment variable `ANTHRONET_LIBRARY` names, or what cargo has built beside the test. It is never
+/// closed, as a host should have it: what it has made once would be lost.
+pub(crate) fn library() -> &'static Library {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    LIBRARY.get_or_init(open)
+}
+
+fn open() -> Library {
     let path = std::env::var_os("ANTHRONET_LIBRARY").map_or_else(beside, PathBuf::from);
     // SAFETY: it runs nothing when it is opened.
     unsafe { Library::new(&path) }.unwrap_or_else(|e| {

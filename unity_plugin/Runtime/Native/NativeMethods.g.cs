@@ -28,7 +28,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_OK = 0;
         /// <summary>
-        ///  A pointer that has to be given is NULL, or not aligned.
+        ///  A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
         /// </summary>
         internal const int ANTHRONET_ERROR_POINTER = 101;
         /// <summary>
@@ -749,6 +749,29 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_blend(anthronet_clip* first, anthronet_clip* second, float weight, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
+        ///  As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
+        ///  part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_blend_masked", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_blend_masked(anthronet_clip* first, anthronet_clip* second, float weight, float* mask, uint count, anthronet_clip** out_clip, anthronet_error* error);
+
+        /// <summary>
+        ///  Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
+        ///  `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+        ///  each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
+        ///  `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_additive", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_additive(anthronet_clip* @base, anthronet_clip* layer, float weight, anthronet_transform* reference, uint count, uint in_space, float* mask, uint mask_count, anthronet_clip** out_clip, anthronet_error* error);
+
+        /// <summary>
+        ///  The mask of a part of the body: fills `count` entries, one per joint of the clip, with 1 for the joint of that name
+        ///  in the rig and all below it, else with 0. `spine_01` is the upper body.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_joint_mask", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_joint_mask(anthronet_clip* clip, byte* name, ulong name_length, float* out_mask, uint count, anthronet_error* error);
+
+        /// <summary>
         ///  Two clips of one body one after the other, overlapping by `seconds`.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_crossfade", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -823,8 +846,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_skinner_vertex_count(anthronet_skinner* skinner, uint* out_count, anthronet_error* error);
 
         /// <summary>
-        ///  Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. Buffers of
-        ///  different jobs must not overlap.
+        ///  Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
+        ///  to its last, what a job writes must not overlap what another writes nor what any of them reads.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_skin", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_skin(anthronet_skin_job* jobs, uint count, anthronet_error* error);
@@ -1490,7 +1513,8 @@ namespace Anthronet.Native
         public ulong position_stride;
         /// <summary>
         ///  Where unit normals are written, three floats per vertex; NULL for nowhere. In the buffer of the positions, as
-        ///  vertex buffers are laid out, it points at the first normal, behind the first position by less than the stride.
+        ///  vertex buffers are laid out, it points at the first normal, less than the one stride of both from the first
+        ///  position.
         /// </summary>
         public void* normals;
         /// <summary>

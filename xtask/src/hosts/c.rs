@@ -37,8 +37,8 @@ const ABUSE: [&str; 7] = [
     "abuse_threads.c",
 ];
 
-/// Cycles of generate and free in a run of the tests; `ANTHRONET_CYCLES` asks for another number, such as 10000.
-const CYCLES: &str = "1500";
+/// Cycles of generate and free.
+const CYCLES: &str = "10000";
 /// What the resident set may grow by meanwhile, MiB: less than three bodies.
 const GROWTH: &str = "4";
 
@@ -67,12 +67,14 @@ pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tall
     }
     let bench = Bench { folder, library: tools::target().join("release") };
     exports(&bench, tally);
-    values(&bench, tally);
-    abuse(&bench, tally);
+    // Those that take long first.
+    let mut scripts = abuse(&bench, tally);
+    scripts.extend(values(&bench, tally));
+    tally.scripts(scripts);
     same_bytes(&bench, tally)?;
     leaks(&bench, tally);
     if let Some(program) = bench.build(tally, "speed", "gcc", &[&C99[..], &["-O2"]].concat(), &["speed.c"]) {
-        tools::run(&mut Command::new(program))?;
+        tally.script("speed of the C ABI", &mut Command::new(program));
     }
     Ok(())
 }
@@ -127,7 +129,7 @@ impl Bench {
         program
     }
 
-    /// A program with the arguments that `run_tests` of tests/c/check.h takes.
+    /// A program with the arguments that `run_tests` of tests/c/check.h takes, in a folder of its own.
     fn tests(&self, program: &Path, before: &[&str]) -> Command {
         let mut command = match before.split_first() {
             None => Command::new(program),
@@ -137,20 +139,30 @@ impl Bench {
                 command
             }
         };
-        command.arg(tools::root().join("model/anthronet.safetensors")).arg(&self.folder);
+        let name = program.file_name().unwrap_or_default().to_string_lossy();
+        let folder = self.folder.join(format!("files of {name}"));
+        // Where it is not made the tests say so.
+        let _ = std::fs::create_dir_all(&folder);
+        command.arg(tools::root().join("model/anthronet.safetensors")).arg(folder);
         command
+    }
+
+    /// Likewise under valgrind, with fewer rounds, and its name.
+    fn watched(&self, name: &str, program: &Path) -> (String, Command) {
+        let mut command = self.tests(program, &VALGRIND);
+        command.arg("few");
+        (format!("{name} under valgrind"), command)
     }
 }
 
-/// What every function returns: C99 and C++17, both libraries, both compilers, and once with the sanitizers.
-fn values(bench: &Bench, tally: &mut Tally) {
+/// What every function returns: C99 and C++17, both libraries, both compilers, the sanitizers, and valgrind.
+fn values(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
     let clang = tools::output(Command::new("clang").arg("--version")).is_ok();
-    let sanitized = [&C99[..], &SANITIZERS].concat();
+    let sanitized = |standard: &[&'static str]| [standard, &SANITIZERS].concat();
     let mut programs = vec![
-        bench.build(tally, "values in C99", "gcc", &C99, &VALUES),
-        bench.build(tally, "values in C++17", "g++", &CPP17, &VALUES),
+        bench.build(tally, "values in C99 under sanitizers", "gcc", &sanitized(&C99), &VALUES),
+        bench.build(tally, "values in C++17 under sanitizers", "g++", &sanitized(&CPP17), &VALUES),
         bench.build_static(tally, "values, linked statically", &C99, &VALUES),
-        bench.build(tally, "values under sanitizers", "gcc", &sanitized, &VALUES),
     ];
     if clang {
         programs.push(bench.build(tally, "values in clang's C99", "clang", &C99, &VALUES));
@@ -158,22 +170,30 @@ fn values(bench: &Bench, tally: &mut Tally) {
     } else {
         tally.skip("values by clang", "there is no clang");
     }
-    for program in programs.into_iter().flatten() {
+    let run = |program: PathBuf| {
         let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        tally.script(&name, &mut bench.tests(&program, &[]));
+        (name, bench.tests(&program, &[]))
+    };
+    let mut scripts: Vec<_> = programs.into_iter().flatten().map(run).collect();
+    if let Some(program) = bench.build(tally, "values in C99", "gcc", &[&C99[..], &["-g"]].concat(), &VALUES)
+    {
+        scripts.push(bench.watched("values in C99", &program));
     }
+    scripts
 }
 
 /// What every function refuses, watched by the sanitizers and, with fewer rounds, by valgrind, which sees into the
 /// library, too.
-fn abuse(bench: &Bench, tally: &mut Tally) {
+fn abuse(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
+    let mut scripts = Vec::new();
     let sanitized = [&C99[..], &SANITIZERS].concat();
     if let Some(program) = bench.build(tally, "abuse under sanitizers", "gcc", &sanitized, &ABUSE) {
-        tally.script("abuse under sanitizers", &mut bench.tests(&program, &[]));
+        scripts.push(("abuse under sanitizers".to_owned(), bench.tests(&program, &[])));
     }
     if let Some(program) = bench.build(tally, "abuse", "gcc", &[&C99[..], &["-g"]].concat(), &ABUSE) {
-        tally.script("abuse under valgrind", bench.tests(&program, &VALGRIND).arg("few"));
+        scripts.push(bench.watched("abuse", &program));
     }
+    scripts
 }
 
 /// Fails on reads and writes where nobody may, and on memory that nobody knows of any more.
@@ -190,8 +210,7 @@ const VALGRIND: [&str; 6] = [
 fn leaks(bench: &Bench, tally: &mut Tally) {
     let flags = [&C99[..], &["-O1", "-g"]].concat();
     let Some(program) = bench.build(tally, "cycles", "gcc", &flags, &["cycles.c"]) else { return };
-    let cycles = std::env::var("ANTHRONET_CYCLES").unwrap_or_else(|_| CYCLES.to_owned());
-    tally.script("generate and free", Command::new(&program).args([&cycles, GROWTH]));
+    tally.script("generate and free", Command::new(&program).args([CYCLES, GROWTH]));
     let mut few = Command::new(VALGRIND[0]);
     // Valgrind holds freed memory back, so the resident set says nothing.
     few.args(&VALGRIND[1..]).arg(&program).args(["12", "1000000"]);
@@ -207,15 +226,28 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
     let mut test = cargo("test");
     test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", library);
     tally.case("same bytes: 200 requests through the crate and through the library", tools::run(&mut test));
+    let runner = VALGRIND.map(|word| format!("{word:?}")).join(",");
+    test.args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")]).env("ANTHRONET_REQUESTS", "4");
+    tally.case("valgrind: a program in Rust that opens the library, 4 requests", tools::run(&mut test));
     let list = tools::target().join("tmp/same_bytes");
     let expected = tools::read(&list.join("sha256.txt"))?;
-    for (name, compiler, flags, source) in [
-        ("same bytes in C", "gcc", &["-std=c99", "-O2"], "same_bytes.c"),
-        ("same bytes in C++", "g++", &["-std=c++17", "-O2"], "same_bytes.cpp"),
-    ] {
-        let Some(program) = bench.build(tally, name, compiler, flags, &[source]) else { continue };
-        let got = tools::output(Command::new(program).arg(list.join("requests.jsonl")));
-        tally.case(&format!("{name}: 200 requests"), got.and_then(|got| same_lines(&expected, &got)));
+    let programs = [
+        bench.build(tally, "same bytes in C", "gcc", &["-std=c99", "-O2"], &["same_bytes.c"]),
+        bench.build(tally, "same bytes in C++", "g++", &["-std=c++17", "-O2"], &["same_bytes.cpp"]),
+    ];
+    let requests = list.join("requests.jsonl");
+    let hash = |program: &Option<PathBuf>| {
+        program.as_ref().map(|program| tools::output(Command::new(program).arg(&requests)))
+    };
+    let (in_c, in_cpp) = std::thread::scope(|scope| {
+        let other = scope.spawn(|| hash(&programs[1]));
+        (hash(&programs[0]), other.join().unwrap_or(None))
+    });
+    for (name, got) in [("same bytes in C: 200 requests", in_c), ("same bytes in C++: 200 requests", in_cpp)]
+    {
+        if let Some(got) = got {
+            tally.case(name, got.and_then(|got| same_lines(&expected, &got)));
+        }
     }
     Ok(())
 }

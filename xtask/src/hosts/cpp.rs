@@ -43,7 +43,10 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         return Ok(());
     }
     let program = |name: &str| Command::new(build.join(name).with_extension(std::env::consts::EXE_EXTENSION));
-    tally.script("C++ checks", program("checks").args([&request, &expected, &folder]));
+    tally.script(
+        "C++ checks",
+        program("checks").args([&request, &expected, &folder, &tools::target().join("tmp/same_bytes")]),
+    );
 
     let person = tools::output(program("person").current_dir(&folder));
     tally.case("C++: the README's program runs", person.and_then(|said| ends_in_metres(&said)));

@@ -54,6 +54,22 @@ pub(crate) fn run_c() -> Outcome {
     close(&tally)
 }
 
+/// The package for C++ alone.
+pub(crate) fn run_cpp() -> Outcome {
+    let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
+    let mut tally = Tally::default();
+    cpp::run(&anthronet, &environment, &tools::target().join("test-env/out"), &mut tally)?;
+    close(&tally)
+}
+
+/// The Python package alone.
+pub(crate) fn run_python() -> Outcome {
+    let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
+    let mut tally = Tally::default();
+    python::run(&anthronet, &environment, &tools::target().join("test-env/out"), &mut tally)?;
+    close(&tally)
+}
+
 /// The Unity package alone.
 pub(crate) fn run_unity() -> Outcome {
     let mut tally = Tally::default();

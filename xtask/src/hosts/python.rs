@@ -26,7 +26,13 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     };
     tally.script("the Python wheel", environment.python_script("python_wheel.py")?.arg(&wheel));
     let folder = folder.join("python");
+    tally.script(
+        "type hints of the Python package",
+        environment.python_script("python_types.py")?.arg(&folder),
+    );
     let header = tools::root().join(bindings::HEADER);
+    let same_bytes = tools::target().join("tmp/same_bytes");
+    let (mut scripts, mut speed) = (Vec::new(), None);
     for version in environment::PYTHONS {
         let clean = match environment::python_with(version, &wheel)? {
             Ok(clean) => clean,
@@ -35,6 +41,8 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
                 continue;
             }
         };
+        let folder = folder.join(version);
+        std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
         let script = |name: &str, arguments: &[&Path]| {
             let mut command = Command::new(&clean);
             command
@@ -45,19 +53,23 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             command
         };
         let mut case = |what: &str, name: &str, arguments: &[&Path]| {
-            tally.script(&format!("Python {version}: {what}"), &mut script(name, arguments));
+            scripts.push((format!("Python {version}: {what}"), script(name, arguments)));
         };
         case("interface", "python_api.py", &[&header, &folder]);
         case("memory and threads", "python_memory.py", &[&folder]);
         case("README", "python_readme.py", &[&folder]);
-        // Neither depends on the version of Python.
+        // None of these depends on the version of Python.
         if version == environment::PYTHONS[0] {
             case("declarations", "python_declarations.py", &[&header]);
             case("files", "python_files.py", &[anthronet, &folder]);
             // The consumers in C, which come first, have left the list.
-            case("same bytes", "python_same_bytes.py", &[&tools::target().join("tmp/same_bytes")]);
-            let _ = tools::run(&mut script("python_speed.py", &[]));
+            case("same bytes", "python_same_bytes.py", &[&same_bytes]);
+            speed = Some(script("python_speed.py", &[]));
         }
+    }
+    tally.scripts(scripts);
+    if let Some(mut speed) = speed {
+        tally.script("speed of the Python package", &mut speed);
     }
     let mut measures = environment.python_script("python_measures.py")?;
     measures.env("PYTHONPATH", tools::root().join("python")).env("ANTHRONET_LIBRARY", package::library()?);

@@ -2,7 +2,12 @@
 
 use crate::tools::Outcome;
 use std::io::{BufRead, BufReader};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// What a script said, and how long it took.
+type Done = (std::io::Result<Output>, Duration);
 
 /// Cases so far.
 #[derive(Default)]
@@ -36,11 +41,48 @@ impl Tally {
         }
     }
 
+    /// Runs scripts that are not in each other's way on all cores, and counts them in order as [`script`](Self::script)
+    /// does, each when it is through.
+    pub(crate) fn scripts(&mut self, scripts: Vec<(String, Command)>) {
+        let (names, commands): (Vec<_>, Vec<_>) = scripts.into_iter().unzip();
+        let slots: Vec<Mutex<Option<Done>>> = names.iter().map(|_| Mutex::new(None)).collect();
+        let queue = Mutex::new(commands.into_iter().zip(&slots));
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        std::thread::scope(|scope| {
+            for _ in 0..threads.min(slots.len()) {
+                scope.spawn(|| {
+                    loop {
+                        let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+                        let Some((mut command, slot)) = next else { break };
+                        let start = Instant::now();
+                        let output = command.stdout(Stdio::piped()).output();
+                        *slot.lock().unwrap_or_else(PoisonError::into_inner) =
+                            Some((output, start.elapsed()));
+                    }
+                });
+            }
+        });
+        for (name, slot) in names.iter().zip(slots) {
+            let Some((output, took)) = slot.into_inner().unwrap_or_else(PoisonError::into_inner) else {
+                continue;
+            };
+            println!("-- {name}, {:.1} s", took.as_secs_f64());
+            let before = self.counts();
+            let status = output.map(|output| {
+                eprint!("{}", String::from_utf8_lossy(&output.stderr));
+                for line in String::from_utf8_lossy(&output.stdout).lines() {
+                    self.line(line.trim_end());
+                }
+                output.status
+            });
+            self.ended(name, before, status);
+        }
+    }
+
     /// Runs a script and counts the cases that it prints; a script that breaks off is a failed case of its own.
     pub(crate) fn script(&mut self, name: &str, command: &mut Command) {
         println!("-- {name}");
-        let before = self.passed + self.failed + self.skipped;
-        let failed_before = self.failed;
+        let before = self.counts();
         let status = command.stdout(Stdio::piped()).spawn().and_then(|mut child| {
             if let Some(output) = child.stdout.take() {
                 for line in BufReader::new(output).split(b'\n') {
@@ -49,12 +91,22 @@ impl Tally {
             }
             child.wait()
         });
+        self.ended(name, before, status);
+    }
+
+    fn counts(&self) -> (u32, u32) {
+        (self.passed + self.failed + self.skipped, self.failed)
+    }
+
+    /// A script that broke off or ran nothing is a failed case of its own. `before`: the counts before its lines.
+    fn ended(&mut self, name: &str, before: (u32, u32), status: std::io::Result<ExitStatus>) {
+        let (before, failed_before) = before;
         match status {
             Err(e) => self.case(name, Err(format!("did not start: {e}"))),
             Ok(status) if !status.success() && self.failed == failed_before => {
                 self.case(name, Err(format!("broke off: {status}")));
             }
-            Ok(_) if self.passed + self.failed + self.skipped == before => {
+            Ok(_) if self.counts().0 == before => {
                 self.case(name, Err("ran no case".to_owned()));
             }
             Ok(_) => {}

@@ -12,9 +12,10 @@ pub(crate) fn library() -> Outcome<PathBuf> {
     if path.is_file() { Ok(path) } else { Err(format!("{}: not there after a build", path.display())) }
 }
 
-/// The wheel of the Python package, made by pip as a user would.
+/// The wheel of the Python package, made by pip as a user would: its build backend builds the library, which is there
+/// already where the tests have got so far.
 pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
-    let library = library()?;
+    library()?;
     let dist = tools::target().join("dist");
     let wheels = || -> Outcome<Vec<PathBuf>> {
         let entries = std::fs::read_dir(&dist).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -30,7 +31,7 @@ pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
     }
     let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--wheel-dir"];
     let mut command = Command::new(python);
-    command.env("ANTHRONET_LIBRARY", library).args(pip).arg(&dist).arg(tools::root().join("python"));
+    command.env_remove("ANTHRONET_LIBRARY").args(pip).arg(&dist).arg(tools::root().join("python"));
     tools::run(&mut command)?;
     match wheels()?.as_slice() {
         [wheel] => Ok(wheel.clone()),
