@@ -26,6 +26,12 @@ namespace Anthronet
             get { return handle; }
         }
 
+        /// <summary>Whether it was freed.</summary>
+        internal bool IsFreed
+        {
+            get { return handle.IsClosed; }
+        }
+
         /// <summary>Female or male.</summary>
         public AnthroSex Sex
         {

@@ -1,5 +1,6 @@
 using System;
 using Anthronet.Native;
+using UnityEngine;
 
 namespace Anthronet
 {
@@ -168,6 +169,27 @@ namespace Anthronet
                     (anthronet_transform*)first, (ulong)frames.LongLength, &error), &error);
             }
             return frames;
+        }
+
+        /// <summary>
+        /// As one of Unity's clips for the joints below a character's object, to be played by an `Animation` component: at
+        /// run time Unity fills no others. The editor's `AnthroSave` makes one for an `Animator`. A key per frame for every
+        /// rotation, and for the places of the root, the pelvis and whatever else moves; linear in between.
+        /// </summary>
+        /// <param name="rig">The joints of the character that it is for.</param>
+        /// <exception cref="ArgumentException">The rig has other joints.</exception>
+        public AnimationClip ToAnimationClip(AnthroRig rig)
+        {
+            var made = new AnimationClip();
+            made.name = Name;
+            made.legacy = true;
+            made.frameRate = (float)FramesPerSecond;
+            foreach (var curve in AnthroCurves.Of(this, rig))
+            {
+                made.SetCurve(curve.path, typeof(Transform), curve.property, curve.keys);
+            }
+            made.EnsureQuaternionContinuity();
+            return made;
         }
 
         /// <summary>At another rate.</summary>

@@ -1,4 +1,4 @@
-// Stand-ins for Unity's vectors and matrices: as much of them as the package and its tests use. See ../SIGNATURES.md.
+// Stand-ins for Unity's vectors and matrices: as much of them as the package and its tests use. See ../signatures.txt.
 using System;
 using System.Runtime.InteropServices;
 
@@ -20,13 +20,14 @@ namespace UnityEngine
         public static Vector3 one { get { return new Vector3(1, 1, 1); } }
         public float magnitude { get { return (float)Math.Sqrt(Dot(this, this)); } }
 
-        public static float Dot(Vector3 a, Vector3 b)
+        public static float Dot(Vector3 lhs, Vector3 rhs)
         {
-            return a.x * b.x + a.y * b.y + a.z * b.z;
+            return lhs.x * rhs.x + lhs.y * rhs.y + lhs.z * rhs.z;
         }
 
-        public static Vector3 Cross(Vector3 a, Vector3 b)
+        public static Vector3 Cross(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
         }
 
@@ -59,6 +60,25 @@ namespace UnityEngine
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public struct Vector4
+    {
+        public float x, y, z, w;
+
+        public Vector4(float x, float y, float z, float w)
+        {
+            this.x = x;
+            this.y = y;
+            this.z = z;
+            this.w = w;
+        }
+    }
+
+    public struct Rect
+    {
+        public Rect(float x, float y, float width, float height) { }
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public struct Quaternion
     {
         public float x, y, z, w;
@@ -71,6 +91,7 @@ namespace UnityEngine
             this.w = w;
         }
 
+        public static float Dot(Quaternion a, Quaternion b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
         public static Quaternion identity { get { return new Quaternion(0, 0, 0, 1); } }
     }
 
