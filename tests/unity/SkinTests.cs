@@ -131,6 +131,52 @@ namespace Anthronet.Tests
             }
         }
 
+        [UnmanagedFunctionPointer(CallingConvention.StdCall)]
+        delegate void Event(int id, IntPtr data);
+
+        [DllImport("anthronet")]
+        static extern void UnityPluginLoad(IntPtr interfaces);
+
+        [DllImport("anthronet")]
+        static extern void UnityPluginUnload();
+
+        [Test(Description = "as a rendering plugin: Unity loads it, the render thread poses a batch, other events pose nothing")]
+        public static void RenderThread()
+        {
+            UnityPluginLoad((IntPtr)4096);
+            Expect.Equal((IntPtr)4096, AnthroRenderEvent.Interfaces, "interfaces");
+            UnityPluginUnload();
+            Expect.Equal(IntPtr.Zero, AnthroRenderEvent.Interfaces, "interfaces after it was unloaded");
+            using (var body = AnthroModel.Default.Generate(Scene.Request()))
+            using (var clip = AnthroClip.Builtin("walk", body))
+            using (var surface = new AnthroSurface(body, 3))
+            using (var skinner = new AnthroSkinner(surface))
+            using (var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount))
+            {
+                crowd.Pose(0, clip, Seconds, AnthroWrap.Loop);
+                crowd.Run();
+                var expected = Enumerable.Range(0, crowd.Positions.Length).Select(i => crowd.Positions[i]).ToArray();
+                Clear(crowd.Positions);
+                var call = (Event)Marshal.GetDelegateForFunctionPointer(AnthroRenderEvent.Callback, typeof(Event));
+                fixed (AnthroSkinJob* first = crowd.Jobs)
+                {
+                    var batch = new AnthroSkinBatch { jobs = first, count = 1, status = -1 };
+                    var data = (IntPtr)(&batch);
+                    call(AnthroRenderEvent.Skin + 1, data);
+                    call(AnthroRenderEvent.Skin, IntPtr.Zero);
+                    Expect.That(batch.status == -1 && crowd.Positions[0].magnitude == 0, "posed by another event");
+                    var thread = new System.Threading.Thread(() => call(AnthroRenderEvent.Skin, data));
+                    thread.Start();
+                    thread.Join();
+                    Expect.Equal(0, batch.status, "status");
+                    batch.jobs = null;
+                    call(AnthroRenderEvent.Skin, data);
+                    Expect.Equal((int)AnthroError.Pointer, batch.status, "status of no jobs");
+                }
+                Expect.That(expected.SequenceEqual(Enumerable.Range(0, expected.Length).Select(i => crowd.Positions[i])), "positions");
+            }
+        }
+
         static void Clear(NativeArray<Vector3> array)
         {
             var first = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(array);

@@ -4,8 +4,10 @@
 
 use super::tally::Tally;
 use crate::environment;
-use crate::package::{library, package_unity};
+use crate::bindings::HEADER;
+use crate::package::{package_unity, packed_library};
 use crate::tools::{self, Outcome};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -50,7 +52,8 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
     if broken {
         return Ok(());
     }
-    let library = library()?;
+    let library = packed_library();
+    tally.case("the Unity package's library exports the C interface and what Unity looks for", exports(&library));
     let with_library = |program: &str| {
         let mut command = Command::new(program);
         command.env("LD_LIBRARY_PATH", library.parent().unwrap_or(Path::new("."))).current_dir(&folder);
@@ -88,6 +91,19 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
     let speed = tools::run(with_library("mono").arg(&program).args(["--speed", CROWD]));
     tally.case("Unity: nothing is far over its bar", speed);
     Ok(())
+}
+
+/// What Unity calls, and what asks for what is behind it, beside the functions of the header.
+const ENTRIES: [&str; 4] =
+    ["UnityPluginLoad", "UnityPluginUnload", "anthronet_unity_interfaces", "anthronet_unity_render_event"];
+
+fn exports(library: &Path) -> Outcome {
+    let symbols = tools::output(Command::new("nm").args(["-D", "--defined-only"]).arg(library))?;
+    let shown: BTreeSet<_> = symbols.lines().filter_map(|line| line.split(' ').next_back()).collect();
+    let header = tools::read(&tools::root().join(HEADER))?;
+    let promised = super::c::functions(&header).into_iter().chain(ENTRIES).collect();
+    let differ: Vec<_> = shown.symmetric_difference(&promised).copied().collect();
+    if differ.is_empty() { Ok(()) } else { Err(format!("not in both library and header: {}", differ.join(", "))) }
 }
 
 /// Compiles scripts. Unity 2021 takes more than this language version; mono's compiler takes no more.
