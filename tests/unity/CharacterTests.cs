@@ -226,6 +226,9 @@ namespace Anthronet.Tests
             var character = Scene.Character(1, 3);
             var group = character.GetComponent<LODGroup>();
             var tall = group.size;
+            var box = character.MeshOf(1).bounds.size;
+            Expect.Near(Math.Max(box.x, Math.Max(box.y, box.z)), tall, 1e-5, "the body's extent");
+            Expect.Near(0.9, group.localReferencePoint.y, 0.05, "its middle");
             character.Request.Set("height", 1.5);
             character.Generate();
             Expect.That(tall > 1.7f && group.size < tall - 0.2f, "from " + tall + " to " + group.size);

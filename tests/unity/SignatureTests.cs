@@ -88,9 +88,14 @@ namespace Anthronet.Tests
             }
             foreach (var property in type.GetProperties(Own))
             {
+                var reader = property.GetGetMethod() ?? property.GetSetMethod();
+                if (reader.GetBaseDefinition() != reader)
+                {
+                    continue;
+                }
                 var access = (property.GetGetMethod() == null ? "" : " get;") + (property.GetSetMethod() == null ? "" : " set;");
-                var place = property.GetIndexParameters().Length > 0 ? "Index_operator" : property.Name;
-                yield return "  " + Name(property.PropertyType) + " " + property.Name + " {" + access + " } | " + page + "-" + place + ".html";
+                var place = property.GetIndexParameters().Length > 0 ? ".Index_operator" : "-" + property.Name;
+                yield return "  " + Name(property.PropertyType) + " " + property.Name + " {" + access + " } | " + page + place + ".html";
             }
             foreach (var told in type.GetEvents(Own))
             {

@@ -70,6 +70,7 @@ namespace Anthronet
                 AnthroObjects.Discard(child);
             }
             Group();
+            Measure(build);
             if (humanoid)
             {
                 BuildAvatar();
@@ -100,10 +101,7 @@ namespace Anthronet
                 }
                 Dress(level, packed);
             }
-            if (group != null)
-            {
-                group.RecalculateBounds();
-            }
+            Measure(build);
             if (humanoid)
             {
                 BuildAvatar();
@@ -246,7 +244,18 @@ namespace Anthronet
                 lods[i] = new LOD(heights[i + heights.Length - lods.Length], new Renderer[] { Levels[i].renderer });
             }
             group.SetLODs(lods);
-            group.RecalculateBounds();
+        }
+
+        /// <summary>Tells the group how large the body is: of its mesh, since the renderers' bounds have room for poses.
+        /// </summary>
+        void Measure(AnthroBuild build)
+        {
+            if (group != null)
+            {
+                var around = build[Levels[0].lod].Around;
+                group.localReferencePoint = around.center;
+                group.size = Mathf.Max(around.size.x, Mathf.Max(around.size.y, around.size.z));
+            }
         }
 
         void BuildAvatar()

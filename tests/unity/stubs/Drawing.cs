@@ -59,20 +59,6 @@ namespace UnityEngine
         public LOD[] GetLODs() { return lods; }
         public float size { get; set; }
         public Vector3 localReferencePoint { get; set; }
-
-        /// Of the renderers' bounds, which are those of the joint that they hang on.
-        public void RecalculateBounds()
-        {
-            size = 0;
-            foreach (var lod in lods)
-            {
-                foreach (SkinnedMeshRenderer renderer in lod.renderers)
-                {
-                    var bounds = renderer.localBounds.size;
-                    size = Math.Max(size, Math.Max(bounds.x, Math.Max(bounds.y, bounds.z)));
-                }
-            }
-        }
     }
 
     public sealed class Shader : Object

@@ -31,19 +31,21 @@ namespace UnityEngine
             return new Vector3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
         }
 
-        public static Vector3 Min(Vector3 a, Vector3 b)
+        public static Vector3 Min(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(Math.Min(a.x, b.x), Math.Min(a.y, b.y), Math.Min(a.z, b.z));
         }
 
-        public static Vector3 Max(Vector3 a, Vector3 b)
+        public static Vector3 Max(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(Math.Max(a.x, b.x), Math.Max(a.y, b.y), Math.Max(a.z, b.z));
         }
 
         public static Vector3 operator +(Vector3 a, Vector3 b) { return new Vector3(a.x + b.x, a.y + b.y, a.z + b.z); }
         public static Vector3 operator -(Vector3 a, Vector3 b) { return new Vector3(a.x - b.x, a.y - b.y, a.z - b.z); }
-        public static Vector3 operator *(Vector3 a, float s) { return new Vector3(a.x * s, a.y * s, a.z * s); }
+        public static Vector3 operator *(Vector3 a, float d) { return new Vector3(a.x * d, a.y * d, a.z * d); }
         public override string ToString() { return "(" + x + ", " + y + ", " + z + ")"; }
     }
 
@@ -103,8 +105,9 @@ namespace UnityEngine
 
         public static Matrix4x4 identity { get { return TRS(Vector3.zero, Quaternion.identity, Vector3.one); } }
 
-        public static Matrix4x4 TRS(Vector3 p, Quaternion q, Vector3 s)
+        public static Matrix4x4 TRS(Vector3 pos, Quaternion q, Vector3 s)
         {
+            var p = pos;
             var m = new Matrix4x4();
             m.m00 = s.x * (1 - 2 * (q.y * q.y + q.z * q.z));
             m.m10 = s.x * 2 * (q.x * q.y + q.w * q.z);
@@ -122,16 +125,18 @@ namespace UnityEngine
             return m;
         }
 
-        public Vector3 MultiplyPoint3x4(Vector3 v)
+        public Vector3 MultiplyPoint3x4(Vector3 point)
         {
+            var v = point;
             return new Vector3(
                 m00 * v.x + m01 * v.y + m02 * v.z + m03,
                 m10 * v.x + m11 * v.y + m12 * v.z + m13,
                 m20 * v.x + m21 * v.y + m22 * v.z + m23);
         }
 
-        public static Matrix4x4 operator *(Matrix4x4 a, Matrix4x4 b)
+        public static Matrix4x4 operator *(Matrix4x4 lhs, Matrix4x4 rhs)
         {
+            Matrix4x4 a = lhs, b = rhs;
             var m = new Matrix4x4();
             for (var row = 0; row < 4; row++)
             {
