@@ -9,7 +9,7 @@ namespace UnityEngine
     static class User
     {
         /// From what a control says and its value to its new value; null where nothing is done to it.
-        internal static Func<string, object, object> Does;
+        internal static Func<string, object, object> Does = null;
         internal static bool Changed;
 
         internal static T Ask<T>(string label, T value)
