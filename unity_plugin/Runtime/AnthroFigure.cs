@@ -61,7 +61,9 @@ namespace Anthronet
             yield return null;
             foreach (var lod in lods)
             {
-                AddLevel(build, lod, left);
+                var level = AddLevel(build, lod, left);
+                yield return null;
+                Bind(level, build[lod]);
                 yield return null;
             }
             foreach (var child in left)
@@ -94,11 +96,9 @@ namespace Anthronet
                 if (whole)
                 {
                     Replace(level, packed);
+                    continue;
                 }
-                else
-                {
-                    AnthroMeshes.Update(level.mesh, packed, Rig.Joints);
-                }
+                AnthroMeshes.Update(level.mesh, packed, Rig.Joints);
                 Dress(level, packed);
             }
             Measure(build);
@@ -177,7 +177,8 @@ namespace Anthronet
             made.Add(Rig.Bones[0].gameObject);
         }
 
-        void AddLevel(AnthroBuild build, int lod, List<GameObject> left)
+        /// <summary>A level with its renderer and a mesh that has no weights yet.</summary>
+        Level AddLevel(AnthroBuild build, int lod, List<GameObject> left)
         {
             var level = new Level();
             level.lod = lod;
@@ -194,20 +195,32 @@ namespace Anthronet
             left.Remove(child);
             level.renderer = child.GetComponent<SkinnedMeshRenderer>();
             Levels.Add(level);
-            var packed = build[lod];
-            Replace(level, packed);
+            Fill(level, build[lod]);
+            return level;
+        }
+
+        void Fill(Level level, AnthroPacked packed)
+        {
+            level.mesh = AnthroMeshes.Fill(packed, home.name + " LOD" + level.lod);
+            level.mesh.hideFlags = Flags;
+            owned.Add(level.mesh);
+        }
+
+        void Bind(Level level, AnthroPacked packed)
+        {
+            AnthroMeshes.Bind(level.mesh, packed, Rig.Joints);
+            level.renderer.sharedMesh = level.mesh;
             level.renderer.bones = Rig.Bones;
             level.renderer.rootBone = Rig.Bones[1];
             Dress(level, packed);
         }
 
+        /// <summary>Another mesh, of other parts.</summary>
         void Replace(Level level, AnthroPacked packed)
         {
             var before = level.mesh;
-            level.mesh = AnthroMeshes.Create(packed, Rig.Joints, home.name + " LOD" + level.lod);
-            level.mesh.hideFlags = Flags;
-            owned.Add(level.mesh);
-            level.renderer.sharedMesh = level.mesh;
+            Fill(level, packed);
+            Bind(level, packed);
             Disown(before);
         }
 

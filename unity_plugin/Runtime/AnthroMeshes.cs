@@ -43,12 +43,25 @@ namespace Anthronet
 
         internal static Mesh Create(AnthroPacked packed, AnthroJoint[] joints, string name)
         {
+            var mesh = Fill(packed, name);
+            Bind(mesh, packed, joints);
+            return mesh;
+        }
+
+        /// <summary>A mesh of vertices and triangles, without weights: the first half of `Create`.</summary>
+        internal static Mesh Fill(AnthroPacked packed, string name)
+        {
             var mesh = new Mesh();
             mesh.name = name;
             Fill(mesh, packed);
+            return mesh;
+        }
+
+        /// <summary>Gives a mesh weights and bind poses: the second half of `Create`.</summary>
+        internal static void Bind(Mesh mesh, AnthroPacked packed, AnthroJoint[] joints)
+        {
             FillWeights(mesh, packed);
             SetBindPoses(mesh, joints);
-            return mesh;
         }
 
         /// <summary>

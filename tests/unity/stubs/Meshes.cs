@@ -356,9 +356,16 @@ namespace UnityEngine
                 Marshal.Copy(from.streams[i], mesh.Streams[i], 0, mesh.Streams[i].Length);
             }
             mesh.Indices = new uint[from.indices];
-            for (var i = 0; i < from.indices; i++)
+            fixed (uint* to = mesh.Indices)
             {
-                mesh.Indices[i] = from.indexSize == 2 ? ((ushort*)from.index)[i] : ((uint*)from.index)[i];
+                if (from.indexSize == 4)
+                {
+                    Buffer.MemoryCopy((void*)from.index, to, 4L * from.indices, 4L * from.indices);
+                }
+                for (var i = 0; from.indexSize == 2 && i < from.indices; i++)
+                {
+                    to[i] = ((ushort*)from.index)[i];
+                }
             }
             mesh.Format = from.indexSize == 2 ? IndexFormat.UInt16 : IndexFormat.UInt32;
             mesh.Parts = from.parts;
@@ -394,9 +401,9 @@ namespace UnityEngine
                 throw new ArgumentException("SetBoneWeights: the numbers of bones have another sum");
             }
             Weights = new BoneWeight1[total];
-            for (var i = 0; i < total; i++)
+            fixed (BoneWeight1* to = Weights)
             {
-                Weights[i] = ((BoneWeight1*)weights.buffer)[i];
+                Buffer.MemoryCopy((void*)weights.buffer, to, 8L * total, 8L * total);
             }
         }
 

@@ -3,8 +3,8 @@
 //! No Unity is run: `tests/unity/signatures.txt` lists what the stand-ins take for granted.
 
 use super::tally::Tally;
-use crate::environment;
 use crate::bindings::HEADER;
+use crate::environment;
 use crate::package::{package_unity, packed_library};
 use crate::tools::{self, Outcome};
 use std::collections::BTreeSet;
@@ -53,7 +53,10 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
         return Ok(());
     }
     let library = packed_library();
-    tally.case("the Unity package's library exports the C interface and what Unity looks for", exports(&library));
+    tally.case(
+        "the Unity package's library exports the C interface and what Unity looks for",
+        exports(&library),
+    );
     let with_library = |program: &str| {
         let mut command = Command::new(program);
         command.env("LD_LIBRARY_PATH", library.parent().unwrap_or(Path::new("."))).current_dir(&folder);
@@ -103,7 +106,11 @@ fn exports(library: &Path) -> Outcome {
     let header = tools::read(&tools::root().join(HEADER))?;
     let promised = super::c::functions(&header).into_iter().chain(ENTRIES).collect();
     let differ: Vec<_> = shown.symmetric_difference(&promised).copied().collect();
-    if differ.is_empty() { Ok(()) } else { Err(format!("not in both library and header: {}", differ.join(", "))) }
+    if differ.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("not in both library and header: {}", differ.join(", ")))
+    }
 }
 
 /// Compiles scripts. Unity 2021 takes more than this language version; mono's compiler takes no more.

@@ -61,7 +61,9 @@ fn link(library: &Path, to: &Path) -> Outcome {
 
 /// Where packing puts the library of this system: a folder in which programs find it.
 pub(crate) fn packed_library() -> PathBuf {
-    PLUGIN.iter().fold(tools::target().join("dist/stage/unity/package/Runtime/Plugins"), |path, name| path.join(name))
+    PLUGIN
+        .iter()
+        .fold(tools::target().join("dist/stage/unity/package/Runtime/Plugins"), |path, name| path.join(name))
 }
 
 fn with_meta(path: &Path) -> PathBuf {
