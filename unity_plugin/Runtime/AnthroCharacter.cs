@@ -8,7 +8,8 @@ namespace Anthronet
     /// <summary>
     /// A person in the scene: made of its request, with a skeleton, a mesh per level of detail and a humanoid avatar.
     /// Generating again changes it in place: objects, transforms and meshes stay the same ones. In the editor's edit mode
-    /// what it generates is not saved with the scene, but made again when the scene opens.
+    /// what it generates is not saved with the scene, but made again when the scene opens. A copy generates itself from the
+    /// request, too: one that became a body by other ways becomes who its request says.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Character")]
     [DisallowMultipleComponent]
@@ -39,7 +40,8 @@ namespace Anthronet
         /// <summary>Called on the main thread when the character has become a body. The body is the character's.</summary>
         public event Action<AnthroBody> OnReport;
 
-        /// <summary>Who it is to be; takes effect with `Generate`. Of the asset where it has one.</summary>
+        /// <summary>Who it is to be; takes effect with `Generate`. Of the asset where it has one;
+        /// setting another takes the asset off.</summary>
         public AnthroRequest Request
         {
             get { return requestAsset != null ? requestAsset.Request : request; }

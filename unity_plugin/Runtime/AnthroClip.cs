@@ -84,7 +84,7 @@ namespace Anthronet
         public static AnthroClip Builtin(string name, AnthroBody body)
         {
             ulong length;
-            using (var held = new Held(body.Handle))
+            using (var held = new Held(Library.Given(body, "body").Handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -112,8 +112,8 @@ namespace Anthronet
         public static AnthroClip Of(AnthroBody body, string name, double framesPerSecond, AnthroTransform[] frames)
         {
             ulong length;
-            using (var held = new Held(body.Handle))
-            fixed (AnthroTransform* first = frames)
+            using (var held = new Held(Library.Given(body, "body").Handle))
+            fixed (AnthroTransform* first = Library.Given(frames, "frames"))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -139,7 +139,7 @@ namespace Anthronet
         /// <param name="toModel">Relative to the character, as `AnthroSkinner` takes it.</param>
         public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] into, bool toModel = false)
         {
-            fixed (AnthroTransform* first = into)
+            fixed (AnthroTransform* first = Library.Given(into, "into"))
             {
                 Sample(seconds, wrap, first, into.Length, toModel);
             }
@@ -234,7 +234,7 @@ namespace Anthronet
         /// <summary>Two clips of one body at once: `weight` 0 is this, 1 the other.</summary>
         public AnthroClip Blended(AnthroClip other, float weight)
         {
-            using (var second = new Held(other.handle))
+            using (var second = new Held(Library.Given(other, "other").handle))
             using (var first = new Held(handle))
             {
                 anthronet_clip* made;
@@ -248,7 +248,7 @@ namespace Anthronet
         /// <summary>Two clips of one body one after the other, overlapping by `seconds`.</summary>
         public AnthroClip Then(AnthroClip other, double seconds)
         {
-            using (var second = new Held(other.handle))
+            using (var second = new Held(Library.Given(other, "other").handle))
             using (var first = new Held(handle))
             {
                 anthronet_clip* made;

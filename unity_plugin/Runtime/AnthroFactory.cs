@@ -1,5 +1,5 @@
-using System;
 using System.Collections.Generic;
+using Anthronet.Native;
 using UnityEngine;
 
 namespace Anthronet
@@ -60,14 +60,10 @@ namespace Anthronet
         /// </summary>
         public static AnthroSpawn CreateAsync(IList<AnthroRequest> requests, AnthroSettings settings = null)
         {
-            if (requests == null)
-            {
-                throw new ArgumentNullException("requests");
-            }
-            var copies = new AnthroRequest[requests.Count];
+            var copies = new AnthroRequest[Library.Given(requests, "requests").Count];
             for (var i = 0; i < copies.Length; i++)
             {
-                copies[i] = requests[i].Copy();
+                copies[i] = Library.Given(requests[i], "requests").Copy();
             }
             return new AnthroSpawn(copies, settings == null ? new AnthroSettings() : settings.Copy());
         }

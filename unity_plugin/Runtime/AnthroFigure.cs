@@ -294,10 +294,8 @@ namespace Anthronet
 
         void Disown(Object one)
         {
-            if (!ReferenceEquals(one, null) && owned.Remove(one))
-            {
-                AnthroObjects.Discard(one);
-            }
+            owned.Remove(one);
+            AnthroObjects.Discard(one);
         }
     }
 }

@@ -33,7 +33,8 @@ namespace Anthronet
         /// <param name="name">What the mesh is called.</param>
         public static Mesh Create(AnthroSurface surface, AnthroJoint[] joints, string name)
         {
-            using (var packed = new AnthroPacked(surface, true))
+            Native.Library.Given(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), true))
             {
                 var mesh = Create(packed, joints, name);
                 AddBlendShapes(mesh, surface);
@@ -70,7 +71,9 @@ namespace Anthronet
         /// </summary>
         public static void Update(Mesh mesh, AnthroSurface surface, AnthroJoint[] joints)
         {
-            using (var packed = new AnthroPacked(surface, false))
+            Native.Library.Given(mesh, "mesh");
+            Native.Library.Given(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), false))
             {
                 Update(mesh, packed, joints);
                 AddBlendShapes(mesh, surface);

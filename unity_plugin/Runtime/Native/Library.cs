@@ -73,6 +73,17 @@ namespace Anthronet.Native
             }
         }
 
+        /// <summary>What is given, which may not be null.</summary>
+        /// <exception cref="ArgumentNullException">It is.</exception>
+        internal static T Given<T>(T value, string name) where T : class
+        {
+            if (value == null)
+            {
+                throw new ArgumentNullException(name);
+            }
+            return value;
+        }
+
         /// <summary>Throws what a call says.</summary>
         /// <exception cref="AnthroException">The status is not "done".</exception>
         internal static void Check(int status, anthronet_error* error)

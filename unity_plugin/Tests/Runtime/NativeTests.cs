@@ -96,6 +96,18 @@ namespace Anthronet.Tests
             Expect.Code(AnthroError.Index, "", () => { double a, b; model.Range(36, out a, out b); }, "range");
             Expect.Throws<ArgumentNullException>(() => model.Generate(null), "no request");
             Expect.Throws<ArgumentNullException>(() => AnthroModel.Open((string)null), "no path");
+            foreach (var given in new Action[]
+            {
+                () => AnthroClip.Builtin("walk", null), () => new AnthroSkinner(null), () => new AnthroSurface(null, 0),
+                () => new AnthroCrowdSkin(null, 1), () => new AnthroCrowdSkin(new AnthroSkinner[1], 1),
+                () => model.Start(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
+                () => AnthroFactory.CreateAsync(new AnthroRequest[1]), () => AnthroMeshes.Create((AnthroSurface)null, new AnthroJoint[0], "x"),
+                () => new AnthroRequest().Take(null), () => AnthroRequest.FromJson(null),
+            })
+            {
+                var missing = Expect.Throws<ArgumentNullException>(() => given(), "nothing given");
+                Expect.That(!string.IsNullOrEmpty(missing.ParamName) && missing.ParamName != "handle", "which one: " + missing);
+            }
             Expect.Throws<OverflowException>(() => { double a, b; model.Range(-1, out a, out b); }, "negative index");
             using (var body = Body())
             {
