@@ -47,6 +47,11 @@ namespace Anthronet.Tests
             var pose = new AnthroTransform[clip.JointCount];
             Nothing("sampling", 2000, () => clip.Sample(0.2, AnthroWrap.Loop, pose));
             Nothing("animator", 2000, () => animator.Advance(1f / 60));
+            using (var other = AnthroModel.Default.Generate(new AnthroRequest { Seed = 2 }))
+            {
+                character.AddBlendShape("other", other);
+            }
+            Nothing("weights of blend shapes", 1000, () => character.SetBlendShapeWeight("other", 30f));
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];
             Nothing("reports", 1000, () => character.Body.Measures(reports));
             using (var surface = new AnthroSurface(character.Body, 3))

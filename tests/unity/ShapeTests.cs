@@ -49,9 +49,13 @@ namespace Anthronet.Tests
                 var arrays = new[] { 2, 3 }.Select(lod => pool[character.MeshOf(lod).vertexCount][0]).ToArray();
                 character.AddBlendShape("second", heavy);
                 Expect.That(new[] { 2, 3 }.Select(lod => pool[character.MeshOf(lod).vertexCount][0]).SequenceEqual(arrays), "new ones");
-                // A weight plays: it is the renderer's.
-                character.RendererOf(2).SetBlendShapeWeight(1, 40f);
-                Expect.Equal(40f, character.RendererOf(2).GetBlendShapeWeight(1), "weight");
+                character.SetBlendShapeWeight("second", 40f);
+                foreach (var lod in new[] { 2, 3 })
+                {
+                    Expect.Equal(40f, character.RendererOf(lod).GetBlendShapeWeight(1), "weight of LOD" + lod);
+                    Expect.Equal(0f, character.RendererOf(lod).GetBlendShapeWeight(0), "weight of the other one");
+                }
+                Expect.Throws<ArgumentException>(() => character.SetBlendShapeWeight("third", 1f), "a name that there is not");
                 Expect.Equal(2, character.MeshOf(2).blendShapeCount, "shapes");
                 Scene.End(character);
             }

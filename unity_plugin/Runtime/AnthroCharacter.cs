@@ -332,6 +332,22 @@ namespace Anthronet
             }
         }
 
+        /// <summary>Sets how much of a blend shape is seen, 0 to 100, on all levels of detail. Makes no garbage.</summary>
+        /// <exception cref="ArgumentException">It has none of that name.</exception>
+        public void SetBlendShapeWeight(string shape, float weight)
+        {
+            for (var i = 0; figure != null && i < figure.Levels.Count; i++)
+            {
+                var level = figure.Levels[i];
+                var place = level.mesh.GetBlendShapeIndex(shape);
+                if (place < 0)
+                {
+                    throw new ArgumentException("LOD" + level.lod + " has no blend shape \"" + shape + "\"", "shape");
+                }
+                level.renderer.SetBlendShapeWeight(place, weight);
+            }
+        }
+
         /// <summary>Who hears of the next person is to be told anew: for characters that are used again.</summary>
         internal void Forget()
         {

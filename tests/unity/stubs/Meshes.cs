@@ -218,6 +218,7 @@ namespace UnityEngine
         internal byte[] BonesPerVertex;
         internal BoneWeight1[] Weights;
         internal readonly Dictionary<string, Vector3[]> Shapes = new Dictionary<string, Vector3[]>();
+        internal readonly List<string> ShapeNames = new List<string>();
         internal readonly Dictionary<string, Vector3[]> ShapeNormals = new Dictionary<string, Vector3[]>();
 
         public int vertexCount { get { return Streams == null ? 0 : Streams[0].Length / 6; } }
@@ -227,10 +228,12 @@ namespace UnityEngine
         public SubMeshDescriptor GetSubMesh(int index) { return Parts[index]; }
         public IndexFormat indexFormat { get { return Format; } }
         public int blendShapeCount { get { return Shapes.Count; } }
+        public int GetBlendShapeIndex(string blendShapeName) { return ShapeNames.IndexOf(blendShapeName); }
         public void ClearBlendShapes()
         {
             Shapes.Clear();
             ShapeNormals.Clear();
+            ShapeNames.Clear();
         }
 
         public void SetSubMesh(int index, SubMeshDescriptor desc, MeshUpdateFlags flags = MeshUpdateFlags.Default)
@@ -418,6 +421,7 @@ namespace UnityEngine
             {
                 throw new ArgumentException("AddBlendShapeFrame: another number of normals");
             }
+            ShapeNames.Add(shapeName);
             Shapes[shapeName] = (Vector3[])deltaVertices.Clone();
             ShapeNormals[shapeName] = deltaNormals == null ? null : (Vector3[])deltaNormals.Clone();
         }
