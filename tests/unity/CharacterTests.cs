@@ -298,8 +298,16 @@ namespace Anthronet.Tests
             character.Request.Set("height", 9);
             Debug.Errors.Clear();
             home.SetActive(true);
-            Expect.That(character.Body == null && Debug.Errors.Any(error => error.Contains("height")), "not told");
+            Expect.That(character.Body == null && Debug.Errors.Single().Contains("height"), "not told, or twice");
             Debug.Errors.Clear();
+            Scene.End(character);
+            // One that is switched off is made all the same.
+            home = new GameObject("person");
+            home.SetActive(false);
+            character = home.AddComponent<AnthroCharacter>();
+            character.enabled = false;
+            home.SetActive(true);
+            Expect.That(character.Body != null, "not generated");
             Scene.End(character);
         }
     }

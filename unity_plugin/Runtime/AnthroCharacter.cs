@@ -155,7 +155,11 @@ namespace Anthronet
 
         void Awake()
         {
-            Wake();
+            // Of one that is enabled Unity calls `OnEnable` next: once is enough to be told what is wrong.
+            if (!enabled)
+            {
+                Wake();
+            }
         }
 
         // After a reload of the code it is this alone that Unity calls.
