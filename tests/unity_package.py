@@ -1,7 +1,7 @@
 """The Unity package as Unity's package manager wants it: .meta files, versions, assembly definitions.
 
-    python unity_package.py           checks
-    python unity_package.py --write   writes the .meta files that are missing
+    python unity_package.py [ARCHIVE]   checks, the packed package too where it is named
+    python unity_package.py --write     writes the .meta files that are missing
 
 A guid comes from the path of its file, so that it is the same for everybody and never another one.
 """
@@ -10,11 +10,18 @@ import hashlib
 import json
 import re
 import sys
+import tarfile
 from pathlib import Path
+
+import unity_population
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "unity_plugin"
 NAME = "com.anthronet.unity"
+#: Assemblies of Unity's own packages; those that a project does not have are left out of a reference by Unity.
+FOREIGN = {"Unity.Burst", "UnityEngine.TestRunner", "UnityEditor.TestRunner"}
+#: Where the native library of this system lies in a package.
+LIBRARY = {"linux": "Linux/x86_64/libanthronet.so", "darwin": "macOS/libanthronet.dylib", "win32": "Windows/x86_64/anthronet.dll"}
 
 
 def guid(path):
@@ -22,10 +29,14 @@ def guid(path):
 
 
 def assets():
-    """What Unity imports, relative to the package: not what begins with a dot or ends in a tilde, .meta files neither."""
+    """What Unity imports, relative to the package: not what begins with a dot or ends in a tilde, .meta files neither.
+
+    Samples are copied into a project out of `Samples~` and imported there, with their .meta files.
+    """
     for path in sorted(PACKAGE.rglob("*")):
         relative = path.relative_to(PACKAGE)
-        hidden = any(part.startswith(".") or part.endswith("~") for part in relative.parts)
+        parts = relative.parts[1:] if relative.parts[0] == "Samples~" else relative.parts
+        hidden = not parts or any(part.startswith(".") or part.endswith("~") for part in parts)
         if not hidden and path.suffix != ".meta" and path.suffix not in (".so", ".dll", ".dylib", ".a"):
             yield relative
 
@@ -47,7 +58,7 @@ def meta(relative):
             f"{head}MonoImporter:\n  externalObjects: {{}}\n  serializedVersion: 2\n  defaultReferences: []\n"
             "  executionOrder: 0\n  icon: {instanceID: 0}\n  userData: \n  assetBundleName: \n  assetBundleVariant: \n"
         )
-    importer = {".asmdef": "AssemblyDefinitionImporter", ".md": "TextScriptImporter", ".json": "TextScriptImporter"}
+    importer = {".asmdef": "AssemblyDefinitionImporter", ".md": "TextScriptImporter", ".json": "TextScriptImporter", ".txt": "TextScriptImporter"}
     kind = "PackageManifestImporter" if relative.name == "package.json" else importer[relative.suffix]
     return f"{head}{kind}:\n{tail}"
 
@@ -132,9 +143,12 @@ def test_assemblies():
     assert len(names) == len(definitions), names
     for path, definition in definitions.items():
         assert path.stem == definition["name"], path
-        unknown = [name for name in definition["references"] if name not in names]
+        unknown = [name for name in definition["references"] if name not in names | FOREIGN]
         assert not unknown, f"{path}: {unknown}"
-    scripts = [path for path in PACKAGE.rglob("*.cs") if not any(part.endswith("~") for part in path.parts)]
+        if "Tests" in path.parts:
+            assert definition["defineConstraints"] == ["UNITY_INCLUDE_TESTS"], f"{path}: in players, too"
+    scripts = list(PACKAGE.rglob("*.cs"))
+    assert len(scripts) > 50, f"only {len(scripts)} scripts"
     for script in scripts:
         assert any(path.parent in script.parents for path in definitions), f"{script}: in no assembly"
 
@@ -146,14 +160,59 @@ def test_file_names():
             assert component == script.stem, f"{component} is in {script.name}"
 
 
+def test_namespaces():
+    """scripts are in namespaces of ours, samples too"""
+    for script in PACKAGE.rglob("*.cs"):
+        text = script.read_text("utf-8")
+        assert script.name == "AssemblyInfo.cs" or re.search(r"^namespace Anthronet(\.\w+)*$", text, re.M), script
+
+
+def test_samples():
+    """samples of package.json are there, each with its assembly, and every folder of samples is in it"""
+    listed = {sample["path"]: sample for sample in json.loads((PACKAGE / "package.json").read_text("utf-8"))["samples"]}
+    there = {f"Samples~/{path.name}" for path in (PACKAGE / "Samples~").iterdir() if path.is_dir()}
+    assert set(listed) == there, f"{sorted(listed)} and {sorted(there)}"
+    for path, sample in listed.items():
+        assert sample["displayName"] and sample["description"], path
+        assert len(list((PACKAGE / path).glob("*.asmdef"))) == 1, f"{path}: no assembly of its own"
+
+
+def test_population():
+    """the population is what its script makes"""
+    made = "\n".join(unity_population.population()) + "\n"
+    assert unity_population.FILE.read_text("utf-8") == made, "`python tests/unity_population.py --write` writes it"
+    assert made.count("\n") == 200, made.count("\n")
+
+
+def test_archive():
+    """the packed package is these files, the native library of this system with its settings, and the licences"""
+    wanted = {f"package/{path.relative_to(PACKAGE).as_posix()}" for path in PACKAGE.rglob("*") if path.is_file()}
+    library = LIBRARY[sys.platform]
+    wanted |= {f"package/Runtime/Plugins/{library}", f"package/Runtime/Plugins/{library}.meta"}
+    wanted |= {f"package/Runtime/Plugins/{folder.as_posix()}.meta" for folder in list(Path(library).parents)[:-1]}
+    wanted |= {f"package/Documentation~/{name}" for name in ("LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md")}
+    with tarfile.open(ARCHIVE) as archive:
+        members = archive.getmembers()
+    there = {member.name for member in members if member.isfile()}
+    assert there == wanted, f"missing {sorted(wanted - there)}, left over {sorted(there - wanted)}"
+    odd = [member.name for member in members if not (member.isfile() or member.isdir())]
+    assert not odd, f"links: {odd}"
+    assert next(member.size for member in members if member.name.endswith(library)) > 1 << 20, "the library is no library"
+
+
 def main():
+    global ARCHIVE
     if sys.argv[1:] == ["--write"]:
         for path, text in expected():
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, "utf-8", newline="\n")
         return 0
     failed = 0
-    for test in (test_metas, test_guids, test_versions, test_assemblies, test_file_names):
+    tests = [test_metas, test_guids, test_versions, test_assemblies, test_file_names, test_namespaces, test_samples, test_population]
+    if len(sys.argv) > 1:
+        ARCHIVE = sys.argv[1]
+        tests.append(test_archive)
+    for test in tests:
         try:
             test()
             print(f"ok Unity package: {test.__doc__}")

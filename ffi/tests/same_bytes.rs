@@ -7,6 +7,9 @@
 //! - `sha256.txt`: one line for each. Line i, counted from 0, is the SHA-256 in hexadecimal of the body as `glb` in
 //!   memory at level of detail i mod 4 and otherwise default options, every tenth (i mod 10 = 3) with the built-in clip
 //!   `walk`; or `error` and the code of the call that failed.
+//! - `unity_sha256.txt`: likewise, of what a mesh in Unity's space holds at that level: for every part the vertices
+//!   (position and normal, six floats each), texture coordinates, triangles, joints and weights, four a vertex; then for
+//!   every joint its inverse bind matrix and its place in its parent (quaternion and translation). Numbers as in memory.
 //!
 //! `ANTHRONET_REQUESTS` asks for fewer requests, as under valgrind; then no list is left.
 //!
@@ -24,14 +27,16 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
+use anthronet::Body;
 use anthronet::clip::builtin;
 use anthronet::condition::{Fill, Request};
-use anthronet::export::{Scene, SceneOptions, WriteOptions, scene_to_bytes};
+use anthronet::export::{Layout, Scene, SceneOptions, WriteOptions, scene_to_bytes};
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::pose::RestPose;
 use anthronet::random::Random;
+use anthronet::space::Space;
 use libloading::{Library, Symbol};
 use library::{ErrorOut, library};
 use sha2::{Digest, Sha256};
@@ -67,7 +72,11 @@ fn requests(model: &Model, count: usize) -> Vec<Request> {
 }
 
 fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+    hex(&Sha256::digest(bytes))
+}
+
+fn hex(digest: &[u8]) -> String {
+    digest.iter().fold(String::new(), |mut text, byte| {
         write!(text, "{byte:02x}").unwrap();
         text
     })
@@ -78,15 +87,43 @@ fn walks(number: usize) -> bool {
     number % 10 == 3
 }
 
-/// Through the Rust library.
-fn direct(model: &Model, request: &Request, number: usize) -> anthronet::Result<String> {
+/// Through the Rust library: the file and what Unity holds.
+fn direct(model: &Model, request: &Request, number: usize) -> anthronet::Result<[String; 2]> {
     let body = model.generate(request)?;
     let lod = Lod::ALL[number % 4];
     let mut scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() })?;
     if walks(number) {
         scene.clips.push(builtin("walk", &Arc::new(RestPose::of_joints(body.joints())?))?);
     }
-    Ok(hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?))
+    let file = hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?);
+    Ok([file, in_unity(&body, scene)?])
+}
+
+fn in_unity(body: &Body, scene: Scene) -> anthronet::Result<String> {
+    let space = Space::Unity;
+    let mut sha = Sha256::new();
+    for part in scene.into_buffers(Layout::Render, space)? {
+        let vertices: Vec<_> =
+            part.positions.iter().zip(&part.normals).map(|(position, normal)| [*position, *normal]).collect();
+        sha.update(bytemuck::cast_slice(&vertices));
+        sha.update(bytemuck::cast_slice(&part.uvs));
+        sha.update(bytemuck::cast_slice(&part.triangles));
+        // What an unused influence names is nobody's business.
+        let weights = &part.influences.weights;
+        let used =
+            part.influences.joints.iter().zip(weights).map(|(joint, w)| if *w > 0.0 { *joint } else { 0 });
+        sha.update(bytemuck::cast_slice(&used.collect::<Vec<_>>()));
+        sha.update(bytemuck::cast_slice(weights));
+    }
+    let rest = RestPose::of_joints(body.joints())?;
+    for (joint, local) in body.joints().iter().zip(&rest.pose().locals) {
+        let bind = space.joint_from_model_matrix(joint.model_from_joint.inverse().into());
+        let local = local.parent_from_joint_in(space, joint.parent);
+        sha.update(bytemuck::cast_slice(&bind.to_cols_array()));
+        sha.update(bytemuck::cast_slice(&local.rotation.to_array()));
+        sha.update(bytemuck::cast_slice(&local.translation.to_array()));
+    }
+    Ok(hex(&sha.finalize()))
 }
 
 /// `anthronet_export_options`.
@@ -180,18 +217,20 @@ impl Drop for Shared {
 #[test]
 fn the_shared_library_gives_the_bytes_of_the_crate() {
     let (shared, model) = (Shared::open(), Model::embedded().unwrap());
-    let (mut list, mut hashes, mut refused) = (String::new(), String::new(), 0);
+    let (mut list, mut hashes, mut unity, mut refused) = (String::new(), String::new(), String::new(), 0);
     let count = std::env::var("ANTHRONET_REQUESTS").map_or(COUNT, |count| count.parse().unwrap());
     for (i, request) in requests(&model, count).iter().enumerate() {
         let json = request.to_json();
         assert!(!json.contains('\n'), "a request of more than one line");
         let line = match (direct(&model, request, i), shared.hash(&json, i)) {
-            (Ok(ours), Ok(theirs)) => {
+            (Ok([ours, in_unity]), Ok(theirs)) => {
                 assert_eq!(ours, theirs, "request {i}: {json}");
+                unity += &(in_unity + "\n");
                 ours
             }
             (Err(_), Err(code)) => {
                 refused += 1;
+                unity += &format!("error {code}\n");
                 format!("error {code}")
             }
             (ours, theirs) => panic!("request {i}: {ours:?} here, {theirs:?} there: {json}"),
@@ -207,4 +246,5 @@ fn the_shared_library_gives_the_bytes_of_the_crate() {
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("requests.jsonl"), list).unwrap();
     std::fs::write(folder.join("sha256.txt"), hashes).unwrap();
+    std::fs::write(folder.join("unity_sha256.txt"), unity).unwrap();
 }

@@ -1,12 +1,14 @@
 using System;
 using System.Linq;
 using System.Reflection;
+using NUnit.Framework;
 using UnityEngine;
 
 namespace Anthronet.Tests
 {
     /// Nothing is left to the collector by what runs every frame.
-    static class GarbageTests
+    [TestFixture]
+    public static class GarbageTests
     {
         // This counter of the runtime is missing from the compiler's reference assemblies.
         static readonly Func<long> Allocated = (Func<long>)Delegate.CreateDelegate(typeof(Func<long>),
@@ -24,8 +26,16 @@ namespace Anthronet.Tests
             Expect.Equal(0L, Allocated() - before, what + ": bytes in " + times + " frames");
         }
 
-        [Case("zero bytes per frame: sampling, animating, skinning a crowd, polling")]
-        static void PerFrame()
+        static unsafe void Skin(AnthroSkinJob[] jobs)
+        {
+            fixed (AnthroSkinJob* first = jobs)
+            {
+                AnthroSkin.Run(first, jobs.Length);
+            }
+        }
+
+        [Test(Description = "zero bytes per frame: sampling, animating, skinning a crowd, polling")]
+        public static void PerFrame()
         {
             var start = Allocated();
             GC.KeepAlive(new byte[100]);
@@ -37,6 +47,11 @@ namespace Anthronet.Tests
             var pose = new AnthroTransform[clip.JointCount];
             Nothing("sampling", 2000, () => clip.Sample(0.2, AnthroWrap.Loop, pose));
             Nothing("animator", 2000, () => animator.Advance(1f / 60));
+            using (var other = AnthroModel.Default.Generate(new AnthroRequest { Seed = 2 }))
+            {
+                character.AddBlendShape("other", other);
+            }
+            Nothing("weights of blend shapes", 1000, () => character.SetBlendShapeWeight("other", 30f));
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];
             Nothing("reports", 1000, () => character.Body.Measures(reports));
             using (var surface = new AnthroSurface(character.Body, 3))
@@ -51,6 +66,8 @@ namespace Anthronet.Tests
                     }
                     crowd.Run();
                 });
+                var jobs = crowd.Jobs;
+                Nothing("skinning as Burst calls it", 300, () => Skin(jobs));
             }
             using (var job = AnthroModel.Default.Start(new[] { new AnthroRequest() }))
             {

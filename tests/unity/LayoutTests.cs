@@ -6,11 +6,13 @@ using System.Reflection;
 using System.Runtime.InteropServices;
 using System.Text;
 using Anthronet.Native;
+using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
     /// Structures as a compiler of C lays them out, and the functions of the header.
-    static class LayoutTests
+    [TestFixture]
+    public static class LayoutTests
     {
         static IEnumerable<Type> Structures()
         {
@@ -50,14 +52,12 @@ namespace Anthronet.Tests
             }
         }
 
-        [Case("structures are laid out as in C")]
-        static void LaidOut()
+        [Test(Description = "structures are laid out as in C"), Category("NeedsC")]
+        public static void LaidOut()
         {
-            if (Runner.Layout == null)
-            {
-                throw new SkippedException("no compiler of C made --layout");
-            }
-            var expected = File.ReadAllLines(Runner.Layout);
+            var file = Environment.GetEnvironmentVariable("ANTHRONET_LAYOUT");
+            Expect.That(!string.IsNullOrEmpty(file), "ANTHRONET_LAYOUT is not set: `cargo xtask test --only unity` sets it");
+            var expected = File.ReadAllLines(file);
             var found = Lines().ToArray();
             Expect.That(expected.Length > 90, "only " + expected.Length + " lines");
             for (var i = 0; i < Math.Max(expected.Length, found.Length); i++)
@@ -77,18 +77,21 @@ namespace Anthronet.Tests
             }
         }
 
-        [Case("public structures are laid out as the library's")]
-        static void Public()
+        [Test(Description = "public structures are laid out as the library's")]
+        public static void Public()
         {
             Same(typeof(AnthroTransform), typeof(anthronet_transform), "rotation", "translation");
             Same(typeof(AnthroJoint), typeof(anthronet_joint), "parent", "length", "local", "modelFromJoint",
                 "jointFromModel");
             Same(typeof(AnthroMeasureReport), typeof(anthronet_measure_report), "asked", "obtained", "residual", "low90",
                 "high90", "percentile", "given", "filled");
+            Same(typeof(AnthroSkinJob), typeof(anthronet_skin_job), "size", "method", "skinner", "joints", "jointCount",
+                "offsetCount", "offsets", "positions", "positionBytes", "positionStride", "normals", "normalBytes",
+                "normalStride");
         }
 
-        [Case("every declared function is in the library")]
-        static void Linked()
+        [Test(Description = "every declared function is in the library")]
+        public static void Linked()
         {
             var functions = typeof(NativeMethods)
                 .GetMethods(BindingFlags.Static | BindingFlags.NonPublic)
@@ -97,8 +100,8 @@ namespace Anthronet.Tests
             Array.ForEach(functions, Marshal.Prelink);
         }
 
-        [Case("the enumerations of errors agree")]
-        static void Errors()
+        [Test(Description = "the enumerations of errors agree")]
+        public static void Errors()
         {
             var codes = typeof(NativeMethods).GetFields(BindingFlags.Static | BindingFlags.NonPublic)
                 .Where(field => field.Name.StartsWith("ANTHRONET_ERROR_")).Select(field => (int)field.GetValue(null));

@@ -5,10 +5,15 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Prints times beside their bars; asserts nothing, since machines differ.
+    /// Prints times beside their bars. Machines differ and are shared: what fails is several times over its bar.
     static class Speed
     {
-        internal static void Print(int avatars)
+        const double Generous = 4;
+
+        static bool all = true;
+
+        /// Whether nothing was far over its bar.
+        internal static bool Print(int avatars)
         {
             // Compiled, read, and allocated once.
             Spawn(1, 1);
@@ -52,11 +57,14 @@ namespace Anthronet.Tests
                 Console.WriteLine("   skinning of 20 characters at LOD1: {0:0.0} ms", Milliseconds(crowd.Run));
             }
 
+            Line("longest step on the main thread of a character with LOD0 to LOD3 (median of 20)", Longest(0), "ms", AnthroRunner.Budget);
+            Line("the same with LOD1 to LOD3", Longest(1), "ms", AnthroRunner.Budget);
+
             var requests = Enumerable.Range(1, avatars).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
             var whole = 0;
             var before = Resident();
             var characters = new AnthroCharacter[avatars];
-            var all = Milliseconds(() =>
+            var took = Milliseconds(() =>
             {
                 using (var job = AnthroFactory.CreateAsync(
                     requests, new AnthroSettings { finestLod = 1, coarsestLod = 1 }))
@@ -72,10 +80,35 @@ namespace Anthronet.Tests
                     }
                 }
             });
-            Line(whole + " characters at LOD1 with avatars by CreateAsync, per 1,000", all * 1000 / avatars / 1000, "s", 8);
+            Line(whole + " characters at LOD1 with avatars by CreateAsync, per 1,000", took * 1000 / avatars / 1000, "s", 8);
             Console.WriteLine("   memory per character: {0:0} KiB, the stand-ins' managed meshes included",
                 (Resident() - before) / 1024.0 / avatars);
             GC.KeepAlive(characters);
+            Expect.Equal(avatars, whole, "characters");
+            return all;
+        }
+
+        /// The longest step that `Advance` takes for a character, median of many, milliseconds. The stand-ins copy meshes as
+        /// Unity does; what else Unity does with them comes on top.
+        static double Longest(int finest)
+        {
+            var requests = Enumerable.Range(1, 20).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
+            var longest = new double[requests.Length];
+            using (var spawn = AnthroFactory.CreateAsync(requests, new AnthroSettings { finestLod = finest }))
+            {
+                while (!spawn.IsDone)
+                {
+                    // Packing, which is beside the main thread, gets on meanwhile.
+                    System.Threading.Thread.Sleep(2);
+                    var at = spawn.Done;
+                    longest[at] = Math.Max(longest[at], Milliseconds(() => spawn.Advance(0)));
+                }
+                for (var i = 0; i < spawn.Count; i++)
+                {
+                    UnityEngine.Object.Destroy(spawn.Character(i).gameObject);
+                }
+            }
+            return longest.OrderBy(t => t).ElementAt(longest.Length / 2);
         }
 
         static void Parts()
@@ -116,7 +149,10 @@ namespace Anthronet.Tests
 
         static void Line(string what, double found, string unit, double bar)
         {
-            Console.WriteLine("   {0}: {1:0.0} {2} (bar {3} {2}){4}", what, found, unit, bar, found <= bar ? "" : " OVER THE BAR");
+            var far = found > Generous * bar;
+            all &= !far;
+            Console.WriteLine("   {0}: {1:0.0} {2} (bar {3} {2}){4}", what, found, unit, bar,
+                far ? " FAR OVER THE BAR" : found <= bar ? "" : " over the bar");
         }
 
         static long Resident()

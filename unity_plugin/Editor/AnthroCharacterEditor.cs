@@ -4,135 +4,123 @@ using UnityEngine;
 
 namespace Anthronet.Editor
 {
-    /// <summary>The inspector of a character: measures in groups, each with its switch; generate, randomise, the report.
-    /// </summary>
+    /// <summary>The inspector of a character: its request with the report, generate, randomise, save.</summary>
     [CustomEditor(typeof(AnthroCharacter))]
     public sealed class AnthroCharacterEditor : UnityEditor.Editor
     {
-        struct Group
-        {
-            public string title;
-            public int first;
-            public int count;
-        }
-
-        // In the order of the measures: those of the middle, then the same twelve of each side.
-        static readonly Group[] groups =
-        {
-            new Group { title = "Body", first = 0, count = 12 },
-            new Group { title = "Left side", first = 12, count = 12 },
-            new Group { title = "Right side", first = 24, count = 12 },
-        };
-
         static readonly string[] settings =
         {
             "finestLod", "coarsestLod", "skinTone", "bodyOnly", "humanoid", "generateOnAwake", "materials",
         };
 
-        static readonly bool[] open = { true, false, false };
-
-        readonly AnthroMeasureReport[] reports = new AnthroMeasureReport[AnthroMeasures.Count];
-        bool reported;
+        readonly AnthroRequestGui gui = new AnthroRequestGui();
+        SerializedObject asset;
 
         /// <inheritdoc/>
         public override void OnInspectorGUI()
         {
-            serializedObject.Update();
             var character = (AnthroCharacter)target;
-            var request = serializedObject.FindProperty("request");
-            EditorGUILayout.PropertyField(request.FindPropertyRelative("sex"));
-            EditorGUILayout.PropertyField(request.FindPropertyRelative("seed"));
-            EditorGUILayout.PropertyField(request.FindPropertyRelative("fill"));
-            EditorGUILayout.PropertyField(request.FindPropertyRelative("nearest"));
-            reported = character.Body != null;
-            if (reported)
+            try
             {
-                character.Body.Measures(reports);
+                Draw(character);
             }
-            var metres = request.FindPropertyRelative("metres");
-            var given = request.FindPropertyRelative("given");
-            for (var i = 0; i < groups.Length; i++)
+            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
             {
-                open[i] = EditorGUILayout.Foldout(open[i], groups[i].title, true);
-                for (var k = 0; open[i] && k < groups[i].count; k++)
+                // Thrown anew at each repaint until the library is there: nothing to fill the console with.
+                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
+                EditorGUILayout.PropertyField(serializedObject.FindProperty("generateOnAwake"), true);
+                serializedObject.ApplyModifiedProperties();
+            }
+        }
+
+        void Draw(AnthroCharacter character)
+        {
+            serializedObject.Update();
+            EditorGUILayout.PropertyField(serializedObject.FindProperty("requestAsset"), true);
+            var body = character.Body;
+            if (character.RequestAsset != null)
+            {
+                if (asset == null || asset.targetObject != character.RequestAsset)
                 {
-                    var measure = groups[i].first + k;
-                    Measure(measure, metres.GetArrayElementAtIndex(measure), given.GetArrayElementAtIndex(measure));
+                    asset = new SerializedObject(character.RequestAsset);
                 }
+                asset.Update();
+                gui.Draw(asset.FindProperty("request"), body);
+                asset.ApplyModifiedProperties();
+            }
+            else
+            {
+                gui.Draw(serializedObject.FindProperty("request"), body);
             }
             foreach (var setting in settings)
             {
                 EditorGUILayout.PropertyField(serializedObject.FindProperty(setting), true);
             }
             serializedObject.ApplyModifiedProperties();
+            if (character.IsBaked)
+            {
+                EditorGUILayout.HelpBox("Baked: its meshes are assets. Generate makes it one that is generated.", MessageType.Info);
+            }
             if (GUILayout.Button("Generate"))
             {
-                Generate(character);
+                Generate(character, "Generate");
             }
             if (GUILayout.Button("Randomise"))
             {
-                Undo.RecordObject(character, "Randomise");
-                character.Request.Seed = unchecked((ulong)Guid.NewGuid().GetHashCode()) & 0x7fffffff;
-                character.Request.Fill = AnthroFill.Sample;
-                Generate(character);
+                Randomise(character);
             }
-            if (reported)
+            if (body != null && GUILayout.Button("Save as prefab…"))
+            {
+                var path = EditorUtility.SaveFilePanelInProject(
+                    "Save character", character.name, "prefab", "Where the character is saved with all that it consists of");
+                if (!string.IsNullOrEmpty(path))
+                {
+                    Told(() => AnthroSave.SavePrefab(character, path));
+                }
+            }
+            if (character.Body != null)
             {
                 EditorGUILayout.HelpBox(Summary(character.Body), MessageType.Info);
             }
         }
 
-        void Measure(int measure, SerializedProperty metres, SerializedProperty given)
+        /// <summary>Makes it another person with the same given measures. Undone as one step.</summary>
+        internal static void Randomise(AnthroCharacter character)
         {
-            double min, max;
-            AnthroModel.Default.Range(measure, out min, out max);
-            EditorGUILayout.BeginHorizontal();
-            var now = EditorGUILayout.ToggleLeft(Label(measure), given.boolValue);
-            if (now && !given.boolValue)
-            {
-                // A measure that is switched on begins with what the body has.
-                metres.doubleValue = reported ? reports[measure].obtained : 0.5 * (min + max);
-            }
-            given.boolValue = now;
-            if (now)
-            {
-                metres.doubleValue = EditorGUILayout.Slider((float)metres.doubleValue, (float)min, (float)max);
-            }
-            else if (reported)
-            {
-                EditorGUILayout.LabelField(reports[measure].obtained.ToString("0.000") + " m");
-            }
-            if (reported)
-            {
-                EditorGUILayout.LabelField(now
-                    ? (1000 * reports[measure].residual).ToString("+0.0;-0.0;0.0") + " mm"
-                    : reports[measure].percentile.ToString("0") + " %");
-            }
-            EditorGUILayout.EndHorizontal();
+            var holder = character.RequestAsset != null ? (UnityEngine.Object)character.RequestAsset : character;
+            Undo.RecordObject(holder, "Randomise");
+            character.Request.Seed = unchecked((ulong)Guid.NewGuid().GetHashCode()) & 0x7fffffff;
+            character.Request.Fill = AnthroFill.Sample;
+            EditorUtility.SetDirty(holder);
+            Generate(character, "Randomise");
         }
 
-        static string Label(int measure)
+        /// <summary>Generates it and marks the scene as changed; what is refused is told in a dialogue.</summary>
+        internal static void Generate(AnthroCharacter character, string step)
         {
-            var name = AnthroMeasures.Names[measure].Replace("_left", "").Replace("_right", "").Replace('_', ' ');
-            return char.ToUpperInvariant(name[0]) + name.Substring(1);
+            Undo.RecordObject(character, step);
+            Told(character.Generate);
+            EditorUtility.SetDirty(character);
+            PrefabUtility.RecordPrefabInstancePropertyModifications(character);
+        }
+
+        static void Told(Action action)
+        {
+            try
+            {
+                action();
+            }
+            catch (Exception error) when (error is AnthroException || error is InvalidOperationException
+                || error is System.IO.IOException)
+            {
+                EditorUtility.DisplayDialog("AnthroNet", error.Message, "OK");
+            }
         }
 
         static string Summary(AnthroBody body)
         {
             return body.Sex + ", " + body.Mass.ToString("0.0") + " kg, BMI " + body.Bmi.ToString("0.0") + ", largest residual "
                 + (1000 * body.SolveResidual).ToString("0.00") + " mm, warnings: " + body.WarningCount;
-        }
-
-        static void Generate(AnthroCharacter character)
-        {
-            try
-            {
-                character.Generate();
-            }
-            catch (AnthroException error)
-            {
-                EditorUtility.DisplayDialog("AnthroNet", error.Message, "OK");
-            }
         }
     }
 }

@@ -1,3 +1,4 @@
+using Anthronet.Native;
 using UnityEditor;
 using UnityEngine;
 
@@ -12,24 +13,38 @@ namespace Anthronet.Editor
         {
             var made = new GameObject("AnthroNet Character");
             GameObjectUtility.SetParentAndAlign(made, command.context as GameObject);
-            var character = made.AddComponent<AnthroCharacter>();
+            // It generates itself when it is added, and tells in the console where it cannot.
+            made.AddComponent<AnthroCharacter>();
             Undo.RegisterCreatedObjectUndo(made, "Create AnthroNet Character");
-            // Unity calls Awake in the editor only for components that ask for it.
-            if (character.Body == null)
-            {
-                character.Generate();
-            }
             Selection.activeObject = made;
         }
     }
 
-    /// <summary>Frees the shared model before the code is loaded anew; finalisers free the rest.</summary>
+    /// <summary>
+    /// Releases what is native before the code is loaded anew: threads, memory, materials. Characters and animators make
+    /// it again when Unity enables them.
+    /// </summary>
     [InitializeOnLoad]
-    static class AnthroReload
+    internal static class AnthroReload
     {
         static AnthroReload()
         {
-            AssemblyReloadEvents.beforeAssemblyReload += AnthroModel.ReleaseDefault;
+            AssemblyReloadEvents.beforeAssemblyReload += Release;
+            EditorApplication.playModeStateChanged += change =>
+            {
+                if (change == PlayModeStateChange.ExitingPlayMode || change == PlayModeStateChange.ExitingEditMode)
+                {
+                    AnthroRunner.ReleaseAll();
+                }
+            };
+        }
+
+        internal static void Release()
+        {
+            AnthroRunner.ReleaseAll();
+            AnthroAlive.ReleaseAll();
+            AnthroModel.ReleaseDefault();
+            AnthroMaterials.Release();
         }
     }
 }

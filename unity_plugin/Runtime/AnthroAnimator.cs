@@ -4,18 +4,23 @@ namespace Anthronet
 {
     /// <summary>
     /// Plays a clip of ours on a character: sampled natively each frame, without garbage. Where the character has an
-    /// `Animator` with a controller, it wins over it.
+    /// `Animator` with a controller, it wins over it. A built-in clip is made anew when the character becomes another
+    /// body, and goes on at the same time; a clip of the caller's plays on as it is.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Animator")]
     [RequireComponent(typeof(AnthroCharacter))]
+    [DisallowMultipleComponent]
     public sealed class AnthroAnimator : MonoBehaviour
     {
         [SerializeField] string builtin = "";
         [SerializeField] float speed = 1f;
         [SerializeField] AnthroWrap wrap = AnthroWrap.Loop;
+        // Goes on here after the code was loaded anew.
+        [SerializeField] [HideInInspector] double time;
 
         AnthroCharacter character;
         AnthroClip clip;
+        AnthroBody madeFor;
         bool own;
         AnthroTransform[] pose;
 
@@ -26,7 +31,11 @@ namespace Anthronet
         }
 
         /// <summary>Seconds since the clip's first frame.</summary>
-        public double Time { get; set; }
+        public double Time
+        {
+            get { return time; }
+            set { time = value; }
+        }
 
         /// <summary>Seconds of the clip per second; negative ones go backwards.</summary>
         public float Speed
@@ -46,27 +55,79 @@ namespace Anthronet
         /// </summary>
         public void Play(AnthroClip next)
         {
+            Use(next);
+            builtin = "";
+            time = 0.0;
+        }
+
+        /// <summary>Plays a built-in clip, such as `walk`, made for this character.</summary>
+        /// <exception cref="AnthroException">There is none of that name.</exception>
+        public void Play(string name)
+        {
+            Make(name);
+            builtin = name;
+            time = 0.0;
+        }
+
+        void Make(string name)
+        {
+            var body = Character().Body;
+            if (body == null)
+            {
+                throw new System.InvalidOperationException(
+                    "the character has to be generated before a clip is made for it: " + gameObject.name);
+            }
+            Use(AnthroClip.Builtin(name, body));
+            madeFor = body;
+            own = true;
+        }
+
+        void Use(AnthroClip next)
+        {
             Release();
             clip = next;
-            Time = 0.0;
             if (clip != null && (pose == null || pose.Length != clip.JointCount))
             {
                 pose = new AnthroTransform[clip.JointCount];
             }
         }
 
-        /// <summary>Plays a built-in clip, such as `walk`, made for this character.</summary>
-        public void Play(string name)
+        AnthroCharacter Character()
         {
-            Play(AnthroClip.Builtin(name, GetComponent<AnthroCharacter>().Body));
-            own = true;
+            if (character == null)
+            {
+                character = GetComponent<AnthroCharacter>();
+            }
+            return character;
         }
 
-        void Start()
+        void OnEnable()
         {
-            if (clip == null && !string.IsNullOrEmpty(builtin) && GetComponent<AnthroCharacter>().Body != null)
+            Character().OnReport += Rebind;
+            if (Character().Body != null)
             {
-                Play(builtin);
+                Rebind(Character().Body);
+            }
+        }
+
+        void OnDisable()
+        {
+            if (Character() != null)
+            {
+                Character().OnReport -= Rebind;
+            }
+        }
+
+        /// <summary>Makes a clip of its own for the body that the character is now, at the same time.</summary>
+        void Rebind(AnthroBody body)
+        {
+            if (!string.IsNullOrEmpty(builtin) && !ReferenceEquals(madeFor, body))
+            {
+                Make(builtin);
+            }
+            if (clip != null)
+            {
+                Advance(0f);
             }
         }
 
@@ -79,16 +140,12 @@ namespace Anthronet
         /// <summary>Goes on by seconds and poses the character. `LateUpdate` does it each frame.</summary>
         public void Advance(float seconds)
         {
-            if (character == null)
-            {
-                character = GetComponent<AnthroCharacter>();
-            }
-            if (clip == null || character.Rig == null)
+            if (clip == null || Character().Rig == null)
             {
                 return;
             }
-            Time += (double)speed * seconds;
-            clip.Sample(Time, wrap, pose);
+            time += (double)speed * seconds;
+            clip.Sample(time, wrap, pose);
             character.Rig.ToPose(pose);
         }
 
@@ -103,8 +160,9 @@ namespace Anthronet
             if (own)
             {
                 clip.Dispose();
-                own = false;
             }
+            own = false;
+            madeFor = null;
         }
     }
 }

@@ -26,6 +26,12 @@ namespace Anthronet
             get { return handle; }
         }
 
+        /// <summary>Whether it was freed.</summary>
+        internal bool IsFreed
+        {
+            get { return handle.IsClosed; }
+        }
+
         /// <summary>Female or male.</summary>
         public AnthroSex Sex
         {
@@ -84,7 +90,7 @@ namespace Anthronet
         public void Measures(AnthroMeasureReport[] into)
         {
             using (var held = new Held(handle))
-            fixed (AnthroMeasureReport* first = into)
+            fixed (AnthroMeasureReport* first = Library.Given(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_measures((anthronet_body*)held.Pointer,
@@ -120,7 +126,7 @@ namespace Anthronet
         public void Latent(double[] into)
         {
             using (var held = new Held(handle))
-            fixed (double* first = into)
+            fixed (double* first = Library.Given(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_latent(
@@ -132,7 +138,7 @@ namespace Anthronet
         public void Joints(AnthroJoint[] into)
         {
             using (var held = new Held(handle))
-            fixed (AnthroJoint* first = into)
+            fixed (AnthroJoint* first = Library.Given(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_joints((anthronet_body*)held.Pointer,
@@ -206,13 +212,13 @@ namespace Anthronet
         static void Export(int lod, AnthroClip[] clips, Action<IntPtr> write)
         {
             // One more: an empty array has no first entry to point at.
-            var pointers = new IntPtr[clips.Length + 1];
+            var pointers = new IntPtr[Library.Given(clips, "clips").Length + 1];
             var held = new Held[clips.Length];
             try
             {
                 for (var i = 0; i < clips.Length; i++)
                 {
-                    held[i] = new Held(clips[i].Handle);
+                    held[i] = new Held(Library.Given(clips[i], "clips").Handle);
                     pointers[i] = (IntPtr)held[i].Pointer;
                 }
                 fixed (IntPtr* first = pointers)

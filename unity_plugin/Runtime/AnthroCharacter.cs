@@ -7,13 +7,17 @@ namespace Anthronet
 {
     /// <summary>
     /// A person in the scene: made of its request, with a skeleton, a mesh per level of detail and a humanoid avatar.
-    /// Generating again changes it in place: objects, transforms and meshes stay the same ones.
+    /// Generating again changes it in place: objects, transforms and meshes stay the same ones. In the editor's edit mode
+    /// what it generates is not saved with the scene, but made again when the scene opens. A copy generates itself from the
+    /// request, too: one that became a body by other ways becomes who its request says.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Character")]
     [DisallowMultipleComponent]
+    [ExecuteAlways]
     public sealed class AnthroCharacter : MonoBehaviour
     {
         [SerializeField] AnthroRequest request = new AnthroRequest();
+        [SerializeField] AnthroRequestAsset requestAsset = null;
         [SerializeField] [Range(0, 3)] int finestLod = 0;
         [SerializeField] [Range(0, 3)] int coarsestLod = 3;
         [SerializeField] [Range(0, 10)] int skinTone = 0;
@@ -22,47 +26,63 @@ namespace Anthronet
         [SerializeField] bool generateOnAwake = true;
         [SerializeField] Material[] materials = new Material[0];
 
-        // Survives a reload of the code, saving and copying, when what is known of these objects does not.
+        // These survive a reload of the code, and copying: then the former are the copy's own, the latter the original's.
         [SerializeField] [HideInInspector] List<GameObject> made = new List<GameObject>();
+        [SerializeField] [HideInInspector] List<UnityEngine.Object> owned = new List<UnityEngine.Object>();
+        [SerializeField] [HideInInspector] int owner;
+        [SerializeField] [HideInInspector] bool baked;
 
-        readonly List<Level> levels = new List<Level>();
         AnthroBody body;
-        AnthroRig rig;
-        Avatar avatar;
-
-        sealed class Level
-        {
-            public int lod;
-            public Mesh mesh;
-            public SkinnedMeshRenderer renderer;
-        }
+        AnthroFigure figure;
+        AnthroFigure half;
+        int turns;
 
         /// <summary>Called on the main thread when the character has become a body. The body is the character's.</summary>
         public event Action<AnthroBody> OnReport;
 
-        /// <summary>Who it is to be; takes effect with `Generate`.</summary>
+        /// <summary>Who it is to be; takes effect with `Generate`. Of the asset where it has one;
+        /// setting another takes the asset off.</summary>
         public AnthroRequest Request
         {
-            get { return request; }
-            set { request = value ?? new AnthroRequest(); }
+            get { return requestAsset != null ? requestAsset.Request : request; }
+            set
+            {
+                requestAsset = null;
+                request = value ?? new AnthroRequest();
+            }
         }
 
-        /// <summary>Who it is; null before it is generated. Freed with the character, or when it becomes another.</summary>
+        /// <summary>An asset that says who it is to be, instead of a request of its own; null for none.</summary>
+        public AnthroRequestAsset RequestAsset
+        {
+            get { return requestAsset; }
+            set { requestAsset = value; }
+        }
+
+        /// <summary>Who it is; null before it is generated, and in a baked one. Freed with the character, or when it becomes
+        /// another.</summary>
         public AnthroBody Body
         {
             get { return body; }
         }
 
-        /// <summary>Its joints; null before it is generated.</summary>
+        /// <summary>Its joints; null before it is generated, and in a baked one.</summary>
         public AnthroRig Rig
         {
-            get { return rig; }
+            get { return figure == null ? null : figure.Rig; }
         }
 
         /// <summary>Its humanoid avatar; null where it has none.</summary>
         public Avatar Avatar
         {
-            get { return avatar; }
+            get { return figure == null ? null : figure.Avatar; }
+        }
+
+        /// <summary>Whether its meshes and avatar are assets, saved by the editor: then it is not generated when it awakes.
+        /// `Generate` makes it one that is.</summary>
+        public bool IsBaked
+        {
+            get { return baked; }
         }
 
         /// <summary>The finest level of detail that it gets, 0 to 3. Takes effect with the first `Generate`.</summary>
@@ -84,6 +104,13 @@ namespace Anthronet
         {
             get { return skinTone; }
             set { skinTone = Mathf.Clamp(value, 0, 10); }
+        }
+
+        /// <summary>Whether it is without eyes, teeth, tongue and lashes. Takes effect with `Generate`.</summary>
+        public bool BodyOnly
+        {
+            get { return bodyOnly; }
+            set { bodyOnly = value; }
         }
 
         /// <summary>Whether an avatar is built. Takes effect with `Generate`.</summary>
@@ -110,22 +137,57 @@ namespace Anthronet
         /// <summary>The mesh of a level of detail; null where it has none.</summary>
         public Mesh MeshOf(int lod)
         {
-            var level = levels.Find(one => one.lod == lod);
+            var level = LevelOf(lod);
             return level == null ? null : level.mesh;
         }
 
         /// <summary>The renderer of a level of detail; null where it has none.</summary>
         public SkinnedMeshRenderer RendererOf(int lod)
         {
-            var level = levels.Find(one => one.lod == lod);
+            var level = LevelOf(lod);
             return level == null ? null : level.renderer;
+        }
+
+        AnthroFigure.Level LevelOf(int lod)
+        {
+            return figure == null ? null : figure.Levels.Find(one => one.lod == lod);
         }
 
         void Awake()
         {
-            if (generateOnAwake && body == null)
+            // Of one that is enabled Unity calls `OnEnable` next: once is enough to be told what is wrong.
+            if (!enabled)
+            {
+                Wake();
+            }
+        }
+
+        // After a reload of the code it is this alone that Unity calls.
+        void OnEnable()
+        {
+            Wake();
+        }
+
+        /// <summary>Generates what has no body: a new one if it is to, and always one that had been generated before its
+        /// code was loaded anew or it was copied. What fails is told, since nobody could catch it.</summary>
+        void Wake()
+        {
+            if (body != null && body.IsFreed)
+            {
+                // Released before the code was to be loaded anew, which then did not happen.
+                body = null;
+            }
+            if (baked || body != null || half != null || !(generateOnAwake || made.Exists(child => child != null)))
+            {
+                return;
+            }
+            try
             {
                 Generate();
+            }
+            catch (Exception error)
+            {
+                Debug.LogException(error, this);
             }
         }
 
@@ -133,7 +195,7 @@ namespace Anthronet
         /// <exception cref="AnthroException">The request is refused; the character stays as it was.</exception>
         public void Generate()
         {
-            Become(AnthroModel.Default.Generate(request));
+            Become(AnthroModel.Default.Generate(Request));
         }
 
         /// <summary>Makes it a body, at once. The body is the character's from now on.</summary>
@@ -144,63 +206,114 @@ namespace Anthronet
             }
         }
 
-        /// <summary>As `Become`, in steps of a few milliseconds: one for the joints, one per level of detail, one for the
-        /// avatar.</summary>
+        /// <summary>
+        /// As `Become`, in steps of a few milliseconds. Until the last it stays who it was, or is not to be seen if it was
+        /// nobody; where the steps are not taken to their end it stays so. Another `Become` in between wins.
+        /// </summary>
         public IEnumerator BecomeInSteps(AnthroBody next)
         {
             if (next == null)
             {
                 throw new ArgumentNullException("next");
             }
+            return Steps(new AnthroBuild(next, skinTone, bodyOnly));
+        }
+
+        /// <summary>As `BecomeInSteps`, of what may be packed already. Takes body and build.</summary>
+        internal IEnumerator Steps(AnthroBuild build)
+        {
+            var turn = ++turns;
+            var next = build.Body;
+            var done = false;
+            try
+            {
+                var lods = Lods();
+                var whole = figure == null || figure.BodyOnly != build.BodyOnly;
+                foreach (var lod in lods)
+                {
+                    if (build.Pack(lod, whole))
+                    {
+                        yield return null;
+                    }
+                    if (turn != turns || this == null)
+                    {
+                        yield break;
+                    }
+                }
+                if (figure != null)
+                {
+                    figure.Update(build, humanoid);
+                }
+                else
+                {
+                    Begin();
+                    for (var steps = half.Make(build, lods, humanoid); steps.MoveNext();)
+                    {
+                        yield return null;
+                        if (turn != turns || this == null)
+                        {
+                            yield break;
+                        }
+                    }
+                    figure = half;
+                    half = null;
+                }
+                done = true;
+            }
+            finally
+            {
+                build.Dispose();
+                if (!done && !ReferenceEquals(next, body))
+                {
+                    next.Dispose();
+                }
+            }
             if (body != null && !ReferenceEquals(body, next))
             {
                 body.Dispose();
             }
             body = next;
-            if (rig == null)
-            {
-                // Made before a reload, or those of the character that this one is a copy of: names must not stand twice.
-                foreach (var old in made)
-                {
-                    if (old != null)
-                    {
-                        DestroyImmediate(old);
-                    }
-                }
-                made.Clear();
-                rig = AnthroRig.Create(body, transform);
-                made.Add(rig.Bones[0].gameObject);
-            }
-            else
-            {
-                rig.Update(body);
-            }
-            yield return null;
-            if (levels.Count == 0)
-            {
-                for (var lod = Mathf.Min(finestLod, coarsestLod); lod <= Mathf.Max(finestLod, coarsestLod); lod++)
-                {
-                    AddLevel(lod);
-                    yield return null;
-                }
-                Group();
-            }
-            else
-            {
-                foreach (var level in levels)
-                {
-                    UpdateLevel(level);
-                    yield return null;
-                }
-            }
-            if (humanoid)
-            {
-                BuildAvatar();
-            }
             if (OnReport != null)
             {
                 OnReport(body);
             }
+        }
+
+        /// <summary>A figure to make, in place of one that was not taken to its end.</summary>
+        void Begin()
+        {
+            if (half != null)
+            {
+                half.Drop();
+            }
+            if (owner == GetInstanceID())
+            {
+                // What it had before a reload of the code; those of the one that this is a copy of stay.
+                owned.ForEach(AnthroObjects.Discard);
+            }
+            owned.Clear();
+            owner = GetInstanceID();
+            if (baked)
+            {
+                baked = false;
+                // Assets stay in the project, and the scene would hold renderers without a mesh.
+                generateOnAwake = true;
+            }
+            half = new AnthroFigure(this, made, owned);
+        }
+
+        List<int> Lods()
+        {
+            if (figure != null)
+            {
+                return figure.Levels.ConvertAll(level => level.lod);
+            }
+            var lods = new List<int>();
+            for (var lod = Mathf.Min(finestLod, coarsestLod); lod <= Mathf.Max(finestLod, coarsestLod); lod++)
+            {
+                lods.Add(lod);
+            }
+            return lods;
         }
 
         /// <summary>
@@ -213,9 +326,9 @@ namespace Anthronet
             {
                 throw new InvalidOperationException("the character has to be generated before it gets blend shapes");
             }
-            foreach (var level in levels)
+            foreach (var level in figure.Levels)
             {
-                using (var surface = new AnthroSurface(body, level.lod, skinTone, bodyOnly))
+                using (var surface = new AnthroSurface(body, level.lod, skinTone, figure.BodyOnly))
                 {
                     surface.AddBlendShape(shape, to);
                     AnthroMeshes.AddBlendShapes(level.mesh, surface);
@@ -223,115 +336,70 @@ namespace Anthronet
             }
         }
 
-        void AddLevel(int lod)
+        /// <summary>Sets how much of a blend shape is seen, 0 to 100, on all levels of detail. Makes no garbage.</summary>
+        /// <exception cref="ArgumentException">It has none of that name.</exception>
+        public void SetBlendShapeWeight(string shape, float weight)
         {
-            var level = new Level();
-            level.lod = lod;
-            var child = new GameObject("LOD" + lod);
-            child.transform.SetParent(transform, false);
-            made.Add(child);
-            level.renderer = child.AddComponent<SkinnedMeshRenderer>();
-            levels.Add(level);
-            using (var surface = new AnthroSurface(body, lod, skinTone, bodyOnly))
+            for (var i = 0; figure != null && i < figure.Levels.Count; i++)
             {
-                level.mesh = AnthroMeshes.Create(surface, rig.Joints, name + " LOD" + lod);
-                level.renderer.sharedMesh = level.mesh;
-                level.renderer.bones = rig.Bones;
-                level.renderer.rootBone = rig.Bones[1];
-                Dress(level, surface);
-            }
-        }
-
-        void UpdateLevel(Level level)
-        {
-            using (var surface = new AnthroSurface(body, level.lod, skinTone, bodyOnly))
-            {
-                AnthroMeshes.Update(level.mesh, surface, rig.Joints);
-                Dress(level, surface);
-            }
-        }
-
-        void Dress(Level level, AnthroSurface surface)
-        {
-            var worn = new Material[surface.PartCount];
-            for (var i = 0; i < worn.Length; i++)
-            {
-                var own = i < materials.Length && materials[i] != null;
-                worn[i] = own ? materials[i] : AnthroMaterials.Of(surface.Part(i));
-            }
-            level.renderer.sharedMaterials = worn;
-            // Around the pelvis, whose space they are in; half as far again as the bind pose reaches is room for any pose.
-            var size = level.mesh.bounds.size;
-            var reach = 1.5f * Mathf.Max(size.x, Mathf.Max(size.y, size.z));
-            level.renderer.localBounds = new Bounds(Vector3.zero, new Vector3(reach, reach, reach));
-        }
-
-        void Group()
-        {
-            if (levels.Count < 2)
-            {
-                return;
-            }
-            var group = GetComponent<LODGroup>();
-            if (group == null)
-            {
-                group = gameObject.AddComponent<LODGroup>();
-            }
-            var heights = new[] { 0.5f, 0.2f, 0.08f, 0.01f };
-            var lods = new LOD[levels.Count];
-            for (var i = 0; i < lods.Length; i++)
-            {
-                lods[i] = new LOD(heights[i + heights.Length - lods.Length], new Renderer[] { levels[i].renderer });
-            }
-            group.SetLODs(lods);
-            group.RecalculateBounds();
-        }
-
-        void BuildAvatar()
-        {
-            var before = avatar;
-            avatar = AnthroHumanoid.Build(rig, gameObject);
-            if (avatar != null)
-            {
-                var animator = GetComponent<Animator>();
-                if (animator == null)
+                var level = figure.Levels[i];
+                var place = level.mesh.GetBlendShapeIndex(shape);
+                if (place < 0)
                 {
-                    animator = gameObject.AddComponent<Animator>();
+                    throw new ArgumentException("LOD" + level.lod + " has no blend shape \"" + shape + "\"", "shape");
                 }
-                animator.avatar = avatar;
+                level.renderer.SetBlendShapeWeight(place, weight);
             }
-            Discard(before);
+        }
+
+        /// <summary>Who hears of the next person is to be told anew: for characters that are used again.</summary>
+        internal void Forget()
+        {
+            OnReport = null;
+        }
+
+        /// <summary>
+        /// Makes it a character whose meshes and avatar are assets: it owns them no longer, is saved as it stands, and is
+        /// not generated when it awakes.
+        /// </summary>
+        internal void Bake()
+        {
+            if (figure == null)
+            {
+                throw new InvalidOperationException("the character has to be generated before it is baked");
+            }
+            turns++;
+            figure.Bake();
+            figure = null;
+            baked = true;
+            generateOnAwake = false;
+            Release();
         }
 
         void OnDestroy()
         {
-            foreach (var level in levels)
+            Release();
+        }
+
+        /// <summary>Frees what is its own and no object. Unity calls `OnDestroy` of none that never was awake: who destroys
+        /// such a one calls this before.</summary>
+        internal void Release()
+        {
+            turns++;
+            if (half != null)
             {
-                Discard(level.mesh);
+                half.Drop();
+                half = null;
             }
-            levels.Clear();
-            Discard(avatar);
-            avatar = null;
+            if (figure != null)
+            {
+                figure.Drop();
+                figure = null;
+            }
             if (body != null)
             {
                 body.Dispose();
                 body = null;
-            }
-        }
-
-        static void Discard(UnityEngine.Object made)
-        {
-            if (made == null)
-            {
-                return;
-            }
-            if (Application.isPlaying)
-            {
-                Destroy(made);
-            }
-            else
-            {
-                DestroyImmediate(made);
             }
         }
     }

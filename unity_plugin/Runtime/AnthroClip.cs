@@ -1,5 +1,6 @@
 using System;
 using Anthronet.Native;
+using UnityEngine;
 
 namespace Anthronet
 {
@@ -83,7 +84,7 @@ namespace Anthronet
         public static AnthroClip Builtin(string name, AnthroBody body)
         {
             ulong length;
-            using (var held = new Held(body.Handle))
+            using (var held = new Held(Library.Given(body, "body").Handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -111,8 +112,8 @@ namespace Anthronet
         public static AnthroClip Of(AnthroBody body, string name, double framesPerSecond, AnthroTransform[] frames)
         {
             ulong length;
-            using (var held = new Held(body.Handle))
-            fixed (AnthroTransform* first = frames)
+            using (var held = new Held(Library.Given(body, "body").Handle))
+            fixed (AnthroTransform* first = Library.Given(frames, "frames"))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -138,7 +139,7 @@ namespace Anthronet
         /// <param name="toModel">Relative to the character, as `AnthroSkinner` takes it.</param>
         public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] into, bool toModel = false)
         {
-            fixed (AnthroTransform* first = into)
+            fixed (AnthroTransform* first = Library.Given(into, "into"))
             {
                 Sample(seconds, wrap, first, into.Length, toModel);
             }
@@ -168,6 +169,27 @@ namespace Anthronet
                     (anthronet_transform*)first, (ulong)frames.LongLength, &error), &error);
             }
             return frames;
+        }
+
+        /// <summary>
+        /// As one of Unity's clips for the joints below a character's object, to be played by an `Animation` component: at
+        /// run time Unity fills no others. The editor's `AnthroSave` makes one for an `Animator`. A key per frame for every
+        /// rotation, and for the places of the root, the pelvis and whatever else moves; linear in between.
+        /// </summary>
+        /// <param name="rig">The joints of the character that it is for.</param>
+        /// <exception cref="ArgumentException">The rig has other joints.</exception>
+        public AnimationClip ToAnimationClip(AnthroRig rig)
+        {
+            var made = new AnimationClip();
+            made.name = Name;
+            made.legacy = true;
+            made.frameRate = (float)FramesPerSecond;
+            foreach (var curve in AnthroCurves.Of(this, rig))
+            {
+                made.SetCurve(curve.path, typeof(Transform), curve.property, curve.keys);
+            }
+            made.EnsureQuaternionContinuity();
+            return made;
         }
 
         /// <summary>At another rate.</summary>
@@ -212,7 +234,7 @@ namespace Anthronet
         /// <summary>Two clips of one body at once: `weight` 0 is this, 1 the other.</summary>
         public AnthroClip Blended(AnthroClip other, float weight)
         {
-            using (var second = new Held(other.handle))
+            using (var second = new Held(Library.Given(other, "other").handle))
             using (var first = new Held(handle))
             {
                 anthronet_clip* made;
@@ -226,7 +248,7 @@ namespace Anthronet
         /// <summary>Two clips of one body one after the other, overlapping by `seconds`.</summary>
         public AnthroClip Then(AnthroClip other, double seconds)
         {
-            using (var second = new Held(other.handle))
+            using (var second = new Held(Library.Given(other, "other").handle))
             using (var first = new Held(handle))
             {
                 anthronet_clip* made;

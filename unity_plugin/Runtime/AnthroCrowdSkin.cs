@@ -6,42 +6,6 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A part of a surface ready to be posed on the processor. Immutable; may be used by many threads.</summary>
-    public sealed unsafe class AnthroSkinner : IDisposable
-    {
-        readonly SkinnerHandle handle;
-
-        /// <summary>Makes a part of a surface ready; the surface is not needed afterwards.</summary>
-        public AnthroSkinner(AnthroSurface surface, int part = 0)
-        {
-            using (var held = new Held(surface.Handle))
-            {
-                anthronet_skinner* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_skinner_new(
-                    (anthronet_mesh*)held.Pointer, checked((uint)part), &made, &error), &error);
-                handle = new SkinnerHandle(made);
-                uint count;
-                Library.Check(NativeMethods.anthronet_skinner_vertex_count(made, &count, &error), &error);
-                VertexCount = (int)count;
-            }
-        }
-
-        internal SkinnerHandle Handle
-        {
-            get { return handle; }
-        }
-
-        /// <summary>Number of vertices.</summary>
-        public int VertexCount { get; private set; }
-
-        /// <summary>Frees it.</summary>
-        public void Dispose()
-        {
-            handle.Dispose();
-        }
-    }
-
     /// <summary>
     /// Poses the surfaces of many characters in one call, on all cores, into native arrays of positions and normals.
     /// `Run` makes no garbage. One thread at a time.
@@ -50,7 +14,7 @@ namespace Anthronet
     {
         readonly AnthroSkinner[] skinners;
         readonly Held[] held;
-        readonly anthronet_skin_job[] jobs;
+        readonly AnthroSkinJob[] jobs;
         NativeArray<AnthroTransform> poses;
         NativeArray<Vector3> positions;
         NativeArray<Vector3> normals;
@@ -64,16 +28,16 @@ namespace Anthronet
         public AnthroCrowdSkin(
             AnthroSkinner[] skinners, int jointCount, AnthroSkinning method = AnthroSkinning.Linear)
         {
-            this.skinners = (AnthroSkinner[])skinners.Clone();
+            this.skinners = (AnthroSkinner[])Library.Given(skinners, "skinners").Clone();
             this.jointCount = jointCount;
             offsets = new int[skinners.Length + 1];
             for (var i = 0; i < skinners.Length; i++)
             {
-                offsets[i + 1] = checked(offsets[i] + skinners[i].VertexCount);
+                offsets[i + 1] = checked(offsets[i] + Library.Given(skinners[i], "skinners").VertexCount);
             }
             var vertices = offsets[skinners.Length];
             held = new Held[skinners.Length];
-            jobs = new anthronet_skin_job[skinners.Length];
+            jobs = new AnthroSkinJob[skinners.Length];
             try
             {
                 for (var i = 0; i < skinners.Length; i++)
@@ -90,6 +54,7 @@ namespace Anthronet
                 Dispose();
                 throw;
             }
+            AnthroAlive.Add(this);
         }
 
         void Describe(AnthroSkinning method)
@@ -99,16 +64,9 @@ namespace Anthronet
             var firstNormal = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(normals);
             for (var i = 0; i < jobs.Length; i++)
             {
-                var bytes = (ulong)skinners[i].VertexCount * (ulong)sizeof(Vector3);
-                jobs[i].struct_size = (uint)sizeof(anthronet_skin_job);
-                jobs[i].method = (uint)method;
-                jobs[i].skinner = (anthronet_skinner*)held[i].Pointer;
-                jobs[i].joints = (anthronet_transform*)(firstPose + i * jointCount);
-                jobs[i].joint_count = (uint)jointCount;
-                jobs[i].positions = firstPosition + offsets[i];
-                jobs[i].position_bytes = bytes;
-                jobs[i].normals = firstNormal + offsets[i];
-                jobs[i].normal_bytes = bytes;
+                jobs[i] = new AnthroSkinJob(
+                    (IntPtr)held[i].Pointer, method, firstPose + i * jointCount, jointCount, firstPosition + offsets[i],
+                    firstNormal + offsets[i], skinners[i].VertexCount);
             }
         }
 
@@ -145,17 +103,29 @@ namespace Anthronet
                 throw new ArgumentOutOfRangeException("character");
             }
             var first = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses) + character * jointCount;
-            clip.Sample(seconds, wrap, first, jointCount, true);
+            Library.Given(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
         }
 
         /// <summary>Poses all surfaces. Makes no garbage.</summary>
         public void Run()
         {
             Open();
-            fixed (anthronet_skin_job* first = jobs)
+            fixed (AnthroSkinJob* first = jobs)
             {
                 anthronet_error error;
-                Library.Check(NativeMethods.anthronet_skin(first, (uint)jobs.Length, &error), &error);
+                Library.Check(
+                    NativeMethods.anthronet_skin((anthronet_skin_job*)first, (uint)jobs.Length, &error), &error);
+            }
+        }
+
+        /// <summary>What `Run` hands to `AnthroSkin.Run`, to run in a job of your own: pin it, and keep this meanwhile.
+        /// </summary>
+        public AnthroSkinJob[] Jobs
+        {
+            get
+            {
+                Open();
+                return (AnthroSkinJob[])jobs.Clone();
             }
         }
 
@@ -170,7 +140,19 @@ namespace Anthronet
         /// <summary>Frees the arrays. What was got from `Positions` and `Normals` is not to be used any longer.</summary>
         public void Dispose()
         {
-            for (var i = 0; i < held.Length; i++)
+            Release();
+            GC.SuppressFinalize(this);
+        }
+
+        // Native arrays have none of their own.
+        ~AnthroCrowdSkin()
+        {
+            Release();
+        }
+
+        void Release()
+        {
+            for (var i = 0; held != null && i < held.Length; i++)
             {
                 held[i].Dispose();
             }

@@ -1,8 +1,5 @@
-using System;
-using System.Collections;
 using System.Collections.Generic;
-using System.Diagnostics;
-using System.Linq;
+using Anthronet.Native;
 using UnityEngine;
 
 namespace Anthronet
@@ -16,14 +13,21 @@ namespace Anthronet
         public int coarsestLod = 3;
         /// <summary>Step of the Monk scale, 1 to 10; 0 for the default.</summary>
         public int skinTone;
+        /// <summary>Whether they are without eyes, teeth, tongue and lashes.</summary>
+        public bool bodyOnly;
         /// <summary>Whether they get a humanoid avatar.</summary>
         public bool humanoid = true;
         /// <summary>Where they go; null for the scene's root.</summary>
         public Transform parent;
         /// <summary>The model that makes them; null for the library's own.</summary>
         public AnthroModel model;
-        /// <summary>Where characters are taken from, and the new ones' settings then are its; null for none.</summary>
+        /// <summary>Where characters are taken from: levels of detail are those that they have; null for none.</summary>
         public AnthroPool pool;
+
+        internal AnthroSettings Copy()
+        {
+            return (AnthroSettings)MemberwiseClone();
+        }
     }
 
     /// <summary>Makes characters from code.</summary>
@@ -35,187 +39,55 @@ namespace Anthronet
         {
             settings = settings ?? new AnthroSettings();
             var body = (settings.model ?? AnthroModel.Default).Generate(request);
-            var character = Blank(request, settings);
-            character.Become(body);
-            return character;
-        }
-
-        /// <summary>
-        /// Makes characters: their bodies on threads of the library, then the objects on the main thread in slices. Something
-        /// has to call `AnthroSpawn.Advance` each frame: `AnthroRunner.Run` does.
-        /// </summary>
-        public static AnthroSpawn CreateAsync(IList<AnthroRequest> requests, AnthroSettings settings = null)
-        {
-            settings = settings ?? new AnthroSettings();
-            var copies = new AnthroRequest[requests.Count];
-            for (var i = 0; i < copies.Length; i++)
-            {
-                copies[i] = requests[i].Copy();
-            }
-            return new AnthroSpawn(copies, settings);
-        }
-
-        internal static AnthroCharacter Blank(AnthroRequest request, AnthroSettings settings)
-        {
-            var pooled = settings.pool == null ? null : settings.pool.Take();
-            if (pooled != null)
-            {
-                pooled.transform.SetParent(settings.parent, false);
-                pooled.Request = request.Copy();
-                return pooled;
-            }
-            var made = new GameObject("AnthroNet Character");
-            // Asleep until it is whole: it is told not to generate itself.
-            made.SetActive(false);
-            made.transform.SetParent(settings.parent, false);
-            var character = made.AddComponent<AnthroCharacter>();
-            character.GenerateOnAwake = false;
-            character.Request = request.Copy();
-            character.FinestLod = settings.finestLod;
-            character.CoarsestLod = settings.coarsestLod;
-            character.SkinTone = settings.skinTone;
-            character.Humanoid = settings.humanoid;
-            made.SetActive(true);
-            return character;
-        }
-    }
-
-    /// <summary>Characters that are being made.</summary>
-    public sealed class AnthroSpawn : IDisposable
-    {
-        readonly AnthroJob[] jobs;
-        readonly AnthroRequest[] requests;
-        readonly AnthroSettings settings;
-        readonly AnthroCharacter[] characters;
-        readonly AnthroException[] errors;
-        readonly Stopwatch watch = new Stopwatch();
-        int next;
-        IEnumerator steps;
-        bool freed;
-
-        internal AnthroSpawn(AnthroRequest[] requests, AnthroSettings settings)
-        {
-            // A job makes one body after the other: two, taken from in turns, keep more cores busy.
-            var model = settings.model ?? AnthroModel.Default;
-            jobs = new AnthroJob[2];
+            var character = Asleep(request, settings);
             try
             {
-                for (var i = 0; i < jobs.Length; i++)
-                {
-                    jobs[i] = model.Start(requests.Where((request, place) => place % jobs.Length == i).ToArray());
-                }
+                character.Become(body);
             }
             catch
             {
-                Dispose();
+                character.Release();
+                AnthroObjects.Discard(character.gameObject);
                 throw;
             }
-            this.requests = requests;
-            this.settings = settings;
-            characters = new AnthroCharacter[requests.Length];
-            errors = new AnthroException[requests.Length];
-        }
-
-        /// <summary>Called for every character that is whole, with its place.</summary>
-        public event Action<int, AnthroCharacter> OnSpawned;
-
-        /// <summary>Number of requests.</summary>
-        public int Count
-        {
-            get { return requests.Length; }
-        }
-
-        /// <summary>How many have their character or error.</summary>
-        public int Done
-        {
-            get { return next; }
-        }
-
-        /// <summary>Whether all have, or it was disposed of.</summary>
-        public bool IsDone
-        {
-            get { return freed || next == requests.Length; }
-        }
-
-        /// <summary>A character, null before it is whole or where it failed.</summary>
-        public AnthroCharacter Character(int index)
-        {
-            return index < next ? characters[index] : null;
-        }
-
-        /// <summary>Why there is no character; null where there is one or will be.</summary>
-        public AnthroException Error(int index)
-        {
-            return errors[index];
+            character.gameObject.SetActive(true);
+            return character;
         }
 
         /// <summary>
-        /// Goes on for about so many milliseconds, on the main thread: a step that has begun is ended, and at least one is
-        /// done where there is something to do.
+        /// Makes characters: bodies and all that their meshes hold on threads, then the objects on the main thread in slices.
+        /// Something has to call `AnthroSpawn.Advance` each frame: `AnthroRunner.Run` does.
         /// </summary>
-        /// <returns>Whether all is done.</returns>
-        public bool Advance(double milliseconds)
+        public static AnthroSpawn CreateAsync(IList<AnthroRequest> requests, AnthroSettings settings = null)
         {
-            watch.Restart();
-            while (!IsDone)
+            var copies = new AnthroRequest[Library.Given(requests, "requests").Count];
+            for (var i = 0; i < copies.Length; i++)
             {
-                if (steps == null)
-                {
-                    AnthroBody body;
-                    if (!jobs[next % jobs.Length].TryTake(next / jobs.Length, out body, out errors[next]))
-                    {
-                        if (errors[next] == null)
-                        {
-                            return false;
-                        }
-                        next++;
-                        continue;
-                    }
-                    characters[next] = AnthroFactory.Blank(requests[next], settings);
-                    steps = characters[next].BecomeInSteps(body);
-                }
-                if (!steps.MoveNext())
-                {
-                    steps = null;
-                    next++;
-                    if (OnSpawned != null)
-                    {
-                        OnSpawned(next - 1, characters[next - 1]);
-                    }
-                }
-                if (watch.Elapsed.TotalMilliseconds >= milliseconds)
-                {
-                    break;
-                }
+                copies[i] = Library.Given(requests[i], "requests").Copy();
             }
-            return IsDone;
+            return new AnthroSpawn(copies, settings == null ? new AnthroSettings() : settings.Copy());
         }
 
-        /// <summary>Asks for no more characters: those that are whole stay, the others get the error `Cancelled`.</summary>
-        public void Cancel()
+        /// <summary>A character that sleeps, so that nobody sees it before it is whole: of the pool, or one with nothing.
+        /// </summary>
+        internal static AnthroCharacter Asleep(AnthroRequest request, AnthroSettings settings)
         {
-            foreach (var job in jobs)
+            var character = settings.pool == null ? null : settings.pool.Take();
+            if (character == null)
             {
-                job.Cancel();
+                var made = new GameObject("AnthroNet Character");
+                made.SetActive(false);
+                character = made.AddComponent<AnthroCharacter>();
+                character.GenerateOnAwake = false;
+                character.FinestLod = settings.finestLod;
+                character.CoarsestLod = settings.coarsestLod;
             }
-        }
-
-        /// <summary>Cancels it and frees the job. Characters that are whole stay, one that is not is destroyed.</summary>
-        public void Dispose()
-        {
-            foreach (var job in jobs)
-            {
-                if (job != null)
-                {
-                    job.Dispose();
-                }
-            }
-            freed = true;
-            if (steps != null)
-            {
-                UnityEngine.Object.Destroy(characters[next].gameObject);
-                steps = null;
-            }
+            character.transform.SetParent(settings.parent, false);
+            character.Request = request.Copy();
+            character.SkinTone = settings.skinTone;
+            character.BodyOnly = settings.bodyOnly;
+            character.Humanoid = settings.humanoid;
+            return character;
         }
     }
 }

@@ -43,7 +43,11 @@ namespace Anthronet
             return read;
         }
 
-        /// <summary>What `AvatarBuilder` needs: a T-pose, every bone, Unity's own limits of the muscles.</summary>
+        /// <summary>
+        /// What `AvatarBuilder` needs: a T-pose, every bone, Unity's own limits of the muscles. Limits say what a muscle at
+        /// −1 and 1 is, so with others every humanoid clip, all of which were made for Unity's, would move this character by
+        /// other angles than everybody else; and our own clips are within the joints' limits before they come to Unity.
+        /// </summary>
         public static HumanDescription Describe(AnthroRig rig, Transform root)
         {
             var skeleton = new SkeletonBone[rig.Bones.Length + 1];

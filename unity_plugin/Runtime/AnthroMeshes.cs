@@ -7,8 +7,8 @@ using UnityEngine.Rendering;
 namespace Anthronet
 {
     /// <summary>
-    /// Surfaces as Unity's meshes. The library writes straight into the mesh's memory; every part is a sub-mesh. On the
-    /// main thread alone.
+    /// Surfaces as Unity's meshes, with every part a sub-mesh: copied straight into the mesh's memory. On the main thread
+    /// alone.
     /// </summary>
     public static unsafe class AnthroMeshes
     {
@@ -23,9 +23,9 @@ namespace Anthronet
             new VertexAttributeDescriptor(VertexAttribute.TexCoord0, VertexAttributeFormat.Float32, 2, 1),
         };
 
-        // Unity takes blend shapes from managed arrays alone: one pair serves all.
-        static Vector3[] moved = new Vector3[0];
-        static Vector3[] turned = new Vector3[0];
+        // Unity takes blend shapes from managed arrays alone, as long as the mesh: a pair per number of vertices serves all.
+        static readonly System.Collections.Generic.Dictionary<int, Vector3[][]> pool =
+            new System.Collections.Generic.Dictionary<int, Vector3[][]>();
 
         /// <summary>A mesh of a surface with bone weights and bind poses.</summary>
         /// <param name="surface">The surface; not needed afterwards.</param>
@@ -33,13 +33,36 @@ namespace Anthronet
         /// <param name="name">What the mesh is called.</param>
         public static Mesh Create(AnthroSurface surface, AnthroJoint[] joints, string name)
         {
+            Native.Library.Given(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), true))
+            {
+                var mesh = Create(packed, joints, name);
+                AddBlendShapes(mesh, surface);
+                return mesh;
+            }
+        }
+
+        internal static Mesh Create(AnthroPacked packed, AnthroJoint[] joints, string name)
+        {
+            var mesh = Fill(packed, name);
+            Bind(mesh, packed, joints);
+            return mesh;
+        }
+
+        /// <summary>A mesh of vertices and triangles, without weights: the first half of `Create`.</summary>
+        internal static Mesh Fill(AnthroPacked packed, string name)
+        {
             var mesh = new Mesh();
             mesh.name = name;
-            FillSurface(mesh, surface);
-            FillWeights(mesh, surface);
-            SetBindPoses(mesh, joints);
-            AddBlendShapes(mesh, surface);
+            Fill(mesh, packed);
             return mesh;
+        }
+
+        /// <summary>Gives a mesh weights and bind poses: the second half of `Create`.</summary>
+        internal static void Bind(Mesh mesh, AnthroPacked packed, AnthroJoint[] joints)
+        {
+            FillWeights(mesh, packed);
+            SetBindPoses(mesh, joints);
         }
 
         /// <summary>
@@ -48,43 +71,62 @@ namespace Anthronet
         /// </summary>
         public static void Update(Mesh mesh, AnthroSurface surface, AnthroJoint[] joints)
         {
-            var count = surface.VertexCount;
-            if (mesh.vertexCount != count)
+            Native.Library.Given(mesh, "mesh");
+            Native.Library.Given(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), false))
             {
-                throw new ArgumentException(
-                    "the mesh has " + mesh.vertexCount + " vertices, the surface " + count + ": of another level of detail");
+                Update(mesh, packed, joints);
+                AddBlendShapes(mesh, surface);
             }
-            var rows = new NativeArray<Vector3>(count, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
+        }
+
+        internal static void Update(Mesh mesh, AnthroPacked packed, AnthroJoint[] joints)
+        {
+            if (mesh.vertexCount != packed.VertexCount)
+            {
+                throw new ArgumentException("the mesh has " + mesh.vertexCount + " vertices, the surface "
+                    + packed.VertexCount + ": of another level of detail");
+            }
+            var count = AnthroPacked.Floats * packed.VertexCount;
+            var rows = new NativeArray<float>(count, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
             try
             {
-                ReadParts(surface, AnthroAttribute.Positions, rows);
-                mesh.SetVertices(rows);
-                mesh.bounds = Around((Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(rows), 1, count);
-                ReadParts(surface, AnthroAttribute.Normals, rows);
-                mesh.SetNormals(rows);
+                Copy(packed.Vertices, NativeArrayUnsafeUtility.GetUnsafePtr(rows), (long)count * sizeof(float));
+                mesh.SetVertexBufferData(rows, 0, 0, count, 0, Unchecked);
             }
             finally
             {
                 rows.Dispose();
             }
+            for (var part = 0; part < packed.Parts.Length; part++)
+            {
+                var descriptor = mesh.GetSubMesh(part);
+                descriptor.bounds = packed.Bounds[part];
+                mesh.SetSubMesh(part, descriptor, Unchecked);
+            }
+            mesh.bounds = packed.Around;
             SetBindPoses(mesh, joints);
             mesh.ClearBlendShapes();
-            AddBlendShapes(mesh, surface);
         }
 
         /// <summary>Adds the blend shapes of a surface to a mesh of it, with full weight at 100.</summary>
         public static void AddBlendShapes(Mesh mesh, AnthroSurface surface)
         {
             var shapes = surface.BlendShapeCount;
-            if (shapes > 0 && moved.Length != surface.VertexCount)
+            if (shapes == 0)
             {
-                moved = new Vector3[surface.VertexCount];
-                turned = new Vector3[surface.VertexCount];
+                return;
+            }
+            Vector3[][] pair;
+            if (!pool.TryGetValue(surface.VertexCount, out pair))
+            {
+                pair = new[] { new Vector3[surface.VertexCount], new Vector3[surface.VertexCount] };
+                pool[surface.VertexCount] = pair;
             }
             for (var shape = 0; shape < shapes; shape++)
             {
-                fixed (Vector3* positions = moved)
-                fixed (Vector3* normals = turned)
+                fixed (Vector3* positions = pair[0])
+                fixed (Vector3* normals = pair[1])
                 {
                     var first = 0;
                     for (var part = 0; part < surface.PartCount; part++)
@@ -98,54 +140,45 @@ namespace Anthronet
                         first += count;
                     }
                 }
-                mesh.AddBlendShapeFrame(surface.BlendShapeName(shape), 100f, moved, turned, null);
+                mesh.AddBlendShapeFrame(surface.BlendShapeName(shape), 100f, pair[0], pair[1], null);
             }
         }
 
-        static void FillSurface(Mesh mesh, AnthroSurface surface)
+        static void Fill(Mesh mesh, AnthroPacked packed)
         {
             var meshes = Mesh.AllocateWritableMeshData(1);
             var filled = false;
             try
             {
                 var data = meshes[0];
-                data.SetVertexBufferParams(surface.VertexCount, layout);
-                data.SetIndexBufferParams(3 * surface.TriangleCount, IndexFormat.UInt32);
-                data.subMeshCount = surface.PartCount;
-                const int Floats = 6;
-                const int Stride = Floats * sizeof(float);
-                var vertices = (float*)NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(0));
-                var uvs = (float*)NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(1));
-                var indices = (uint*)NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<uint>());
+                data.SetVertexBufferParams(packed.VertexCount, layout);
+                data.SetIndexBufferParams(packed.IndexCount, packed.Wide ? IndexFormat.UInt32 : IndexFormat.UInt16);
+                Copy(packed.Vertices, NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(0)),
+                    (long)packed.VertexCount * AnthroPacked.Stride);
+                Copy(packed.Uvs, NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(1)),
+                    (long)packed.VertexCount * AnthroPacked.UvStride);
+                var indices = packed.Wide
+                    ? NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<uint>())
+                    : NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<ushort>());
+                Copy(packed.Indices, indices, packed.IndexCount * (packed.Wide ? 4L : 2L));
+                data.subMeshCount = packed.Parts.Length;
                 int vertex = 0, index = 0;
-                var bounds = new Bounds();
-                for (var part = 0; part < surface.PartCount; part++)
+                for (var part = 0; part < packed.Parts.Length; part++)
                 {
-                    var of = surface.Part(part);
-                    var first = vertices + Floats * vertex;
-                    var bytes = (long)of.vertexCount * Stride;
-                    surface.Read(part, AnthroAttribute.Positions, first, bytes, Stride);
-                    surface.Read(part, AnthroAttribute.Normals, first + 3, bytes - Stride / 2, Stride);
-                    surface.Read(part, AnthroAttribute.Uvs, uvs + 2 * vertex, of.vertexCount * 2L * sizeof(float), 0);
-                    surface.Read(part, AnthroAttribute.Triangles, indices + index, of.triangleCount * 3L * sizeof(uint), 0);
+                    var of = packed.Parts[part];
                     var descriptor = new SubMeshDescriptor(index, 3 * of.triangleCount);
                     // Triangles count from their part's first vertex.
                     descriptor.baseVertex = vertex;
                     descriptor.firstVertex = vertex;
                     descriptor.vertexCount = of.vertexCount;
-                    descriptor.bounds = Around((Vector3*)first, 2, of.vertexCount);
+                    descriptor.bounds = packed.Bounds[part];
                     data.SetSubMesh(part, descriptor, Unchecked);
-                    if (part == 0)
-                    {
-                        bounds = descriptor.bounds;
-                    }
-                    bounds.Encapsulate(descriptor.bounds);
                     vertex += of.vertexCount;
                     index += 3 * of.triangleCount;
                 }
                 filled = true;
                 Mesh.ApplyAndDisposeWritableMeshData(meshes, mesh, Unchecked);
-                mesh.bounds = bounds;
+                mesh.bounds = packed.Around;
             }
             finally
             {
@@ -156,37 +189,17 @@ namespace Anthronet
             }
         }
 
-        static void FillWeights(Mesh mesh, AnthroSurface surface)
+        static void FillWeights(Mesh mesh, AnthroPacked packed)
         {
-            const int Each = AnthroSurface.Influences;
-            var count = surface.VertexCount;
-            var numbers = new NativeArray<byte>(count, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
-            var rows = new NativeArray<BoneWeight1>(Each * count, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
+            var numbers = new NativeArray<byte>(packed.VertexCount, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
+            var rows = new NativeArray<BoneWeight1>(
+                packed.WeightCount, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
             try
             {
-                var number = (byte*)NativeArrayUnsafeUtility.GetUnsafePtr(numbers);
-                var row = (BoneWeight1*)NativeArrayUnsafeUtility.GetUnsafePtr(rows);
-                var used = 0;
-                var influence = new BoneWeight1();
-                for (var part = 0; part < surface.PartCount; part++)
-                {
-                    var joints = (ushort*)surface.View(part, AnthroAttribute.Joints);
-                    var weights = (float*)surface.View(part, AnthroAttribute.Weights);
-                    for (var end = joints + Each * surface.Part(part).vertexCount; joints < end; joints += Each, weights += Each)
-                    {
-                        // They come sorted: behind the first zero there is nothing, and the first is none.
-                        byte there = 0;
-                        while (there < Each && weights[there] > 0f)
-                        {
-                            influence.boneIndex = joints[there];
-                            influence.weight = weights[there];
-                            row[used++] = influence;
-                            there++;
-                        }
-                        *number++ = there;
-                    }
-                }
-                mesh.SetBoneWeights(numbers, rows.GetSubArray(0, used));
+                Copy(packed.Numbers, NativeArrayUnsafeUtility.GetUnsafePtr(numbers), packed.VertexCount);
+                Copy(packed.Weights, NativeArrayUnsafeUtility.GetUnsafePtr(rows),
+                    (long)packed.WeightCount * sizeof(BoneWeight1));
+                mesh.SetBoneWeights(numbers, rows);
             }
             finally
             {
@@ -205,37 +218,9 @@ namespace Anthronet
             mesh.bindposes = poses;
         }
 
-        static void ReadParts(AnthroSurface surface, AnthroAttribute attribute, NativeArray<Vector3> into)
+        static void Copy(void* from, void* to, long bytes)
         {
-            var row = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(into);
-            for (var part = 0; part < surface.PartCount; part++)
-            {
-                var count = surface.Part(part).vertexCount;
-                surface.Read(part, attribute, row, (long)count * sizeof(Vector3), 0);
-                row += count;
-            }
-        }
-
-        /// <summary>The box around positions, every `step`-th of the vectors.</summary>
-        static Bounds Around(Vector3* position, int step, int count)
-        {
-            var bounds = new Bounds();
-            if (count > 0)
-            {
-                Vector3 min = *position, max = *position;
-                for (var last = position + step * count; position < last; position += step)
-                {
-                    // By hand: mono calls Vector3.Min for every vertex.
-                    if (position->x < min.x) min.x = position->x;
-                    else if (position->x > max.x) max.x = position->x;
-                    if (position->y < min.y) min.y = position->y;
-                    else if (position->y > max.y) max.y = position->y;
-                    if (position->z < min.z) min.z = position->z;
-                    else if (position->z > max.z) max.z = position->z;
-                }
-                bounds.SetMinMax(min, max);
-            }
-            return bounds;
+            Buffer.MemoryCopy(from, to, bytes, bytes);
         }
     }
 }

@@ -197,7 +197,7 @@ namespace Anthronet
                 var pointers = new IntPtr[requests.Count + 1];
                 for (var i = 0; i < asked.Length; i++)
                 {
-                    asked[i] = requests[i].Make();
+                    asked[i] = Library.Given(requests[i], "requests").Make();
                     pointers[i] = asked[i].DangerousGetHandle();
                 }
                 using (var held = new Held(handle))

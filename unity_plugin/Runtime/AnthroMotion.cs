@@ -100,7 +100,7 @@ namespace Anthronet
         {
             ulong length;
             var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
-            using (var wearer = new Held(body.Handle))
+            using (var wearer = new Held(Library.Given(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* json = mapping)
             {

@@ -17,17 +17,26 @@ namespace Anthronet
             get { return free.Count; }
         }
 
-        /// <summary>Puts a character to sleep, to be used again.</summary>
+        /// <summary>Puts a character to sleep, to be used again: its clip ends and nobody hears of its reports any longer.
+        /// </summary>
         public void Release(AnthroCharacter character)
         {
-            if (character != null && !free.Contains(character))
+            if (character == null || free.Contains(character))
             {
-                character.gameObject.SetActive(false);
-                free.Push(character);
+                return;
             }
+            var animator = character.GetComponent<AnthroAnimator>();
+            if (animator != null)
+            {
+                animator.Play((AnthroClip)null);
+            }
+            character.gameObject.SetActive(false);
+            character.Forget();
+            free.Push(character);
         }
 
-        /// <summary>A character, awake and still who it was; null where there is none.</summary>
+        /// <summary>A character, asleep and still who it was: let it become another before you wake it. Null where there is
+        /// none.</summary>
         public AnthroCharacter Take()
         {
             while (free.Count > 0)
@@ -36,7 +45,6 @@ namespace Anthronet
                 // Destroyed with its scene meanwhile.
                 if (character != null)
                 {
-                    character.gameObject.SetActive(true);
                     return character;
                 }
             }
@@ -51,7 +59,7 @@ namespace Anthronet
                 var character = free.Pop();
                 if (character != null)
                 {
-                    Object.Destroy(character.gameObject);
+                    AnthroObjects.Discard(character.gameObject);
                 }
             }
         }

@@ -42,6 +42,39 @@ namespace Anthronet
             return rig;
         }
 
+        /// <summary>Takes transforms that are there already, in the bind pose of a body.</summary>
+        /// <param name="body">The body.</param>
+        /// <param name="root">The transform of its first joint; the others are below it.</param>
+        /// <returns>Null where not all joints are there; nothing is changed then.</returns>
+        internal static AnthroRig Adopt(AnthroBody body, Transform root)
+        {
+            var joints = body.Joints();
+            var bones = new Transform[joints.Length];
+            for (var i = 0; i < joints.Length; i++)
+            {
+                var parent = joints[i].parent;
+                bones[i] = parent >= 0 ? bones[parent].Find(body.JointName(i)) : root;
+                if (bones[i] == null || bones[i].name != body.JointName(i))
+                {
+                    return null;
+                }
+            }
+            var rig = new AnthroRig(bones, joints);
+            rig.ToBindPose();
+            return rig;
+        }
+
+        /// <summary>Where a joint is below the character, as animation curves name it: `Root/pelvis/…`.</summary>
+        public string Path(int joint)
+        {
+            var path = bones[joint].name;
+            for (var parent = joints[joint].parent; parent >= 0; parent = joints[parent].parent)
+            {
+                path = bones[parent].name + "/" + path;
+            }
+            return path;
+        }
+
         /// <summary>Gives the transforms the proportions of another body, in its bind pose.</summary>
         public void Update(AnthroBody body)
         {

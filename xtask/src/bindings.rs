@@ -83,7 +83,7 @@ fn csharp() -> Outcome<String> {
     sources()
         .fold(csbindgen::Builder::default(), |b, file| b.input_extern_file(file))
         .csharp_dll_name("anthronet")
-        .csharp_dll_name_if("UNITY_IOS && !UNITY_EDITOR", "__Internal")
+        .csharp_dll_name_if("(UNITY_IOS || UNITY_WEBGL) && !UNITY_EDITOR", "__Internal")
         .csharp_namespace("Anthronet.Native")
         .csharp_class_name("NativeMethods")
         .csharp_use_nint_types(false)

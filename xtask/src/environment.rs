@@ -37,9 +37,12 @@ const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
 const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
 const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
 
-/// The compiler and the run time of C#, which Unity's are of the family of, and the packages that have them.
-const MONO_PROGRAMS: [&str; 2] = ["mcs", "mono"];
-const MONO_PACKAGES: &[&str] = &["mono-mcs", "mono-runtime", "mono-devel"];
+/// The compiler, the run time and the tests of C#, which Unity's are of the family of, and the packages that have them.
+const MONO_PROGRAMS: [&str; 3] = ["mcs", "mono", "nunit-console"];
+const MONO_PACKAGES: &[&str] =
+    &["mono-mcs", "mono-runtime", "mono-devel", "libnunit-cil-dev", "nunit-console"];
+/// Compiles with NUnit, which tests of Unity's are written for, too.
+pub(crate) const NUNIT: &str = "-pkg:nunit";
 
 /// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
 pub(crate) struct Environment {

@@ -1,4 +1,4 @@
-// Stand-ins for Unity's vectors and matrices: as much of them as the package and its tests use. See ../SIGNATURES.md.
+// Stand-ins for Unity's vectors and matrices: as much of them as the package and its tests use. See ../signatures.txt.
 using System;
 using System.Runtime.InteropServices;
 
@@ -20,29 +20,32 @@ namespace UnityEngine
         public static Vector3 one { get { return new Vector3(1, 1, 1); } }
         public float magnitude { get { return (float)Math.Sqrt(Dot(this, this)); } }
 
-        public static float Dot(Vector3 a, Vector3 b)
+        public static float Dot(Vector3 lhs, Vector3 rhs)
         {
-            return a.x * b.x + a.y * b.y + a.z * b.z;
+            return lhs.x * rhs.x + lhs.y * rhs.y + lhs.z * rhs.z;
         }
 
-        public static Vector3 Cross(Vector3 a, Vector3 b)
+        public static Vector3 Cross(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
         }
 
-        public static Vector3 Min(Vector3 a, Vector3 b)
+        public static Vector3 Min(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(Math.Min(a.x, b.x), Math.Min(a.y, b.y), Math.Min(a.z, b.z));
         }
 
-        public static Vector3 Max(Vector3 a, Vector3 b)
+        public static Vector3 Max(Vector3 lhs, Vector3 rhs)
         {
+            Vector3 a = lhs, b = rhs;
             return new Vector3(Math.Max(a.x, b.x), Math.Max(a.y, b.y), Math.Max(a.z, b.z));
         }
 
         public static Vector3 operator +(Vector3 a, Vector3 b) { return new Vector3(a.x + b.x, a.y + b.y, a.z + b.z); }
         public static Vector3 operator -(Vector3 a, Vector3 b) { return new Vector3(a.x - b.x, a.y - b.y, a.z - b.z); }
-        public static Vector3 operator *(Vector3 a, float s) { return new Vector3(a.x * s, a.y * s, a.z * s); }
+        public static Vector3 operator *(Vector3 a, float d) { return new Vector3(a.x * d, a.y * d, a.z * d); }
         public override string ToString() { return "(" + x + ", " + y + ", " + z + ")"; }
     }
 
@@ -59,6 +62,25 @@ namespace UnityEngine
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public struct Vector4
+    {
+        public float x, y, z, w;
+
+        public Vector4(float x, float y, float z, float w)
+        {
+            this.x = x;
+            this.y = y;
+            this.z = z;
+            this.w = w;
+        }
+    }
+
+    public struct Rect
+    {
+        public Rect(float x, float y, float width, float height) { }
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public struct Quaternion
     {
         public float x, y, z, w;
@@ -71,6 +93,7 @@ namespace UnityEngine
             this.w = w;
         }
 
+        public static float Dot(Quaternion a, Quaternion b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
         public static Quaternion identity { get { return new Quaternion(0, 0, 0, 1); } }
     }
 
@@ -82,8 +105,9 @@ namespace UnityEngine
 
         public static Matrix4x4 identity { get { return TRS(Vector3.zero, Quaternion.identity, Vector3.one); } }
 
-        public static Matrix4x4 TRS(Vector3 p, Quaternion q, Vector3 s)
+        public static Matrix4x4 TRS(Vector3 pos, Quaternion q, Vector3 s)
         {
+            var p = pos;
             var m = new Matrix4x4();
             m.m00 = s.x * (1 - 2 * (q.y * q.y + q.z * q.z));
             m.m10 = s.x * 2 * (q.x * q.y + q.w * q.z);
@@ -101,16 +125,18 @@ namespace UnityEngine
             return m;
         }
 
-        public Vector3 MultiplyPoint3x4(Vector3 v)
+        public Vector3 MultiplyPoint3x4(Vector3 point)
         {
+            var v = point;
             return new Vector3(
                 m00 * v.x + m01 * v.y + m02 * v.z + m03,
                 m10 * v.x + m11 * v.y + m12 * v.z + m13,
                 m20 * v.x + m21 * v.y + m22 * v.z + m23);
         }
 
-        public static Matrix4x4 operator *(Matrix4x4 a, Matrix4x4 b)
+        public static Matrix4x4 operator *(Matrix4x4 lhs, Matrix4x4 rhs)
         {
+            Matrix4x4 a = lhs, b = rhs;
             var m = new Matrix4x4();
             for (var row = 0; row < 4; row++)
             {

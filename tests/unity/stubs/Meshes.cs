@@ -1,5 +1,5 @@
 // Stand-ins for Unity's meshes and native arrays: as much of them as the package and its tests use, with the checks that
-// Unity documents. See ../SIGNATURES.md.
+// Unity documents. See ../signatures.txt.
 using System;
 using System.Collections.Generic;
 using System.Runtime.InteropServices;
@@ -29,8 +29,8 @@ namespace Unity.Collections
         internal IntPtr buffer;
         bool view;
 
-        /// For the tests: arrays that nobody disposed of yet.
-        public static int Alive;
+        /// Arrays that nobody disposed of yet.
+        internal static int Alive;
 
         public NativeArray(
             int length, Allocator allocator, NativeArrayOptions options = NativeArrayOptions.ClearMemory)
@@ -76,6 +76,14 @@ namespace Unity.Collections
                 var size = Marshal.SizeOf(typeof(T));
                 return (T)Marshal.PtrToStructure((IntPtr)((byte*)buffer + (long)index * size), typeof(T));
             }
+            set
+            {
+                if (index < 0 || index >= Length)
+                {
+                    throw new IndexOutOfRangeException();
+                }
+                Marshal.StructureToPtr(value, (IntPtr)((byte*)buffer + (long)index * Marshal.SizeOf(typeof(T))), false);
+            }
         }
 
         public NativeArray<T> GetSubArray(int start, int length)
@@ -105,6 +113,11 @@ namespace Unity.Collections.LowLevel.Unsafe
     public static class NativeArrayUnsafeUtility
     {
         public static unsafe void* GetUnsafePtr<T>(NativeArray<T> nativeArray) where T : struct
+        {
+            return (void*)nativeArray.buffer;
+        }
+
+        public static unsafe void* GetUnsafeReadOnlyPtr<T>(NativeArray<T> nativeArray) where T : struct
         {
             return (void*)nativeArray.buffer;
         }
@@ -198,28 +211,42 @@ namespace UnityEngine
 
     public sealed unsafe class Mesh : Object
     {
-        // What the tests look at.
-        public float[][] Streams;
-        public uint[] Indices;
-        public SubMeshDescriptor[] Parts;
-        public byte[] BonesPerVertex;
-        public BoneWeight1[] Weights;
-        public readonly Dictionary<string, Vector3[]> Shapes = new Dictionary<string, Vector3[]>();
+        internal float[][] Streams;
+        internal uint[] Indices;
+        internal IndexFormat Format;
+        internal SubMeshDescriptor[] Parts;
+        internal byte[] BonesPerVertex;
+        internal BoneWeight1[] Weights;
+        internal readonly Dictionary<string, Vector3[]> Shapes = new Dictionary<string, Vector3[]>();
+        internal readonly List<string> ShapeNames = new List<string>();
+        internal readonly Dictionary<string, Vector3[]> ShapeNormals = new Dictionary<string, Vector3[]>();
 
         public int vertexCount { get { return Streams == null ? 0 : Streams[0].Length / 6; } }
         public Bounds bounds { get; set; }
         public Matrix4x4[] bindposes { get; set; }
         public int subMeshCount { get { return Parts.Length; } }
         public SubMeshDescriptor GetSubMesh(int index) { return Parts[index]; }
+        public IndexFormat indexFormat { get { return Format; } }
         public int blendShapeCount { get { return Shapes.Count; } }
-        public void ClearBlendShapes() { Shapes.Clear(); }
+        public int GetBlendShapeIndex(string blendShapeName) { return ShapeNames.IndexOf(blendShapeName); }
+        public void ClearBlendShapes()
+        {
+            Shapes.Clear();
+            ShapeNormals.Clear();
+            ShapeNames.Clear();
+        }
 
-        public Vector3 Position(int vertex)
+        public void SetSubMesh(int index, SubMeshDescriptor desc, MeshUpdateFlags flags = MeshUpdateFlags.Default)
+        {
+            Parts[index] = desc;
+        }
+
+        internal Vector3 Position(int vertex)
         {
             return new Vector3(Streams[0][6 * vertex], Streams[0][6 * vertex + 1], Streams[0][6 * vertex + 2]);
         }
 
-        public Vector3 Normal(int vertex)
+        internal Vector3 Normal(int vertex)
         {
             return new Vector3(Streams[0][6 * vertex + 3], Streams[0][6 * vertex + 4], Streams[0][6 * vertex + 5]);
         }
@@ -232,6 +259,7 @@ namespace UnityEngine
                 public int[] floats;
                 public IntPtr[] streams;
                 public int indices;
+                public int indexSize;
                 public IntPtr index;
                 public SubMeshDescriptor[] parts;
             }
@@ -255,10 +283,7 @@ namespace UnityEngine
 
             public void SetIndexBufferParams(int indexCount, IndexFormat format)
             {
-                if (format != IndexFormat.UInt32)
-                {
-                    throw new NotSupportedException();
-                }
+                memory.indexSize = format == IndexFormat.UInt16 ? 2 : 4;
                 memory.indices = indexCount;
                 memory.index = Marshal.AllocHGlobal(4 * indexCount + 4);
             }
@@ -272,12 +297,16 @@ namespace UnityEngine
 
             public NativeArray<T> GetIndexData<T>() where T : struct
             {
+                if (Marshal.SizeOf(typeof(T)) != memory.indexSize)
+                {
+                    throw new InvalidOperationException("GetIndexData: of another size");
+                }
                 return NativeArray<T>.Over(memory.index, memory.indices);
             }
 
             public void SetSubMesh(int index, SubMeshDescriptor desc, MeshUpdateFlags flags = MeshUpdateFlags.Default)
             {
-                if (desc.indexStart + desc.indexCount > memory.indices)
+                if (memory.parts == null || desc.indexStart + desc.indexCount > memory.indices)
                 {
                     throw new ArgumentException("SetSubMesh: beyond the last index");
                 }
@@ -305,8 +334,8 @@ namespace UnityEngine
             }
         }
 
-        /// For the tests: writable data that was neither applied nor disposed of.
-        public static int Pending;
+        /// Writable data that was neither applied nor disposed of.
+        internal static int Pending;
 
         public static MeshDataArray AllocateWritableMeshData(int meshCount)
         {
@@ -330,37 +359,31 @@ namespace UnityEngine
                 Marshal.Copy(from.streams[i], mesh.Streams[i], 0, mesh.Streams[i].Length);
             }
             mesh.Indices = new uint[from.indices];
-            for (var i = 0; i < from.indices; i++)
+            fixed (uint* to = mesh.Indices)
             {
-                mesh.Indices[i] = ((uint*)from.index)[i];
+                if (from.indexSize == 4)
+                {
+                    Buffer.MemoryCopy((void*)from.index, to, 4L * from.indices, 4L * from.indices);
+                }
+                for (var i = 0; from.indexSize == 2 && i < from.indices; i++)
+                {
+                    to[i] = ((ushort*)from.index)[i];
+                }
             }
+            mesh.Format = from.indexSize == 2 ? IndexFormat.UInt16 : IndexFormat.UInt32;
             mesh.Parts = from.parts;
             data.Dispose();
         }
 
-        public void SetVertices<T>(NativeArray<T> inVertices) where T : struct
+        public void SetVertexBufferData<T>(NativeArray<T> data, int dataStart, int meshBufferStart, int count, int stream = 0,
+            MeshUpdateFlags flags = MeshUpdateFlags.Default) where T : struct
         {
-            Rows(inVertices.Length, (float*)inVertices.buffer, 0);
-        }
-
-        public void SetNormals<T>(NativeArray<T> inNormals) where T : struct
-        {
-            Rows(inNormals.Length, (float*)inNormals.buffer, 3);
-        }
-
-        void Rows(int count, float* from, int offset)
-        {
-            if (count != vertexCount)
+            if (typeof(T) != typeof(float) || dataStart + count > data.Length
+                || meshBufferStart + count > Streams[stream].Length)
             {
-                throw new ArgumentException("another number of vertices");
+                throw new ArgumentException("SetVertexBufferData: beyond the end");
             }
-            for (var i = 0; i < count; i++)
-            {
-                for (var k = 0; k < 3; k++)
-                {
-                    Streams[0][6 * i + offset + k] = from[3 * i + k];
-                }
-            }
+            Marshal.Copy((IntPtr)((float*)data.buffer + dataStart), Streams[stream], meshBufferStart, count);
         }
 
         public void SetBoneWeights(NativeArray<byte> bonesPerVertex, NativeArray<BoneWeight1> weights)
@@ -381,9 +404,9 @@ namespace UnityEngine
                 throw new ArgumentException("SetBoneWeights: the numbers of bones have another sum");
             }
             Weights = new BoneWeight1[total];
-            for (var i = 0; i < total; i++)
+            fixed (BoneWeight1* to = Weights)
             {
-                Weights[i] = ((BoneWeight1*)weights.buffer)[i];
+                Buffer.MemoryCopy((void*)weights.buffer, to, 8L * total, 8L * total);
             }
         }
 
@@ -394,7 +417,13 @@ namespace UnityEngine
             {
                 throw new ArgumentException("AddBlendShapeFrame: another number of vertices, or the name is taken");
             }
+            if (deltaNormals != null && deltaNormals.Length != vertexCount)
+            {
+                throw new ArgumentException("AddBlendShapeFrame: another number of normals");
+            }
+            ShapeNames.Add(shapeName);
             Shapes[shapeName] = (Vector3[])deltaVertices.Clone();
+            ShapeNormals[shapeName] = deltaNormals == null ? null : (Vector3[])deltaNormals.Clone();
         }
     }
 }

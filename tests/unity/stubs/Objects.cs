@@ -1,5 +1,7 @@
-// Stand-ins for Unity's objects and components: as much of them as the package and its tests use. See ../SIGNATURES.md.
+// Stand-ins for Unity's objects, components and their life: as much of them as the package and its tests use. What is
+// public has Unity's signatures, see ../signatures.txt; what is internal is for the tests.
 using System;
+using System.Collections;
 using System.Collections.Generic;
 using System.Reflection;
 
@@ -9,92 +11,175 @@ namespace UnityEngine
     public enum HideFlags
     {
         None = 0,
+        HideInHierarchy = 1,
+        DontSave = 52,
         HideAndDontSave = 61,
     }
 
     public class Object
     {
-        bool destroyed;
+        static int last;
+        readonly int id = ++last;
+        internal bool Destroyed;
+        /// A child that came with a prefab: Unity lets nobody destroy it.
+        internal bool OfPrefab;
+        /// It is part of the project: destroying it without leave is an error in Unity.
+        internal bool Asset;
 
-        /// For the tests: how many meshes, materials, avatars and objects are alive.
-        public static int Alive;
+        /// How many objects, components, meshes, materials and avatars are alive.
+        internal static int Alive;
 
         public Object()
         {
             Alive++;
         }
 
-        public string name { get; set; }
+        public virtual string name { get; set; }
         public HideFlags hideFlags { get; set; }
+        public int GetInstanceID() { return id; }
 
-        public static bool operator ==(Object a, Object b)
+        public static bool operator ==(Object x, Object y)
         {
-            var noA = ReferenceEquals(a, null) || a.destroyed;
-            var noB = ReferenceEquals(b, null) || b.destroyed;
-            return noA || noB ? noA && noB : ReferenceEquals(a, b);
+            var noX = ReferenceEquals(x, null) || x.Destroyed;
+            var noY = ReferenceEquals(y, null) || y.Destroyed;
+            return noX || noY ? noX && noY : ReferenceEquals(x, y);
         }
 
-        public static bool operator !=(Object a, Object b) { return !(a == b); }
+        public static bool operator !=(Object x, Object y) { return !(x == y); }
         public override bool Equals(object other) { return this == (other as Object); }
-        public override int GetHashCode() { return System.Runtime.CompilerServices.RuntimeHelpers.GetHashCode(this); }
+        public override int GetHashCode() { return id; }
 
         public static void Destroy(Object obj)
+        {
+            if (!Application.isPlaying)
+            {
+                throw new InvalidOperationException("Destroy may not be called from edit mode! Use DestroyImmediate instead.");
+            }
+            End(obj);
+        }
+
+        public static void DestroyImmediate(Object obj)
+        {
+            if (obj != null && obj.OfPrefab)
+            {
+                throw new InvalidOperationException("Destroying a GameObject inside a Prefab instance is not allowed.");
+            }
+            End(obj);
+        }
+
+        static void End(Object obj)
         {
             if (obj == null)
             {
                 return;
             }
+            if (obj.Asset)
+            {
+                throw new InvalidOperationException("Destroying assets is not permitted to avoid data loss: " + obj.name);
+            }
             var home = obj as GameObject;
             if (!ReferenceEquals(home, null))
             {
-                if (home.transform.parent != null)
-                {
-                    home.transform.parent.children.Remove(home.transform);
-                }
-                foreach (var child in new List<Transform>(home.transform.children))
-                {
-                    Destroy(child.gameObject);
-                }
-                foreach (var part in home.parts)
-                {
-                    MonoBehaviour.Tell(part, "OnDestroy");
-                    part.destroyed = true;
-                    Alive--;
-                }
+                home.EndAll();
             }
-            obj.destroyed = true;
+            obj.Destroyed = true;
             Alive--;
         }
 
-        public static void DestroyImmediate(Object obj) { Destroy(obj); }
         public static void DontDestroyOnLoad(Object target) { }
+
+        public static T Instantiate<T>(T original) where T : Object
+        {
+            var home = original as GameObject;
+            return (T)(Object)Cloning.Of(home);
+        }
     }
 
     public class Component : Object
     {
         public GameObject gameObject { get; internal set; }
         public Transform transform { get { return gameObject.transform; } }
-        public new string name { get { return gameObject.name; } set { gameObject.name = value; } }
+        public override string name { get { return gameObject.name; } set { gameObject.name = value; } }
         public T GetComponent<T>() { return gameObject.GetComponent<T>(); }
     }
 
     public class Behaviour : Component
     {
-        public bool enabled { get; set; }
+        bool on = true;
+        public bool enabled { get { return on; } set { on = value; } }
+        public bool isActiveAndEnabled { get { return on && gameObject.activeInHierarchy; } }
     }
 
     public class MonoBehaviour : Behaviour
     {
-        /// For the tests: calls what Unity calls.
-        public static void Tell(Component part, string message)
+        internal bool Awoken, Enabled;
+
+        /// Calls what Unity calls.
+        internal static void Tell(Component part, string message)
         {
             var method = part.GetType().GetMethod(
                 message, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public, null, Type.EmptyTypes, null);
-            if (method != null)
+            if (method == null)
+            {
+                return;
+            }
+            try
             {
                 method.Invoke(part, null);
             }
+            catch (TargetInvocationException error)
+            {
+                throw error.InnerException;
+            }
         }
+
+        /// Unity calls no script in edit mode that does not ask for it.
+        bool Hears()
+        {
+            return Application.isPlaying || Attribute.IsDefined(GetType(), typeof(ExecuteAlways));
+        }
+
+        internal void WakeUp()
+        {
+            if (!Hears())
+            {
+                return;
+            }
+            if (!Awoken)
+            {
+                Awoken = true;
+                Tell(this, "Awake");
+            }
+            if (!Enabled && enabled)
+            {
+                Enabled = true;
+                Tell(this, "OnEnable");
+            }
+        }
+
+        internal void FallAsleep()
+        {
+            if (Enabled)
+            {
+                Enabled = false;
+                Tell(this, "OnDisable");
+            }
+        }
+
+        /// Unity calls OnDestroy of what was awake once, and of nothing else.
+        internal void Die()
+        {
+            FallAsleep();
+            if (Awoken)
+            {
+                Tell(this, "OnDestroy");
+            }
+        }
+    }
+
+    public class ScriptableObject : Object
+    {
+        public static T CreateInstance<T>() where T : ScriptableObject { return Activator.CreateInstance<T>(); }
     }
 
     public class Transform : Component
@@ -120,6 +205,7 @@ namespace UnityEngine
 
         public int childCount { get { return children.Count; } }
         public Transform GetChild(int index) { return children[index]; }
+        public Transform Find(string n) { return children.Find(child => child.name == n); }
 
         public Matrix4x4 localToWorldMatrix
         {
@@ -134,7 +220,6 @@ namespace UnityEngine
     public sealed class GameObject : Object
     {
         internal readonly List<Component> parts = new List<Component>();
-        readonly List<Component> asleep = new List<Component>();
 
         public GameObject(string name)
         {
@@ -147,18 +232,37 @@ namespace UnityEngine
         public Transform transform { get; private set; }
         public bool activeSelf { get; private set; }
 
+        public bool activeInHierarchy
+        {
+            get { return activeSelf && (transform.parent == null || transform.parent.gameObject.activeInHierarchy); }
+        }
+
         public T AddComponent<T>() where T : Component
         {
-            var part = Activator.CreateInstance<T>();
+            return (T)Add(typeof(T));
+        }
+
+        internal Component Add(Type type)
+        {
+            if (Attribute.IsDefined(type, typeof(DisallowMultipleComponent)) && parts.Exists(type.IsInstanceOfType))
+            {
+                Debug.LogError("Can't add " + type.Name + " twice");
+                return null;
+            }
+            foreach (RequireComponent needed in type.GetCustomAttributes(typeof(RequireComponent), true))
+            {
+                if (!parts.Exists(needed.Type.IsInstanceOfType))
+                {
+                    Add(needed.Type);
+                }
+            }
+            var part = (Component)Activator.CreateInstance(type);
             part.gameObject = this;
             parts.Add(part);
-            if (activeSelf)
+            var script = part as MonoBehaviour;
+            if (script != null && activeInHierarchy)
             {
-                MonoBehaviour.Tell(part, "Awake");
-            }
-            else
-            {
-                asleep.Add(part);
+                script.WakeUp();
             }
             return part;
         }
@@ -177,269 +281,219 @@ namespace UnityEngine
 
         public void SetActive(bool value)
         {
-            activeSelf = value;
-            if (value)
+            if (value != activeSelf)
             {
-                foreach (var part in asleep)
+                activeSelf = value;
+                Scripts(script =>
                 {
-                    MonoBehaviour.Tell(part, "Awake");
-                }
-                asleep.Clear();
+                    if (value && script.gameObject.activeInHierarchy)
+                    {
+                        script.WakeUp();
+                    }
+                    else if (!value)
+                    {
+                        script.FallAsleep();
+                    }
+                });
             }
         }
-    }
 
-    public class Renderer : Component
-    {
-        public Material[] sharedMaterials { get; set; }
-    }
-
-    public class SkinnedMeshRenderer : Renderer
-    {
-        public Mesh sharedMesh { get; set; }
-        public Transform[] bones { get; set; }
-        public Transform rootBone { get; set; }
-        public Bounds localBounds { get; set; }
-    }
-
-    public struct LOD
-    {
-        public float screenRelativeTransitionHeight;
-        public Renderer[] renderers;
-
-        public LOD(float screenRelativeTransitionHeight, Renderer[] renderers)
+        /// All scripts here and below.
+        internal void Scripts(Action<MonoBehaviour> action)
         {
-            this.screenRelativeTransitionHeight = screenRelativeTransitionHeight;
-            this.renderers = renderers;
-        }
-    }
-
-    public class LODGroup : Component
-    {
-        LOD[] lods;
-        public void SetLODs(LOD[] lods)
-        {
-            for (var i = 1; i < lods.Length; i++)
+            foreach (var part in new List<Component>(parts))
             {
-                if (lods[i].screenRelativeTransitionHeight >= lods[i - 1].screenRelativeTransitionHeight)
+                var script = part as MonoBehaviour;
+                if (!ReferenceEquals(script, null))
                 {
-                    throw new ArgumentException("SetLODs: heights have to fall");
+                    action(script);
                 }
             }
-            this.lods = lods;
+            foreach (var child in new List<Transform>(transform.children))
+            {
+                child.gameObject.Scripts(action);
+            }
         }
 
-        public LOD[] GetLODs() { return lods; }
-        public void RecalculateBounds() { }
-    }
-
-    public sealed class Shader : Object
-    {
-        /// For the tests: shaders that are in the build.
-        public static readonly HashSet<string> Known =
-            new HashSet<string> { "Standard", "Universal Render Pipeline/Lit", "HDRP/Lit" };
-
-        public static Shader Find(string name) { return Known.Contains(name) ? new Shader { name = name } : null; }
-    }
-
-    public class Material : Object
-    {
-        public readonly Dictionary<string, object> Values = new Dictionary<string, object>();
-
-        public Material(Shader shader) { this.shader = shader; }
-        public Shader shader { get; set; }
-        public bool enableInstancing { get; set; }
-        public void SetColor(string name, Color value) { Values[name] = value; }
-        public void SetFloat(string name, float value) { Values[name] = value; }
-        public void EnableKeyword(string keyword) { Values[keyword] = true; }
-    }
-
-    public class Animator : Behaviour
-    {
-        public Avatar avatar { get; set; }
-    }
-
-    public class Avatar : Object
-    {
-        internal Avatar(bool valid) { isValid = isHuman = valid; }
-        public bool isValid { get; private set; }
-        public bool isHuman { get; private set; }
-    }
-
-    public struct HumanLimit
-    {
-        public bool useDefaultValues { get; set; }
-    }
-
-    public struct HumanBone
-    {
-        public HumanLimit limit;
-        public string boneName { get; set; }
-        public string humanName { get; set; }
-    }
-
-    public struct SkeletonBone
-    {
-        public string name;
-        public Vector3 position;
-        public Quaternion rotation;
-        public Vector3 scale;
-    }
-
-    public struct HumanDescription
-    {
-        public HumanBone[] human;
-        public SkeletonBone[] skeleton;
-        public float upperArmTwist { get; set; }
-        public float lowerArmTwist { get; set; }
-        public float upperLegTwist { get; set; }
-        public float lowerLegTwist { get; set; }
-        public float armStretch { get; set; }
-        public float legStretch { get; set; }
-        public float feetSpacing { get; set; }
-        public bool hasTranslationDoF { get; set; }
-    }
-
-    public class HumanTrait
-    {
-        public static string[] BoneName
+        internal void EndAll()
         {
-            get
+            if (transform.parent != null)
             {
-                return new[]
+                transform.parent.children.Remove(transform);
+            }
+            EndBelow();
+        }
+
+        void EndBelow()
+        {
+            foreach (var part in new List<Component>(parts))
+            {
+                var script = part as MonoBehaviour;
+                if (!ReferenceEquals(script, null))
                 {
-                    "Hips", "LeftUpperLeg", "RightUpperLeg", "LeftLowerLeg", "RightLowerLeg", "LeftFoot", "RightFoot",
-                    "Spine", "Chest", "UpperChest", "Neck", "Head", "LeftShoulder", "RightShoulder", "LeftUpperArm",
-                    "RightUpperArm", "LeftLowerArm", "RightLowerArm", "LeftHand", "RightHand", "LeftToes", "RightToes",
-                    "LeftEye", "RightEye", "Jaw",
-                    "Left Thumb Proximal", "Left Thumb Intermediate", "Left Thumb Distal",
-                    "Left Index Proximal", "Left Index Intermediate", "Left Index Distal",
-                    "Left Middle Proximal", "Left Middle Intermediate", "Left Middle Distal",
-                    "Left Ring Proximal", "Left Ring Intermediate", "Left Ring Distal",
-                    "Left Little Proximal", "Left Little Intermediate", "Left Little Distal",
-                    "Right Thumb Proximal", "Right Thumb Intermediate", "Right Thumb Distal",
-                    "Right Index Proximal", "Right Index Intermediate", "Right Index Distal",
-                    "Right Middle Proximal", "Right Middle Intermediate", "Right Middle Distal",
-                    "Right Ring Proximal", "Right Ring Intermediate", "Right Ring Distal",
-                    "Right Little Proximal", "Right Little Intermediate", "Right Little Distal",
-                };
+                    script.Die();
+                }
+            }
+            foreach (var child in new List<Transform>(transform.children))
+            {
+                child.gameObject.EndBelow();
+                child.gameObject.Destroyed = true;
+                Alive--;
+            }
+            transform.children.Clear();
+            foreach (var part in parts)
+            {
+                part.Destroyed = true;
+                Alive--;
             }
         }
-
-        /// Those that Unity requires.
-        public static readonly HashSet<string> Required = new HashSet<string>
-        {
-            "Hips", "LeftUpperLeg", "RightUpperLeg", "LeftLowerLeg", "RightLowerLeg", "LeftFoot", "RightFoot", "Spine",
-            "Head", "LeftUpperArm", "RightUpperArm", "LeftLowerArm", "RightLowerArm", "LeftHand", "RightHand",
-        };
     }
 
-    public class AvatarBuilder
+    /// What Instantiate does, and what is left over a reload of the code: fields that Unity serialises.
+    static class Cloning
     {
-        /// Valid where Unity's documented demands are met: all names in the hierarchy, none twice, required bones there.
-        public static Avatar BuildHumanAvatar(GameObject go, HumanDescription humanDescription)
+        const BindingFlags Own = BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
+
+        internal static IEnumerable<FieldInfo> Fields(Type type)
         {
-            var names = new Dictionary<string, int>();
-            Count(go.transform, names);
-            var valid = true;
-            foreach (var bone in humanDescription.skeleton)
+            foreach (var field in type.GetFields(Own))
             {
-                int times;
-                valid &= names.TryGetValue(bone.name, out times) && times == 1;
+                if (field.IsPublic || Attribute.IsDefined(field, typeof(SerializeField)))
+                {
+                    yield return field;
+                }
             }
-            var mapped = new HashSet<string>();
-            var traits = new HashSet<string>(HumanTrait.BoneName);
-            foreach (var bone in humanDescription.human)
-            {
-                valid &= traits.Contains(bone.humanName) && mapped.Add(bone.humanName) && names.ContainsKey(bone.boneName);
-            }
-            return new Avatar(valid && HumanTrait.Required.IsSubsetOf(mapped));
         }
 
-        static void Count(Transform at, Dictionary<string, int> names)
+        internal static GameObject Of(GameObject original)
         {
-            int times;
-            names.TryGetValue(at.name, out times);
-            names[at.name] = times + 1;
-            for (var i = 0; i < at.childCount; i++)
+            var map = new Dictionary<Object, Object>();
+            var copy = Shape(original, map);
+            Fill(original, map);
+            copy.Scripts(script =>
             {
-                Count(at.GetChild(i), names);
+                if (script.gameObject.activeInHierarchy)
+                {
+                    script.WakeUp();
+                }
+            });
+            return copy;
+        }
+
+        static GameObject Shape(GameObject from, Dictionary<Object, Object> map)
+        {
+            var copy = new GameObject(from.name + (map.Count == 0 ? "(Clone)" : ""));
+            var active = from.activeSelf;
+            copy.SetActive(false);
+            map[from] = copy;
+            foreach (var part in from.parts)
+            {
+                var other = part is Transform ? copy.transform : copy.Add(part.GetType());
+                map[part] = other;
             }
+            copy.transform.localPosition = from.transform.localPosition;
+            copy.transform.localRotation = from.transform.localRotation;
+            foreach (var child in from.transform.children)
+            {
+                Shape(child.gameObject, map).transform.SetParent(copy.transform, false);
+            }
+            typeof(GameObject).GetProperty("activeSelf").GetSetMethod(true).Invoke(copy, new object[] { active });
+            return copy;
+        }
+
+        static void Fill(GameObject from, Dictionary<Object, Object> map)
+        {
+            foreach (var part in from.parts)
+            {
+                if (part is MonoBehaviour)
+                {
+                    foreach (var field in Fields(part.GetType()))
+                    {
+                        field.SetValue(map[part], Copy(field.GetValue(part), map));
+                    }
+                }
+                var drawn = part as SkinnedMeshRenderer;
+                if (!ReferenceEquals(drawn, null))
+                {
+                    var other = (SkinnedMeshRenderer)map[part];
+                    other.enabled = drawn.enabled;
+                    other.sharedMesh = drawn.sharedMesh;
+                    other.sharedMaterials = drawn.sharedMaterials;
+                    other.bones = (Transform[])Copy(drawn.bones, map);
+                    other.rootBone = (Transform)Copy(drawn.rootBone, map);
+                }
+            }
+            foreach (var child in from.transform.children)
+            {
+                Fill(child.gameObject, map);
+            }
+        }
+
+        static object Copy(object value, Dictionary<Object, Object> map)
+        {
+            var one = value as Object;
+            if (!ReferenceEquals(one, null))
+            {
+                Object other;
+                return map.TryGetValue(one, out other) ? other : one;
+            }
+            var list = value as IList;
+            if (list != null)
+            {
+                var array = value as Array;
+                var copy = (IList)(array != null ? array.Clone() : Activator.CreateInstance(value.GetType()));
+                for (var i = 0; i < list.Count; i++)
+                {
+                    var item = Copy(list[i], map);
+                    if (array != null)
+                    {
+                        copy[i] = item;
+                    }
+                    else
+                    {
+                        copy.Add(item);
+                    }
+                }
+                return copy;
+            }
+            if (value == null || value.GetType().IsValueType || value is string)
+            {
+                return value;
+            }
+            var made = Activator.CreateInstance(value.GetType());
+            foreach (var field in Fields(value.GetType()))
+            {
+                field.SetValue(made, Copy(field.GetValue(value), map));
+            }
+            return made;
         }
     }
 
     public static class Debug
     {
-        /// For the tests: what was complained of.
-        public static readonly List<string> Errors = new List<string>();
+        /// What was complained of.
+        internal static readonly List<string> Errors = new List<string>();
         public static void Log(object message) { }
         public static void LogError(object message) { Errors.Add(message.ToString()); }
         public static void LogError(object message, Object context) { Errors.Add(message.ToString()); }
         public static void LogException(Exception exception) { Errors.Add(exception.ToString()); }
+        public static void LogException(Exception exception, Object context) { Errors.Add(exception.ToString()); }
     }
 
     public static class Application
     {
-        public static bool isPlaying { get { return true; } }
+        internal static bool Playing = true;
+        public static bool isPlaying { get { return Playing; } }
     }
 
     public static class Time
     {
-        public static float deltaTime { get; set; }
+        public static float deltaTime { get { return 1f / 60; } }
     }
 
-    public enum RuntimeInitializeLoadType
+    public class TextAsset : Object
     {
-        SubsystemRegistration = 4,
-    }
-
-    [AttributeUsage(AttributeTargets.Method)]
-    public class RuntimeInitializeOnLoadMethodAttribute : Attribute
-    {
-        public RuntimeInitializeOnLoadMethodAttribute(RuntimeInitializeLoadType loadType) { }
-    }
-
-    [AttributeUsage(AttributeTargets.Field)]
-    public sealed class SerializeField : Attribute { }
-
-    [AttributeUsage(AttributeTargets.Field)]
-    public sealed class HideInInspector : Attribute { }
-
-    [AttributeUsage(AttributeTargets.Field)]
-    public sealed class RangeAttribute : Attribute
-    {
-        public RangeAttribute(float min, float max) { }
-    }
-
-    [AttributeUsage(AttributeTargets.Class)]
-    public sealed class AddComponentMenu : Attribute
-    {
-        public AddComponentMenu(string menuName) { }
-    }
-
-    [AttributeUsage(AttributeTargets.Class)]
-    public sealed class DisallowMultipleComponent : Attribute { }
-
-    [AttributeUsage(AttributeTargets.Class)]
-    public sealed class RequireComponent : Attribute
-    {
-        public RequireComponent(Type requiredComponent) { }
-    }
-}
-
-namespace UnityEngine.Rendering
-{
-    public enum CullMode
-    {
-        Off = 0,
-        Front = 1,
-        Back = 2,
-    }
-
-    public abstract class RenderPipelineAsset : Object { }
-
-    public static class GraphicsSettings
-    {
-        public static RenderPipelineAsset currentRenderPipeline { get; set; }
+        public TextAsset(string text) { this.text = text; }
+        public string text { get; private set; }
     }
 }

@@ -12,6 +12,7 @@ namespace Anthronet.Native
         protected AnthroHandle(IntPtr pointer) : base(IntPtr.Zero, true)
         {
             SetHandle(pointer);
+            AnthroAlive.Add(this);
         }
 
         public override bool IsInvalid
@@ -149,6 +150,23 @@ namespace Anthronet.Native
         protected override bool ReleaseHandle()
         {
             NativeMethods.anthronet_skinner_free((anthronet_skinner*)handle);
+            return true;
+        }
+    }
+
+    /// <summary>Memory of our own outside of the collector's reach.</summary>
+    internal sealed unsafe class MemoryHandle : AnthroHandle
+    {
+        public MemoryHandle(long bytes) : base(Marshal.AllocHGlobal(new IntPtr(bytes))) { }
+
+        public byte* Pointer
+        {
+            get { return (byte*)handle; }
+        }
+
+        protected override bool ReleaseHandle()
+        {
+            Marshal.FreeHGlobal(handle);
             return true;
         }
     }

@@ -15,6 +15,9 @@ namespace Anthronet.Native
         const string Expected = "Android/arm64-v8a/libanthronet.so";
 #elif UNITY_IOS && !UNITY_EDITOR
         const string Expected = "iOS/libanthronet.a";
+#elif UNITY_WEBGL && !UNITY_EDITOR
+        // Its threads are not there: a library for it is not supported, and this is where one would lie.
+        const string Expected = "WebGL/libanthronet.a";
 #else
         const string Expected = "Linux/x86_64/libanthronet.so";
 #endif
@@ -28,7 +31,8 @@ namespace Anthronet.Native
         }
 
         /// <summary>Makes sure that the library is there and of the version that this package was made for.</summary>
-        /// <exception cref="DllNotFoundException">It is not; the message names the file that was expected.</exception>
+        /// <exception cref="DllNotFoundException">It is not there; the message names the file that was expected.</exception>
+        /// <exception cref="NotSupportedException">It is of another release.</exception>
         internal static void Ensure()
         {
             if (ready)
@@ -63,10 +67,21 @@ namespace Anthronet.Native
         {
             if (version != NativeMethods.ANTHRONET_ABI_VERSION)
             {
-                throw new DllNotFoundException(
+                throw new NotSupportedException(
                     "AnthroNet: " + ExpectedFile + " has version " + version + " of the C interface, expected "
                     + NativeMethods.ANTHRONET_ABI_VERSION + ": package and library must be of one release.");
             }
+        }
+
+        /// <summary>What is given, which may not be null.</summary>
+        /// <exception cref="ArgumentNullException">It is.</exception>
+        internal static T Given<T>(T value, string name) where T : class
+        {
+            if (value == null)
+            {
+                throw new ArgumentNullException(name);
+            }
+            return value;
         }
 
         /// <summary>Throws what a call says.</summary>

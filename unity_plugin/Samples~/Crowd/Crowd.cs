@@ -1,57 +1,85 @@
-using Anthronet;
 using UnityEngine;
 
-/// 200 different people in rows, spawned within a budget of time per frame, walking on the spot.
-public sealed class Crowd : MonoBehaviour
+namespace Anthronet.Samples
 {
-    public int count = 200;
-    public float distance = 1.2f;
-    public double millisecondsPerFrame = 4.0;
-
-    AnthroSpawn spawn;
-
-    void Start()
+    /// <summary>
+    /// The people of a population file in rows, spawned within a budget of time per frame, walking on the spot. Assign
+    /// `population.jsonl.txt`, which lies beside this, or a file of your own.
+    /// </summary>
+    public sealed class Crowd : MonoBehaviour
     {
-        var requests = new AnthroRequest[count];
-        for (var i = 0; i < count; i++)
+        /// <summary>A request a line; without it people are drawn by their seeds alone.</summary>
+        public TextAsset population;
+        /// <summary>Most people; those of the file or this many without.</summary>
+        public int count = 200;
+        /// <summary>Metres from one to the next.</summary>
+        public float distance = 1.2f;
+        public double millisecondsPerFrame = 4.0;
+
+        AnthroSpawn spawn;
+
+        void Start()
         {
-            requests[i] = new AnthroRequest
+            var requests = Requests(population == null ? null : population.text, count);
+            AnthroRunner.Budget = millisecondsPerFrame;
+            spawn = AnthroFactory.CreateAsync(requests, new AnthroSettings { finestLod = 1, parent = transform });
+            spawn.OnSpawned += Place;
+            AnthroRunner.Run(spawn);
+        }
+
+        /// <summary>At most so many requests, of a population where there is one.</summary>
+        public static AnthroRequest[] Requests(string population, int most)
+        {
+            if (population != null)
             {
-                Sex = i % 2 == 0 ? AnthroSex.Female : AnthroSex.Male,
-                Seed = (ulong)(i + 1),
-                Fill = AnthroFill.Sample,
-            };
+                var read = AnthroPopulation.Read(population);
+                System.Array.Resize(ref read, Mathf.Min(read.Length, most));
+                return read;
+            }
+            var drawn = new AnthroRequest[most];
+            for (var i = 0; i < most; i++)
+            {
+                drawn[i] = new AnthroRequest
+                {
+                    Sex = i % 2 == 0 ? AnthroSex.Female : AnthroSex.Male,
+                    Seed = (ulong)(i + 1),
+                    Fill = AnthroFill.Sample,
+                };
+            }
+            return drawn;
         }
-        AnthroRunner.Budget = millisecondsPerFrame;
-        spawn = AnthroFactory.CreateAsync(requests, new AnthroSettings { finestLod = 1, parent = transform });
-        spawn.OnSpawned += Place;
-        AnthroRunner.Run(spawn);
-    }
 
-    void Place(int index, AnthroCharacter character)
-    {
-        character.transform.localPosition = Position(index, count, distance);
-        var animator = character.gameObject.AddComponent<AnthroAnimator>();
-        animator.Play("walk");
-        animator.Time = 0.37 * index;
-    }
-
-    /// Rows of a square around the middle.
-    public static Vector3 Position(int index, int count, float distance)
-    {
-        var side = 1;
-        while (side * side < count)
+        void Place(int index, AnthroCharacter character)
         {
-            side++;
+            character.transform.localPosition = Position(index, spawn.Count, distance);
+            // One that was used before has an animator already.
+            var animator = character.GetComponent<AnthroAnimator>();
+            if (animator == null)
+            {
+                animator = character.gameObject.AddComponent<AnthroAnimator>();
+            }
+            animator.Play("walk");
+            animator.Time = 0.37 * index;
         }
-        return new Vector3((index % side - 0.5f * (side - 1)) * distance, 0f, (index / side - 0.5f * (side - 1)) * distance);
-    }
 
-    void OnDestroy()
-    {
-        if (spawn != null)
+        /// <summary>Rows of a square around the middle.</summary>
+        public static Vector3 Position(int index, int count, float distance)
         {
-            spawn.Dispose();
+            var side = 1;
+            while (side * side < count)
+            {
+                side++;
+            }
+            return new Vector3(
+                (index % side - 0.5f * (side - 1)) * distance, 0f, (index / side - 0.5f * (side - 1)) * distance);
+        }
+
+        void OnDestroy()
+        {
+            if (spawn != null)
+            {
+                spawn.Dispose();
+            }
         }
     }
 }

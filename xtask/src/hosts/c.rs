@@ -342,7 +342,7 @@ fn every_function_is_called() -> Outcome {
 }
 
 /// The words `anthronet_…(` of a text in C, comments left out.
-fn functions(text: &str) -> BTreeSet<&str> {
+pub(super) fn functions(text: &str) -> BTreeSet<&str> {
     let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
     code.flat_map(|line| {
         line.match_indices("anthronet_").filter_map(|(start, _)| {

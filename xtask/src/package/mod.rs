@@ -8,7 +8,7 @@ mod unity;
 pub(crate) use blender::package_blender;
 pub(crate) use cpp::package_cpp;
 pub(crate) use python::{library, package_python};
-pub(crate) use unity::package_unity;
+pub(crate) use unity::{package_unity, packed_library};
 
 use crate::environment;
 use crate::tools::{self, Outcome};

@@ -31,7 +31,7 @@ pub(crate) fn package_unity() -> Outcome<PathBuf> {
         (from, to) = (from.join(name), to.join(name));
         copy(&with_meta(&from), &with_meta(&to))?;
     }
-    copy(&library, &to)?;
+    link(&library, &to)?;
     // There Unity asks for no .meta files.
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
         copy(&tools::root().join(name), &package.join("Documentation~").join(name))?;
@@ -40,6 +40,30 @@ pub(crate) fn package_unity() -> Outcome<PathBuf> {
     let plain = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"];
     tools::run(Command::new("tar").args(plain).arg(&archive).arg("-C").arg(&stage).arg("package"))?;
     Ok(archive)
+}
+
+/// The library of the package. On Linux it has what Unity looks for in a rendering plugin besides: the archive beside
+/// the shared library, linked with a file of C.
+fn link(library: &Path, to: &Path) -> Outcome {
+    if !cfg!(target_os = "linux") {
+        return copy(library, to);
+    }
+    let root = tools::root();
+    let sources = root.join("unity_plugin/Plugins~");
+    let mut command = Command::new("cc");
+    command.args(["-shared", "-fPIC", "-O2", "-std=c99", "-Wall", "-Wextra", "-Werror", "-I"]);
+    command.arg(root.join("ffi/include")).arg("-o").arg(to).arg(sources.join("UnityPlugin.c"));
+    command.arg("-Wl,--whole-archive").arg(library.with_extension("a")).arg("-Wl,--no-whole-archive");
+    command.arg(format!("-Wl,--version-script={}", sources.join("UnityPlugin.map").display()));
+    command.args(["-Wl,--gc-sections", "-Wl,-Bstatic", "-lstdc++", "-Wl,-Bdynamic", "-lgcc_s", "-lpthread"]);
+    tools::run(command.args(["-ldl", "-lm"]))
+}
+
+/// Where packing puts the library of this system: a folder in which programs find it.
+pub(crate) fn packed_library() -> PathBuf {
+    PLUGIN
+        .iter()
+        .fold(tools::target().join("dist/stage/unity/package/Runtime/Plugins"), |path, name| path.join(name))
 }
 
 fn with_meta(path: &Path) -> PathBuf {

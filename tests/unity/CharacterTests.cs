@@ -1,0 +1,314 @@
+using System;
+using System.Collections.Generic;
+using System.Linq;
+using NUnit.Framework;
+using Unity.Collections;
+using UnityEngine;
+
+namespace Anthronet.Tests
+{
+    /// Characters: levels of detail, changing, reloading, copying, going.
+    [TestFixture]
+    public static class CharacterTests
+    {
+        [Test(Description = "levels of detail share one skeleton")]
+        public static void Levels()
+        {
+            var character = Scene.Character(0, 3);
+            var lods = character.GetComponent<LODGroup>().GetLODs();
+            Expect.Equal(4, lods.Length, "levels");
+            var before = int.MaxValue;
+            for (var lod = 0; lod < 4; lod++)
+            {
+                Expect.That(ReferenceEquals(character.RendererOf(lod).bones, character.Rig.Bones), "bones of LOD" + lod);
+                Expect.That(ReferenceEquals(lods[lod].renderers[0], character.RendererOf(lod)), "renderer of LOD" + lod);
+                var count = character.MeshOf(lod).vertexCount;
+                Expect.That(count < before, "LOD" + lod + " has " + count + " vertices");
+                before = count;
+                Expect.Equal(character.MeshOf(lod).subMeshCount, character.RendererOf(lod).sharedMaterials.Length, "materials");
+            }
+            UnityEngine.Object.Destroy(character.gameObject);
+        }
+
+        [Test(Description = "a character becomes another in place, as if it were new")]
+        public static void Update()
+        {
+            var character = Scene.Character();
+            var reports = 0;
+            character.OnReport += made => reports++;
+            var mesh = character.MeshOf(1);
+            var root = character.Rig.Bones[0];
+            character.Request.Set("height", 1.55).Set("waist_circumference", 1.0);
+            character.Generate();
+            Expect.Equal(1, reports, "reports");
+            Expect.That(ReferenceEquals(mesh, character.MeshOf(1)) && ReferenceEquals(root, character.Rig.Bones[0]), "the same");
+            var fresh = AnthroFactory.Create(character.Request, new AnthroSettings { finestLod = 1, coarsestLod = 1 });
+            var other = fresh.MeshOf(1);
+            Expect.That(mesh.Streams[0].SequenceEqual(other.Streams[0]), "positions and normals");
+            Expect.That(mesh.Streams[1].SequenceEqual(other.Streams[1]), "texture coordinates");
+            Expect.That(mesh.Indices.SequenceEqual(other.Indices), "triangles");
+            Expect.That(mesh.Weights.SequenceEqual(other.Weights), "weights");
+            Expect.That(mesh.BonesPerVertex.SequenceEqual(other.BonesPerVertex), "numbers of bones");
+            Expect.That(mesh.bindposes.SequenceEqual(other.bindposes), "bind poses");
+            Expect.That(character.Rig.Joints.SequenceEqual(fresh.Rig.Joints), "joints");
+            // A refused request leaves it as it was.
+            var body = character.Body;
+            character.Request.Set("height", 9);
+            Expect.Code(AnthroError.Request, "height", character.Generate, "too tall");
+            Expect.That(ReferenceEquals(body, character.Body), "another body");
+            Expect.Near(1.55, character.Body.Measures()[3].obtained, 1e-4, "height");
+            UnityEngine.Object.Destroy(character.gameObject);
+            Expect.Throws<ObjectDisposedException>(() => body.Joints(), "the body goes with its character");
+            UnityEngine.Object.Destroy(fresh.gameObject);
+        }
+
+        [Test(Description = "after a reload of the code a character is made anew of the same objects, and nothing is left over")]
+        public static void Reload()
+        {
+            foreach (var playing in new[] { true, false })
+            {
+                Application.Playing = playing;
+                try
+                {
+                    var home = new GameObject("person");
+                    var character = home.AddComponent<AnthroCharacter>();
+                    var alive = UnityEngine.Object.Alive;
+                    Transform pelvis = character.Rig.Find("pelvis"), lod = character.RendererOf(2).transform;
+                    var body = character.Body;
+                    Editor.AnthroReload.Release();
+                    Expect.Throws<ObjectDisposedException>(() => body.Joints(), "the body is not released");
+                    Scene.Reload(character);
+                    Expect.That(character.Body != null && ReferenceEquals(pelvis, character.Rig.Find("pelvis")), "other joints");
+                    Expect.That(ReferenceEquals(lod, character.RendererOf(2).transform), "other children");
+                    Expect.That(character.Avatar != null && character.Avatar.isValid, "avatar");
+                    Expect.Equal(alive, UnityEngine.Object.Alive, "objects that are alive, playing: " + playing);
+                    Scene.End(character);
+                }
+                finally
+                {
+                    Application.Playing = true;
+                }
+            }
+        }
+
+        [Test(Description = "awake generates, destroying leaves nothing, in the editor's edit mode too")]
+        public static void Lifecycle()
+        {
+            foreach (var playing in new[] { true, false })
+            {
+                Application.Playing = playing;
+                try
+                {
+                    // The materials are kept for the next ones: make them first.
+                    Scene.End(Scene.Character());
+                    var before = UnityEngine.Object.Alive;
+                    var home = new GameObject("person");
+                    var character = home.AddComponent<AnthroCharacter>();
+                    Expect.That(character.Body != null && character.MeshOf(0) != null && character.MeshOf(3) != null, "not generated");
+                    Scene.End(character);
+                    Expect.Equal(before, UnityEngine.Object.Alive, "objects that are alive, playing: " + playing);
+                    Expect.Equal(0, Mesh.Pending, "mesh data");
+                    Expect.Equal(0, NativeArray<float>.Alive + NativeArray<BoneWeight1>.Alive + NativeArray<byte>.Alive, "arrays");
+                }
+                finally
+                {
+                    Application.Playing = true;
+                }
+            }
+        }
+
+        [Test(Description = "in edit mode nothing that is generated is saved; in play mode nothing outlives its scene")]
+        public static void Saved()
+        {
+            using (Scene.EditMode())
+            {
+                var character = new GameObject("person").AddComponent<AnthroCharacter>();
+                foreach (var one in Generated(character))
+                {
+                    Expect.That((one.hideFlags & HideFlags.DontSave) == HideFlags.DontSave, one.name + " would be saved");
+                }
+                Expect.That((character.gameObject.hideFlags & HideFlags.DontSave) == 0, "the character itself is not saved");
+                Scene.End(character);
+            }
+            var played = Scene.Character(2, 3);
+            foreach (var one in Generated(played))
+            {
+                Expect.Equal(HideFlags.None, one.hideFlags, one.name);
+            }
+            Scene.End(played);
+        }
+
+        static IEnumerable<UnityEngine.Object> Generated(AnthroCharacter character)
+        {
+            yield return character.GetComponent<LODGroup>();
+            yield return character.GetComponent<Animator>();
+            yield return character.Avatar;
+            foreach (var bone in character.Rig.Bones)
+            {
+                yield return bone.gameObject;
+            }
+            for (var lod = 0; lod < 4; lod++)
+            {
+                if (character.MeshOf(lod) != null)
+                {
+                    yield return character.MeshOf(lod);
+                    yield return character.RendererOf(lod).gameObject;
+                }
+            }
+        }
+
+        [Test(Description = "a copy has meshes of its own and outlives the original, with the same joints and no child twice")]
+        public static void Copies()
+        {
+            var original = Scene.Character(2, 3);
+            var copy = UnityEngine.Object.Instantiate(original.gameObject).GetComponent<AnthroCharacter>();
+            Expect.That(!ReferenceEquals(copy.MeshOf(2), original.MeshOf(2)) && copy.MeshOf(2) != null, "the mesh is shared");
+            Expect.That(!ReferenceEquals(copy.Rig.Bones[3], original.Rig.Bones[3]), "joints are shared");
+            Expect.Equal(original.transform.childCount, copy.transform.childCount, "children");
+            Expect.That(original.MeshOf(2) != null && original.RendererOf(2).sharedMesh != null, "the original lost its mesh");
+            Scene.End(original);
+            Expect.That(copy.MeshOf(2).Streams[0].Length > 0 && copy.RendererOf(2).sharedMesh == copy.MeshOf(2), "lost with it");
+            Expect.Equal(11ul, copy.Body.Seed, "another person");
+            Expect.That(copy.RendererOf(2).enabled && copy.Avatar.isValid, "not whole");
+            Scene.End(copy);
+        }
+
+        [Test(Description = "nobody is seen half made, and an interrupted change leaves the person before whole")]
+        public static void Interrupted()
+        {
+            var home = new GameObject("person");
+            home.SetActive(false);
+            var character = home.AddComponent<AnthroCharacter>();
+            character.GenerateOnAwake = false;
+            home.SetActive(true);
+            Expect.That(character.Body == null, "generated although it is not to be");
+            var alive = UnityEngine.Object.Alive;
+            var steps = character.BecomeInSteps(AnthroModel.Default.Generate(Scene.Request()));
+            var count = 0;
+            while (steps.MoveNext())
+            {
+                count++;
+                for (var i = 0; i < home.transform.childCount; i++)
+                {
+                    var drawn = home.transform.GetChild(i).GetComponent<SkinnedMeshRenderer>();
+                    Expect.That(drawn == null || !drawn.enabled, "seen after " + count + " steps");
+                }
+                if (count == 7)
+                {
+                    break;
+                }
+            }
+            Expect.That(character.Body == null && character.MeshOf(0) == null, "whole after 7 steps");
+            // Another one wins; the first, taken up again, changes nothing.
+            var second = AnthroModel.Default.Generate(Scene.Request(1.6));
+            character.Become(second);
+            Expect.That(!steps.MoveNext() && ReferenceEquals(second, character.Body), "the first went on");
+            for (var lod = 0; lod < 4; lod++)
+            {
+                Expect.That(character.MeshOf(lod) != null && character.RendererOf(lod).enabled, "LOD" + lod + " is missing");
+            }
+            // One that is begun and forgotten: the person stays, with body and all.
+            var streams = character.MeshOf(1).Streams[0].ToArray();
+            var begun = character.BecomeInSteps(AnthroModel.Default.Generate(Scene.Request(1.9)));
+            begun.MoveNext();
+            begun.MoveNext();
+            Expect.Near(1.6, character.Body.Measures()[3].obtained, 1e-3, "height");
+            Expect.That(streams.SequenceEqual(character.MeshOf(1).Streams[0]), "half changed");
+            Expect.Equal(4 + 1, character.transform.childCount, "children");
+            Scene.End(character);
+            // The home with its transform and character is gone, too.
+            Expect.Equal(alive - 3, UnityEngine.Object.Alive, "objects that are alive");
+        }
+
+        [Test(Description = "the bounds of the group of levels follow the body")]
+        public static void Bounds()
+        {
+            var character = Scene.Character(1, 3);
+            var group = character.GetComponent<LODGroup>();
+            var tall = group.size;
+            var box = character.MeshOf(1).bounds.size;
+            Expect.Near(Math.Max(box.x, Math.Max(box.y, box.z)), tall, 1e-5, "the body's extent");
+            Expect.Near(0.9, group.localReferencePoint.y, 0.05, "its middle");
+            character.Request.Set("height", 1.5);
+            character.Generate();
+            Expect.That(tall > 1.7f && group.size < tall - 0.2f, "from " + tall + " to " + group.size);
+            Scene.End(character);
+        }
+
+        [Test(Description = "children of a prefab's instance are used again, and what cannot be is put to sleep")]
+        public static void Prefabs()
+        {
+            using (Scene.EditMode())
+            {
+                var character = new GameObject("person").AddComponent<AnthroCharacter>();
+                for (var i = 0; i < character.transform.childCount; i++)
+                {
+                    character.transform.GetChild(i).gameObject.OfPrefab = true;
+                }
+                var lod = character.RendererOf(0);
+                character.CoarsestLod = 2;
+                Scene.Reload(character);
+                Expect.That(ReferenceEquals(lod, character.RendererOf(0)), "another renderer");
+                Expect.That(character.MeshOf(3) == null && !character.transform.Find("LOD3").gameObject.activeSelf, "LOD3 is awake");
+                for (var i = 0; i < character.transform.childCount; i++)
+                {
+                    character.transform.GetChild(i).gameObject.OfPrefab = false;
+                }
+                Scene.End(character);
+            }
+        }
+
+        [Test(Description = "a request may be an asset")]
+        public static void Asset()
+        {
+            var asset = ScriptableObject.CreateInstance<AnthroRequestAsset>();
+            asset.Request = Scene.Request(1.65);
+            var character = Scene.Character(3, 3);
+            character.RequestAsset = asset;
+            character.Generate();
+            Expect.Near(1.65, character.Body.Measures()[3].obtained, 1e-3, "height");
+            asset.Request.Set("height", 1.75);
+            character.Generate();
+            Expect.Near(1.75, character.Body.Measures()[3].obtained, 1e-3, "height");
+            Scene.End(character);
+            UnityEngine.Object.Destroy(asset);
+        }
+
+        [Test(Description = "eyes, teeth and the rest come and go with a change")]
+        public static void BodyOnly()
+        {
+            var character = Scene.Character(2, 2);
+            var all = character.MeshOf(2).vertexCount;
+            character.BodyOnly = true;
+            character.Generate();
+            Expect.That(character.MeshOf(2).vertexCount < all && character.MeshOf(2).subMeshCount == 1, "the rest is there");
+            Expect.Equal(1, character.RendererOf(2).sharedMaterials.Length, "materials");
+            character.BodyOnly = false;
+            character.Generate();
+            Expect.Equal(all, character.MeshOf(2).vertexCount, "vertices");
+            Scene.End(character);
+        }
+
+        [Test(Description = "a character that awakes with a request that is refused tells it and throws nothing")]
+        public static void Refused()
+        {
+            var home = new GameObject("person");
+            home.SetActive(false);
+            var character = home.AddComponent<AnthroCharacter>();
+            character.Request.Set("height", 9);
+            Debug.Errors.Clear();
+            home.SetActive(true);
+            Expect.That(character.Body == null && Debug.Errors.Single().Contains("height"), "not told, or twice");
+            Debug.Errors.Clear();
+            Scene.End(character);
+            // One that is switched off is made all the same.
+            home = new GameObject("person");
+            home.SetActive(false);
+            character = home.AddComponent<AnthroCharacter>();
+            character.enabled = false;
+            home.SetActive(true);
+            Expect.That(character.Body != null, "not generated");
+            Scene.End(character);
+        }
+    }
+}

@@ -1,0 +1,79 @@
+using System;
+using System.Reflection;
+using UnityEngine;
+
+namespace Anthronet.Tests
+{
+    /// What tests set up.
+    static class Scene
+    {
+        const BindingFlags Hidden = BindingFlags.Instance | BindingFlags.Static | BindingFlags.NonPublic;
+
+        internal static AnthroRequest Request(double height = 1.8)
+        {
+            return new AnthroRequest { Sex = AnthroSex.Male, Seed = 11 }.Set("height", height);
+        }
+
+        internal static AnthroCharacter Character(int finest = 1, int coarsest = 1)
+        {
+            return AnthroFactory.Create(Request(), new AnthroSettings { finestLod = finest, coarsestLod = coarsest });
+        }
+
+        internal static int Joint(AnthroCharacter character, string name)
+        {
+            var place = Array.FindIndex(character.Rig.Bones, bone => bone.name == name);
+            Expect.That(place >= 0, "no joint " + name);
+            return place;
+        }
+
+        internal static Vector3 At(Transform transform)
+        {
+            var m = transform.localToWorldMatrix;
+            return new Vector3(m.m03, m.m13, m.m23);
+        }
+
+        /// What the editor is when nobody plays, until it is disposed of.
+        internal static IDisposable EditMode()
+        {
+            Application.Playing = false;
+            return new Playing();
+        }
+
+        sealed class Playing : IDisposable
+        {
+            public void Dispose() { Application.Playing = true; }
+        }
+
+        /// What loading the code anew leaves of a component: that which Unity serialises.
+        internal static void Reload(MonoBehaviour part)
+        {
+            foreach (var field in part.GetType().GetFields(Hidden))
+            {
+                if (!field.IsStatic && !field.IsPublic && !Attribute.IsDefined(field, typeof(SerializeField)))
+                {
+                    field.SetValue(part, field.FieldType.IsValueType ? Activator.CreateInstance(field.FieldType) : null);
+                }
+            }
+            part.Enabled = false;
+            MonoBehaviour.Tell(part, "OnEnable");
+            part.Enabled = true;
+        }
+
+        internal static object Static(Type type, string name)
+        {
+            return type.GetField(name, Hidden).GetValue(null);
+        }
+
+        internal static void End(AnthroCharacter character)
+        {
+            if (Application.isPlaying)
+            {
+                UnityEngine.Object.Destroy(character.gameObject);
+            }
+            else
+            {
+                UnityEngine.Object.DestroyImmediate(character.gameObject);
+            }
+        }
+    }
+}

@@ -1,0 +1,151 @@
+using System;
+using System.Collections.Generic;
+using System.IO;
+using System.Linq;
+using System.Reflection;
+using System.Text;
+using NUnit.Framework;
+
+namespace Anthronet.Tests
+{
+    /// What the stand-ins have of Unity: nothing that is not on the list, each with the page that documents it.
+    [TestFixture]
+    public static class SignatureTests
+    {
+        const string Manual = "https://docs.unity3d.com/2021.3/Documentation/ScriptReference/";
+        const string Burst = "https://docs.unity3d.com/Packages/com.unity.burst@1.8/api/";
+        const BindingFlags Own = BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static | BindingFlags.DeclaredOnly;
+
+        static IEnumerable<Type> Types()
+        {
+            return typeof(UnityEngine.Object).Assembly.GetTypes()
+                .Where(type => type.Namespace != null && (type.Namespace.StartsWith("Unity")) && (type.IsPublic || type.IsNestedPublic))
+                .OrderBy(type => type.FullName, StringComparer.Ordinal);
+        }
+
+        static string Name(Type type)
+        {
+            if (type.IsByRef)
+            {
+                return "out " + Name(type.GetElementType());
+            }
+            if (type.IsArray)
+            {
+                return Name(type.GetElementType()) + "[]";
+            }
+            if (type.IsPointer)
+            {
+                return Name(type.GetElementType()) + "*";
+            }
+            if (type.IsGenericParameter)
+            {
+                return type.Name;
+            }
+            var name = type.IsNested ? Name(type.DeclaringType) + "." + type.Name : type.Name;
+            var tick = name.IndexOf('`');
+            return tick < 0 ? name : name.Substring(0, tick) + "<" + string.Join(", ", type.GetGenericArguments().Select(Name)) + ">";
+        }
+
+        static string Parameters(MethodBase method)
+        {
+            return "(" + string.Join(", ", method.GetParameters().Select(p =>
+                (p.IsDefined(typeof(ParamArrayAttribute)) ? "params " : "") + Name(p.ParameterType) + " " + p.Name)) + ")";
+        }
+
+        /// The page of a type: its name without UnityEngine and UnityEditor, nested ones after a dot.
+        static string Page(Type type)
+        {
+            if (type.Namespace == "Unity.Burst")
+            {
+                return Burst + type.FullName + ".html";
+            }
+            var name = type.FullName.Replace('+', '.').Replace('`', '_');
+            foreach (var root in new[] { "UnityEngine.", "UnityEditor." })
+            {
+                name = name.StartsWith(root) ? name.Substring(root.Length) : name;
+            }
+            return Manual + name;
+        }
+
+        static IEnumerable<string> Members(Type type)
+        {
+            var page = Page(type);
+            var kind = type.IsEnum ? "enum" : type.IsInterface ? "interface" : typeof(Delegate).IsAssignableFrom(type) ? "delegate"
+                : type.IsValueType ? "struct" : "class";
+            yield return kind + " " + Name(type) + " | " + (page.EndsWith(".html") ? page : page + ".html");
+            if (kind == "delegate" || page.StartsWith(Burst))
+            {
+                yield break;
+            }
+            foreach (var field in type.GetFields(Own).Where(field => !field.IsSpecialName))
+            {
+                var value = type.IsEnum ? " = " + Convert.ToInt64(field.GetRawConstantValue()) : "";
+                yield return "  " + Name(field.FieldType) + " " + field.Name + value + " | " + page + (type.IsEnum ? "." : "-") + field.Name + ".html";
+            }
+            foreach (var made in type.GetConstructors(Own).Where(made => made.GetParameters().Length > 0))
+            {
+                yield return "  " + Name(type) + Parameters(made) + " | " + page + "-ctor.html";
+            }
+            foreach (var property in type.GetProperties(Own))
+            {
+                var reader = property.GetGetMethod() ?? property.GetSetMethod();
+                if (reader.GetBaseDefinition() != reader)
+                {
+                    continue;
+                }
+                var access = (property.GetGetMethod() == null ? "" : " get;") + (property.GetSetMethod() == null ? "" : " set;");
+                var place = property.GetIndexParameters().Length > 0 ? ".Index_operator" : "-" + property.Name;
+                yield return "  " + Name(property.PropertyType) + " " + property.Name + " {" + access + " } | " + page + place + ".html";
+            }
+            foreach (var told in type.GetEvents(Own))
+            {
+                yield return "  event " + Name(told.EventHandlerType) + " " + told.Name + " | " + page + "-" + told.Name + ".html";
+            }
+            foreach (var method in type.GetMethods(Own).Where(method => !method.IsSpecialName || method.Name.StartsWith("op_")))
+            {
+                if (method.GetBaseDefinition().DeclaringType == typeof(object))
+                {
+                    continue;
+                }
+                yield return "  " + (method.IsStatic ? "static " : "") + Name(method.ReturnType) + " " + method.Name
+                    + Parameters(method) + " | " + page + Operator(method.Name) + ".html";
+            }
+        }
+
+        static string Operator(string name)
+        {
+            switch (name)
+            {
+                case "op_Addition": return "-operator_add";
+                case "op_Subtraction": return "-operator_subtract";
+                case "op_Multiply": return "-operator_multiply";
+                case "op_Equality": return "-operator_eq";
+                case "op_Inequality": return "-operator_ne";
+                default: return "." + name;
+            }
+        }
+
+        /// The list as it is to be.
+        internal static string Text()
+        {
+            var text = new StringBuilder();
+            foreach (var line in Types().SelectMany(Members))
+            {
+                text.Append(line).Append('\n');
+            }
+            return text.ToString();
+        }
+
+        [Test(Description = "the stand-ins have of Unity what signatures.txt lists, each member with its page, and nothing else")]
+        public static void Listed()
+        {
+            var file = Path.Combine(SampleTests.Root, "tests/unity/signatures.txt");
+            var listed = new HashSet<string>(File.ReadAllLines(file));
+            var there = Text().Split(new[] { '\n' }, StringSplitOptions.RemoveEmptyEntries);
+            Expect.That(there.Length > 300, "only " + there.Length + " members");
+            Expect.Equal("", string.Join("\n", there.Where(line => !listed.Contains(line))), "not listed");
+            Expect.Equal("", string.Join("\n", listed.Except(there)), "listed, but not there");
+            Expect.That(there.All(line => line.Contains(" | https://docs.unity3d.com/")), "without a page");
+        }
+    }
+}

@@ -1,0 +1,267 @@
+using System;
+using System.Collections.Generic;
+using System.Linq;
+using NUnit.Framework;
+using UnityEngine;
+
+namespace Anthronet.Tests
+{
+    /// Characters that are made over frames, and pools.
+    [TestFixture]
+    public static class SpawnTests
+    {
+        [Test(Description = "characters spawn over frames, some fail, some are cancelled")]
+        public static void Spawn()
+        {
+            var requests = Enumerable.Range(1, 6).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
+            requests[2].Set("height", 9);
+            var settings = new AnthroSettings { finestLod = 2, coarsestLod = 3 };
+            var told = new List<int>();
+            var spawn = AnthroFactory.CreateAsync(requests, settings);
+            requests[0].Set("height", 9);
+            spawn.OnSpawned += (i, character) => told.Add(i);
+            var frames = 0;
+            while (!spawn.Advance(0))
+            {
+                frames++;
+                System.Threading.Thread.Sleep(1);
+                Expect.That(frames < 30000, "never done");
+            }
+            Expect.That(frames > 5 * 5, "only " + frames + " frames: a budget of nothing does one step a frame");
+            Expect.Equal("0 1 3 4 5", string.Join(" ", told), "spawned");
+            Expect.Equal(AnthroError.Request, spawn.Error(2).Code, "its error");
+            Expect.That(spawn.Character(2) == null && spawn.Character(5).Body.Seed == 6, "characters");
+            spawn.Dispose();
+            foreach (var i in told)
+            {
+                UnityEngine.Object.Destroy(spawn.Character(i).gameObject);
+            }
+            var many = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest { Seed = 5 }, 200).ToArray(), settings);
+            many.Cancel();
+            while (!many.Advance(50))
+            {
+            }
+            var whole = Enumerable.Range(0, 200).Count(i => many.Character(i) != null);
+            Expect.That(whole < 200 && many.Error(199).Code == AnthroError.Cancelled, whole + " although cancelled");
+            for (var i = 0; i < 200; i++)
+            {
+                UnityEngine.Object.Destroy(many.Character(i) == null ? null : many.Character(i).gameObject);
+            }
+            many.Dispose();
+        }
+
+        [Test(Description = "a spawn that is disposed of leaves nothing half made")]
+        public static void Halfway()
+        {
+            var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 });
+            var before = UnityEngine.Object.Alive;
+            while (UnityEngine.Object.Alive == before)
+            {
+                spawn.Advance(0);
+            }
+            Expect.That(!spawn.IsDone, "it is done in one step");
+            spawn.Dispose();
+            spawn.Dispose();
+            Expect.Equal(before, UnityEngine.Object.Alive, "objects that are alive");
+            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it goes on");
+        }
+
+        [Test(Description = "as many jobs as there are cores, and no more than requests")]
+        public static void Jobs()
+        {
+            var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
+            foreach (var count in new[] { 0, 1, 40 })
+            {
+                using (var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), count).ToArray(), settings))
+                {
+                    var jobs = (AnthroJob[])typeof(AnthroSpawn).GetField("jobs", System.Reflection.BindingFlags.Instance
+                        | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+                    Expect.Equal(Math.Max(1, Math.Min(count, Math.Min(16, Environment.ProcessorCount))), jobs.Length, "jobs");
+                    Expect.Equal(count == 0, spawn.IsDone, "done");
+                }
+            }
+        }
+
+        [Test(Description = "what fails on the main thread is the error of that character, and handlers that throw stop nobody")]
+        public static void Thrown()
+        {
+            var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
+            // The materials are kept for the next ones: make them first.
+            Scene.End(Scene.Character(3, 3));
+            var alive = UnityEngine.Object.Alive;
+            using (var spawn = AnthroFactory.CreateAsync(
+                Enumerable.Range(1, 4).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray(), settings))
+            {
+                spawn.OnSpawned += (i, character) =>
+                {
+                    if (i == 1)
+                    {
+                        throw new InvalidOperationException("a handler");
+                    }
+                };
+                Debug.Errors.Clear();
+                var half = (AnthroCharacter[])typeof(AnthroSpawn).GetField("characters",
+                    System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+                // A budget of nothing takes one step: while the third is made its object is taken away.
+                while (!spawn.Advance(0))
+                {
+                    if (spawn.Done == 2 && half[2] != null)
+                    {
+                        UnityEngine.Object.Destroy(half[2].gameObject);
+                    }
+                    System.Threading.Thread.Sleep(1);
+                }
+                Expect.That(Debug.Errors.Any(error => error.Contains("a handler")), "the handler is not told");
+                Debug.Errors.Clear();
+                for (var i = 0; i < 4; i++)
+                {
+                    Expect.Equal(i != 2, spawn.Character(i) != null, "character " + i);
+                    Expect.Equal(i == 2, spawn.Error(i) != null && spawn.Error(i).Code == AnthroError.Cancelled, "error " + i);
+                    UnityEngine.Object.Destroy(spawn.Character(i) == null ? null : spawn.Character(i).gameObject);
+                }
+            }
+            Expect.Equal(alive, UnityEngine.Object.Alive, "objects that are alive");
+        }
+
+        [Test(Description = "nobody is seen before it is whole")]
+        public static void Asleep()
+        {
+            using (var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 }))
+            {
+                var parent = new GameObject("parent").transform;
+                using (var other = AnthroFactory.CreateAsync(
+                    new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2, parent = parent }))
+                {
+                    while (!other.Advance(0))
+                    {
+                        Expect.That(parent.childCount == 0 || !parent.GetChild(0).gameObject.activeSelf, "awake");
+                    }
+                    Expect.That(parent.GetChild(0).gameObject.activeSelf, "asleep when it is whole");
+                }
+                UnityEngine.Object.Destroy(parent.gameObject);
+            }
+        }
+
+        static void Frames(Func<bool> until)
+        {
+            for (var frame = 0; !until(); frame++)
+            {
+                Expect.That(frame < 30000, "never done");
+                System.Threading.Thread.Sleep(1);
+                MonoBehaviour.Tell((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
+            }
+        }
+
+        [Test(Description = "the runner advances spawns each frame, frees them, and goes on when one throws")]
+        public static void Running()
+        {
+            var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
+            var first = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, settings));
+            var second = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest { Seed = 2 } }, settings));
+            // Its parts are gone: it cannot go on.
+            typeof(AnthroSpawn).GetField("requests", System.Reflection.BindingFlags.Instance
+                | System.Reflection.BindingFlags.NonPublic).SetValue(second, null);
+            Debug.Errors.Clear();
+            Frames(() => first.IsDone && AnthroRunner.Count == 0);
+            Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the one that throws is not told");
+            Debug.Errors.Clear();
+            Expect.Throws<ObjectDisposedException>(first.Cancel, "it is not freed");
+            Scene.End(first.Character(0));
+        }
+
+        [Test(Description = "the runner ends with the play mode, and in edit mode the editor drives it")]
+        public static void RunnerEnds()
+        {
+            var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
+            var requests = Enumerable.Repeat(new AnthroRequest(), 50).ToArray();
+            var spawn = AnthroRunner.Run(AnthroFactory.CreateAsync(requests, settings));
+            var runner = (AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner");
+            Expect.That((runner.gameObject.hideFlags & HideFlags.DontSave) == 0, "it would outlive the play mode");
+            UnityEngine.Object.Destroy(runner.gameObject);
+            Expect.Throws<ObjectDisposedException>(spawn.Cancel, "its spawn is not freed");
+            using (Scene.EditMode())
+            {
+                var edited = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, settings));
+                while (!edited.IsDone || AnthroRunner.Count > 0)
+                {
+                    UnityEditor.EditorApplication.update();
+                }
+                Expect.That(UnityEditor.EditorApplication.update == null, "the editor still calls it");
+                Scene.End(edited.Character(0));
+                var left = AnthroRunner.Run(AnthroFactory.CreateAsync(requests, settings));
+                UnityEditor.EditorApplication.update();
+                UnityEditor.EditorApplication.Tell(UnityEditor.PlayModeStateChange.ExitingEditMode);
+                Expect.Throws<ObjectDisposedException>(left.Cancel, "not freed before the play mode");
+                Expect.Equal(0, AnthroRunner.Count, "spawns");
+                foreach (var i in Enumerable.Range(0, 50).Where(i => left.Character(i) != null))
+                {
+                    Scene.End(left.Character(i));
+                }
+                UnityEditor.EditorApplication.update();
+            }
+        }
+
+        [Test(Description = "before the code is loaded anew threads stop and native memory is released")]
+        public static void ReleasedBeforeReload()
+        {
+            var body = AnthroModel.Default.Generate(new AnthroRequest());
+            var clip = AnthroClip.Builtin("walk", body);
+            var surface = new AnthroSurface(body, 3);
+            var skinner = new AnthroSkinner(surface);
+            var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount);
+            var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), 50).ToArray());
+            System.Runtime.CompilerServices.RuntimeHelpers.RunClassConstructor(typeof(Editor.AnthroReload).TypeHandle);
+            UnityEditor.AssemblyReloadEvents.Tell();
+            Expect.Throws<ObjectDisposedException>(() => body.Joints(), "body");
+            Expect.Throws<ObjectDisposedException>(() => clip.Bake(), "clip");
+            Expect.Throws<ObjectDisposedException>(() => crowd.Run(), "crowd");
+            Expect.Throws<ObjectDisposedException>(spawn.Cancel, "spawn");
+            var packers = (System.Threading.Thread[])typeof(AnthroSpawn).GetField("packers", System.Reflection.BindingFlags.Instance
+                | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+            Expect.That(packers.All(thread => !thread.IsAlive), "threads run on");
+            // What comes afterwards begins anew.
+            using (var again = AnthroModel.Default.Generate(new AnthroRequest()))
+            {
+                Expect.Equal(0ul, again.Seed, "seed");
+            }
+        }
+
+        [Test(Description = "the pool gives characters again: asleep, silent, without their clip, and each once")]
+        public static void Pool()
+        {
+            var pool = new AnthroPool();
+            var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3, pool = pool };
+            var first = AnthroFactory.Create(new AnthroRequest { Seed = 1 }, settings);
+            var told = 0;
+            first.OnReport += body => told++;
+            var animator = first.gameObject.AddComponent<AnthroAnimator>();
+            animator.Play("walk");
+            pool.Release(first);
+            pool.Release(first);
+            Expect.Equal(1, pool.Count, "in the pool");
+            Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "awake, or still walking");
+            var taken = pool.Take();
+            Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "the old person is awake");
+            pool.Release(taken);
+            var second = AnthroFactory.Create(new AnthroRequest { Seed = 2 }, settings);
+            Expect.That(ReferenceEquals(first, second) && second.gameObject.activeSelf, "the same, awake");
+            Expect.Equal(2ul, second.Body.Seed, "another person");
+            Expect.Equal(0, told, "reports of the other person");
+            Debug.Errors.Clear();
+            Expect.That(second.gameObject.AddComponent<AnthroAnimator>() == null && Debug.Errors.Count == 1, "two animators");
+            Debug.Errors.Clear();
+            animator.Play("idle");
+            var joint = Scene.At(second.Rig.Find("hand_l"));
+            second.Request.Set("height", 1.55);
+            second.Generate();
+            Expect.That((Scene.At(second.Rig.Find("hand_l")) - joint).magnitude > 0.01f, "it does not follow");
+            pool.Release(second);
+            UnityEngine.Object.Destroy(second.gameObject);
+            Expect.That(pool.Take() == null, "a destroyed one is not given");
+            var third = AnthroFactory.Create(new AnthroRequest { Seed = 3 }, settings);
+            pool.Release(third);
+            pool.Clear();
+            Expect.That(third == null && pool.Count == 0, "not cleared");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+using System;
+using UnityEditor;
+
+namespace Anthronet.Editor
+{
+    /// <summary>The inspector of a request as an asset.</summary>
+    [CustomEditor(typeof(AnthroRequestAsset))]
+    public sealed class AnthroRequestAssetEditor : UnityEditor.Editor
+    {
+        readonly AnthroRequestGui gui = new AnthroRequestGui();
+
+        /// <inheritdoc/>
+        public override void OnInspectorGUI()
+        {
+            serializedObject.Update();
+            try
+            {
+                gui.Draw(serializedObject.FindProperty("request"), null);
+            }
+            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
+            {
+                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
+            }
+            serializedObject.ApplyModifiedProperties();
+        }
+    }
+}

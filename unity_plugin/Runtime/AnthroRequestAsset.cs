@@ -1,0 +1,18 @@
+using UnityEngine;
+
+namespace Anthronet
+{
+    /// <summary>A request as an asset of the project, for any number of characters.</summary>
+    [CreateAssetMenu(fileName = "Person", menuName = "AnthroNet/Request", order = 300)]
+    public sealed class AnthroRequestAsset : ScriptableObject
+    {
+        [SerializeField] AnthroRequest request = new AnthroRequest();
+
+        /// <summary>The request.</summary>
+        public AnthroRequest Request
+        {
+            get { return request; }
+            set { request = value ?? new AnthroRequest(); }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+using System.Runtime.CompilerServices;
+
+[assembly: InternalsVisibleTo("Anthronet.Editor")]
+[assembly: InternalsVisibleTo("Anthronet.Tests")]
+[assembly: InternalsVisibleTo("Anthronet.Editor.Tests")]

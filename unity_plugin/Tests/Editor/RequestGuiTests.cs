@@ -1,0 +1,30 @@
+using System.Linq;
+using Anthronet.Editor;
+using NUnit.Framework;
+
+namespace Anthronet.Tests
+{
+    /// What the inspector says of measures.
+    [TestFixture]
+    public static class RequestGuiTests
+    {
+        [Test(Description = "labels are the measures in words, the same for both sides")]
+        public static void Labels()
+        {
+            Expect.Equal("Waist circumference", AnthroRequestGui.Label(0), "label");
+            for (var i = AnthroRequestGui.GroupSize; i < 2 * AnthroRequestGui.GroupSize; i++)
+            {
+                Expect.Equal(AnthroRequestGui.Label(i), AnthroRequestGui.Label(i + AnthroRequestGui.GroupSize), "sides of " + i);
+            }
+            Expect.Equal(24, Enumerable.Range(0, AnthroMeasures.Count).Select(AnthroRequestGui.Label).Distinct().Count(), "labels");
+        }
+
+        [Test(Description = "a measure is told with its percentile, given with its residual, open with its interval")]
+        public static void Told()
+        {
+            var report = new AnthroMeasureReport { obtained = 1.7, residual = -0.0004, low90 = 1.6, high90 = 1.8, percentile = 61.7 };
+            Expect.Equal("-0.4 mm, percentile 62", AnthroRequestGui.Told(report, true), "given");
+            Expect.Equal("1.700 m (90 %: 1.600 to 1.800), percentile 62", AnthroRequestGui.Told(report, false), "open");
+        }
+    }
+}
