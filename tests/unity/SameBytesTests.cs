@@ -45,8 +45,10 @@ namespace Anthronet.Tests
                 {
                     using (var body = AnthroModel.Default.Generate(AnthroRequest.FromJson(requests[i])))
                     using (var surface = new AnthroSurface(body, i % 4))
+                    using (var walk = i % 10 == 3 ? AnthroClip.Builtin("walk", body) : null)
                     {
-                        file = Hash(body.ToBytes("glb", i % 4));
+                        var clips = walk == null ? new AnthroClip[0] : new[] { walk };
+                        file = Hash(body.ToBytes("glb", i % 4, clips));
                         var joints = body.Joints();
                         var mesh = AnthroMeshes.Create(surface, joints, "hashed");
                         held = Hash(mesh, joints);
