@@ -114,7 +114,8 @@ def _tone_changed(settings, _context):
     if not _silent and settings.is_character:
         from .services import character, material
 
-        material.set_tone(character.mesh_of(settings.id_data), settings.skin_tone)
+        if not material.set_tone(character.mesh_of(settings.id_data), settings.skin_tone):
+            settings.error = "The skin's material was edited: it keeps its colour"
 
 
 def _render_changed(settings, _context):

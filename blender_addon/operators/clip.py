@@ -177,11 +177,10 @@ class ANTHRONET_OT_clip_from_armature(ChangesCharacter, ModalJob, Retargets, bpy
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if not any(ob.type == "ARMATURE" and character.of(ob) is None for ob in context.scene.objects):
-            others = [ob for ob in context.scene.objects if ob.type == "ARMATURE"]
-            if len(others) < 2:
-                cls.poll_message_set("There is no other armature in the scene")
-                return False
+        owner = character.active(context)
+        if not any(ob.type == "ARMATURE" and ob != owner for ob in context.scene.objects):
+            cls.poll_message_set("There is no other armature in the scene")
+            return False
         return True
 
     def invoke(self, context, _event):

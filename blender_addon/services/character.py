@@ -21,12 +21,13 @@ def of(ob):
 
 def active(context):
     """The character of the active object; None for none."""
-    return of(context.object)
+    # Without a window, as in a timer of a script, the context has no object.
+    return of(getattr(context, "object", None))
 
 
 def selected(context):
     """The characters of all selected objects, each once, the active one first."""
-    objects = [context.object, *context.selected_objects]
+    objects = [getattr(context, "object", None), *getattr(context, "selected_objects", ())]
     return list(dict.fromkeys(found for found in map(of, objects) if found is not None))
 
 
@@ -136,11 +137,12 @@ def set_fine_render(character, fine):
 def make_local(character):
     """Makes a linked or overridden character the file's own: its objects, mesh and armature. RuntimeError where Blender
     does not let it."""
+    # Users before what they use: what a linked block uses is copied instead.
     surface = mesh_of(character)
-    for ob in filter(None, (character, surface)):
+    for ob in filter(None, (surface, character)):
         for block in (ob, ob.data):
             if block.library is not None or block.override_library is not None:
                 block.make_local(clear_liboverride=True)
-    for ob in filter(None, (character, surface)):
+    for ob in filter(None, (surface, character)):
         if ob.library is not None or ob.data.library is not None or ob.override_library is not None:
             raise RuntimeError(f"{ob.name}: Blender keeps it linked, as something else in this file uses it from there")

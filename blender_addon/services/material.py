@@ -57,16 +57,17 @@ def _state(material):
 
 
 def set_tone(mesh_object, step):
-    """Gives a character the skin of a step of the Monk scale, unless its skin material is the user's own."""
+    """Gives a character the skin of a step of the Monk scale, unless its skin material is the user's own; whether it did."""
     if mesh_object is None or not mesh_object.material_slots:
-        return
+        return False
     slot = mesh_object.material_slots[0]
     if slot.material is not None and not is_ours(slot.material):
-        return
+        return False
     color, roughness = _tone(step)
     found = _find_or_new("Skin", color, roughness, False)
     if slot.material != found:
         mesh_object.data.materials[0] = found
+    return True
 
 
 @lru_cache(maxsize=None)

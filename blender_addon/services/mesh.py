@@ -26,6 +26,10 @@ def template(body, lod, accessories, bone_names):
     title = f".AnthroNet {lod} {'whole' if accessories else 'body'} {zlib.crc32(key.encode()):08x}"
     found = bpy.data.meshes.get((title, None))
     if found is not None and found.get(_KEY) == key:
+        if not all(one is not None and material.is_ours(one) for one in found.materials):
+            # Somebody edited one: new characters do not get it.
+            for slot, part in enumerate(body.mesh(lod=lod, layout="model", body_only=not accessories).parts):
+                found.materials[slot] = material.find_or_new(part)
         return found
     surface = body.mesh(lod=lod, influences=8, space="blender", layout="model", body_only=not accessories)
     mesh = _build(surface, bone_names, title)

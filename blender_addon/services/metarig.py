@@ -44,6 +44,10 @@ _BENDS = {
     "toe": Vector((1, 0, 0)),
     "f_": Vector((0, 1, 0)),
 }
+#: Limbs whose middle joint Rigify wants bent: the bones above and below it.
+_BENT = (("upper_arm", "forearm"), ("thigh", "shin"))
+#: How far a middle joint is out of the straight at least, as a share of the limb.
+_LEAST_BEND = 0.01
 #: How far along the hand palms begin.
 _PALM = 0.3
 #: How long a heel is behind its ankle and how wide, as shares of the foot's length.
@@ -105,6 +109,8 @@ def _lay(bones, joints, size):
             start = joints[joint + suffix]
             tail = joints[end + suffix].head_local if end else start.tail_local
             _put(bones[f"{name}.{side}"], start.head_local, tail, _axis(name, side, start))
+        for above, below in _BENT:
+            _bend(bones[f"{above}.{side}"], bones[f"{below}.{side}"])
         for name, joint, palm in _FINGERS:
             chain = [joints[f"{joint}_0{number}{suffix}"] for number in (1, 2, 3)]
             if palm is not None:
@@ -141,3 +147,15 @@ def _put(bone, head, tail, x_axis=None):
     bone.head, bone.tail = head, tail
     if x_axis is not None:
         bone.align_roll(x_axis.cross(bone.tail - bone.head))
+
+
+def _bend(above, below):
+    """Puts the joint between two bones out of the straight: Rigify finds there which way a limb bends."""
+    limb = below.tail - above.head
+    out = limb.cross(above.x_axis).normalized()
+    lack = _LEAST_BEND * limb.length - (above.tail - above.head).dot(out)
+    if lack > 0:
+        axes = above.x_axis.copy(), below.x_axis.copy()
+        middle = above.tail + lack * out
+        _put(above, above.head, middle, axes[0])
+        _put(below, middle, below.tail, axes[1])

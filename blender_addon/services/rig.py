@@ -157,16 +157,20 @@ def edit_bones(rigs, view_layer):
     posed = [ob for ob in view_layer.objects if ob.mode == "POSE"] if mode == "POSE" else []
     if mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    hidden = [(rig, rig.hide_get(view_layer=view_layer), rig.hide_viewport) for rig in rigs]
+    # Only what is hidden is shown: each switch makes Blender rebuild the dependencies of the whole scene.
+    hidden = [rig for rig in rigs if rig.hide_get(view_layer=view_layer)]
+    disabled = [rig for rig in rigs if rig.hide_viewport]
     selected = list(view_layer.objects.selected)
     mirrored = [rig.data for rig in rigs if rig.data.use_mirror_x]
     try:
         _select(selected, False, view_layer)
         for armature in mirrored:
             armature.use_mirror_x = False
-        for rig in rigs:
-            rig.hide_set(False, view_layer=view_layer)
+        for rig in disabled:
             rig.hide_viewport = False
+        for rig in hidden:
+            rig.hide_set(False, view_layer=view_layer)
+        for rig in rigs:
             if not rig.visible_get(view_layer=view_layer):
                 raise ValueError(f"{rig.name}: is hidden by its collection: show that to change it")
         _select(rigs, True, view_layer)
@@ -179,9 +183,10 @@ def edit_bones(rigs, view_layer):
         for armature in mirrored:
             armature.use_mirror_x = True
         _select(rigs, False, view_layer)
-        for rig, hide, hide_viewport in hidden:
-            rig.hide_set(hide, view_layer=view_layer)
-            rig.hide_viewport = hide_viewport
+        for rig in hidden:
+            rig.hide_set(True, view_layer=view_layer)
+        for rig in disabled:
+            rig.hide_viewport = True
         view_layer.objects.active = active
         if mode != "OBJECT":
             _select(posed, True, view_layer)
