@@ -9,7 +9,7 @@ Layers, each of which knows only those below it: ``ui`` → ``operators`` → ``
 def _modules():
     from . import operators, presets, properties, ui
 
-    return (properties, presets, operators, ui)
+    return (properties, operators, presets, ui)
 
 
 def register():

@@ -21,8 +21,10 @@ def model():
 
 
 def failures():
-    """What calls of this extension may raise for a reason that the user should read."""
+    """What calls of this extension may raise for a reason that the user should read. RuntimeError is what Blender's own
+    operators raise."""
+    own = (LibraryError, ValueError, OSError, RuntimeError)
     try:
-        return (LibraryError, anthronet().Error, ValueError, OSError)
+        return (*own, anthronet().Error)
     except LibraryError:
-        return (LibraryError, ValueError, OSError)
+        return own

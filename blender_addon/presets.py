@@ -3,80 +3,86 @@
 
 import bpy
 from bl_operators.presets import AddPresetBase
+from bl_ui.utils import PresetPanel
 
-from . import measures
+from . import measures, properties
+from .operators.base import ChangesCharacter, NeedsCharacter, reported
 
 _SUBDIRECTORY = "anthronet"
 
 
-class ANTHRONET_MT_presets(bpy.types.Menu):
+def _kept():
+    """The properties that a preset keeps: the request; not detail, names and tone, which are a scene's choice."""
+    names = ["sex", "seed", "fill", "nearest", "identity_by_hand", "identity"]
+    return names + [name for one in measures.names() for name in (one, f"given_{one}")]
+
+
+class ANTHRONET_PT_presets(PresetPanel, bpy.types.Panel):
     """Requests that were saved"""
 
     bl_label = "AnthroNet Presets"
     preset_subdir = _SUBDIRECTORY
     preset_operator = "anthronet.preset_apply"
-
-    def draw(self, context):
-        self.layout.operator("anthronet.preset_add", icon="ADD")
-        bpy.types.Menu.draw_preset(self, context)
+    preset_add_operator = "anthronet.preset_add"
 
 
-class ANTHRONET_OT_preset_add(AddPresetBase, bpy.types.Operator):
-    """Save the active character's request as a preset"""
+class ANTHRONET_OT_preset_add(NeedsCharacter, AddPresetBase, bpy.types.Operator):
+    """Save the active character's request as a preset, or remove one"""
 
     bl_idname = "anthronet.preset_add"
     bl_label = "Add AnthroNet Preset"
-    preset_menu = "ANTHRONET_MT_presets"
+    preset_menu = "ANTHRONET_PT_presets"
     preset_subdir = _SUBDIRECTORY
     preset_defines = [
         "from importlib import import_module",
         f"settings = import_module('{__package__}.services.character').active(bpy.context).anthronet",
     ]
 
-    @classmethod
-    def poll(cls, context):
-        from .services import character
-
-        return character.active(context) is not None
-
     @property
     def preset_values(self):
-        """What a preset keeps: the request; not detail, names and tone, which are a scene's choice."""
-        names = ["sex", "seed", "fill", "nearest", "identity_by_hand", "identity"]
-        names += [name for measure in measures.names() for name in (measure, f"given_{measure}")]
-        return [f"settings.{name}" for name in names]
+        """The properties that are written."""
+        return [f"settings.{name}" for name in _kept()]
 
 
-class ANTHRONET_OT_preset_apply(bpy.types.Operator):
-    """Give the active character the request of a preset"""
+class ANTHRONET_OT_preset_apply(ChangesCharacter, bpy.types.Operator):
+    """Give the selected characters the request of a preset"""
 
     bl_idname = "anthronet.preset_apply"
     bl_label = "Apply AnthroNet Preset"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    menu_idname: bpy.props.StringProperty(name="Menu", options={"SKIP_SAVE", "HIDDEN"})
+    filepath: bpy.props.StringProperty(
+        name="File", description="The preset's", subtype="FILE_PATH", options={"SKIP_SAVE"}
+    )
+    menu_idname: bpy.props.StringProperty(
+        name="Menu", description="Where it was chosen", options={"SKIP_SAVE", "HIDDEN"}
+    )
 
-    @classmethod
-    def poll(cls, context):
-        from .services import character
-
-        return character.active(context) is not None
-
+    @reported
     def execute(self, context):
-        from . import properties
         from .services import character, live
 
-        owner = character.active(context)
+        settings = character.active(context).anthronet
+        # A preset is a script that sets the active character's properties: they are only looked at.
+        before = {name: _plain(getattr(settings, name)) for name in _kept()}
         with properties.silent():
-            bpy.utils.execfile(self.filepath)
-        if live.regenerate(owner, context):
-            return {"FINISHED"}
-        self.report({"ERROR"}, owner.anthronet.error)
-        return {"CANCELLED"}
+            try:
+                bpy.utils.execfile(bpy.path.abspath(self.filepath))
+                request = settings.request()
+            except Exception as error:
+                raise ValueError(f"{self.filepath}: expected a preset of AnthroNet: {error}") from error
+            finally:
+                for name, value in before.items():
+                    setattr(settings, name, value)
+        live.change([(owner, request) for owner in character.selected(context)], context)
+        return {"FINISHED"}
 
 
-CLASSES = (ANTHRONET_MT_presets, ANTHRONET_OT_preset_add, ANTHRONET_OT_preset_apply)
+def _plain(value):
+    return value if isinstance(value, (bool, int, float, str)) else list(value)
+
+
+CLASSES = (ANTHRONET_PT_presets, ANTHRONET_OT_preset_add, ANTHRONET_OT_preset_apply)
 
 
 def register():

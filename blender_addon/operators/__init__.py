@@ -3,9 +3,9 @@
 
 
 def _modules():
-    from . import add, clip, edit, files, measure
+    from . import add, clip, edit, files, measure, rigify
 
-    return (add, clip, edit, files, measure)
+    return (add, clip, edit, files, measure, rigify)
 
 
 def register():

@@ -4,33 +4,43 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import library, measures, properties
+from .. import fields, library, measures
 from ..services import character
 from .base import reported
+from .job import ModalJob
 
 
-class ANTHRONET_OT_character_add(bpy.types.Operator):
+#: How many people are put into the scene at once.
+_BATCH = 16
+
+
+class AddsCharacters:
+    """An operator that puts characters into the active collection."""
+
+    @classmethod
+    def poll(cls, context):
+        """Whether they would be seen there."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Go to object mode")
+            return False
+        collection = context.layer_collection
+        if collection is None or collection.exclude or not collection.is_visible:
+            cls.poll_message_set("The active collection is excluded or hidden: choose another one")
+            return False
+        if context.collection.library is not None:
+            cls.poll_message_set("The active collection is linked: choose another one")
+            return False
+        return True
+
+
+class ANTHRONET_OT_character_add(AddsCharacters, bpy.types.Operator):
     """Add a person with the given measures: mesh, armature and weights. A measure of 0 is left open"""
 
     bl_idname = "anthronet.character_add"
     bl_label = "AnthroNet Character"
     bl_options = {"REGISTER", "UNDO"}
 
-    sex: EnumProperty(name="Sex", items=properties.SEXES, default="FEMALE")
-    seed: IntProperty(name="Seed", description="0 is the likeliest person, every other number another one", min=0)
-    fill: EnumProperty(name="Open Measures", items=properties.FILLS)
-    nearest: BoolProperty(name="Nearest Possible", description="Take the nearest measures that one person can have")
-    lod: EnumProperty(name="Detail", items=properties.LODS, default="1")
-    accessories: BoolProperty(name="Eyes, Teeth, Lashes", default=True)
-    joint_names: EnumProperty(name="Bone Names", items=properties.NAMES)
-    skin_tone: IntProperty(name="Skin Tone", description="Step of the Monk scale; 0 for the default", min=0, max=10)
-
-    @classmethod
-    def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Go to object mode")
-            return False
-        return context.collection is not None
+    __annotations__ = {**fields.person(), **fields.measure_properties(may_be_open=True)}
 
     @reported
     def execute(self, context):
@@ -40,7 +50,7 @@ class ANTHRONET_OT_character_add(bpy.types.Operator):
             seed=self.seed,
             fill=self.fill.lower(),
             nearest=self.nearest,
-            **given,
+            **{name: float(f"{value:.7g}") for name, value in given.items()},
         )
         body = library.model().generate(request)
         (made,) = character.add(
@@ -49,8 +59,8 @@ class ANTHRONET_OT_character_add(bpy.types.Operator):
             lod=int(self.lod),
             accessories=self.accessories,
             names=self.joint_names.lower(),
+            tones=[self.skin_tone],
         )
-        made.anthronet.skin_tone = self.skin_tone
         character.select_only(context, made)
         for warning in body.report["warnings"]:
             self.report({"WARNING"}, warning)
@@ -69,111 +79,57 @@ class ANTHRONET_OT_character_add(bpy.types.Operator):
             layout.prop(self, name)
 
 
-def _add_measures():
-    for measure in measures.all_measures():
-        ANTHRONET_OT_character_add.__annotations__[measure.name] = FloatProperty(
-            name=f"{measure.label} {measure.side.capitalize()}".strip(),
-            description=f"{measure.description}; 0 leaves it open",
-            unit="LENGTH",
-            subtype="DISTANCE",
-            precision=4,
-            min=0.0,
-            max=3.0,
-            soft_max=measure.high,
-        )
-
-
-class ANTHRONET_OT_crowd_add(bpy.types.Operator):
+class ANTHRONET_OT_crowd_add(AddsCharacters, ModalJob, bpy.types.Operator):
     """Add many different people on a grid. Esc stops; those that are there stay"""
 
     bl_idname = "anthronet.crowd_add"
     bl_label = "AnthroNet Crowd"
     bl_options = {"REGISTER", "UNDO"}
 
-    count: IntProperty(name="People", default=20, min=1, max=10000, soft_max=200)
+    count: IntProperty(name="People", description="How many", default=20, min=1, max=10000, soft_max=200)
     seed: IntProperty(name="Seed", description="The first person's seed", default=1, min=1)
-    spacing: FloatProperty(name="Spacing", default=1.5, min=0.1, unit="LENGTH", subtype="DISTANCE")
-    lod: EnumProperty(name="Detail", items=properties.LODS, default="1")
+    spacing: FloatProperty(
+        name="Spacing",
+        description="From one person to the next",
+        default=1.5,
+        min=0.1,
+        unit="LENGTH",
+        subtype="DISTANCE",
+    )
+    lod: EnumProperty(name="Detail", description="How many vertices each has", items=fields.LODS, default="1")
     skin_tones: BoolProperty(
         name="All Skin Tones", description="Skin tones in turn instead of the default", default=True
     )
 
-    poll = ANTHRONET_OT_character_add.poll
-
-    @reported
-    def execute(self, context):
-        crowd = _Crowd(self)
-        with crowd.job:
-            bodies = list(crowd.job.results())
-        crowd.place(context, bodies)
-        return {"FINISHED"}
-
-    @reported
     def invoke(self, context, _event):
-        self._crowd = _Crowd(self)
-        self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
-        context.window_manager.progress_begin(0, self.count)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return self.execute(context)
 
-    def modal(self, context, event):
-        if event.type == "ESC":
-            return self._finish(context)
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        try:
-            self._crowd.place(context, self._crowd.ready())
-        except library.failures() as error:
-            self.report({"ERROR"}, str(error))
-            return self._finish(context)
-        context.window_manager.progress_update(self._crowd.placed)
-        return {"RUNNING_MODAL"} if self._crowd.placed < self.count else self._finish(context)
+    def work(self, context):
+        """Places people as they are made beside this thread."""
+        request, sexes = library.anthronet().Request, ("female", "male")
+        seeds = [(self.seed + i - 1) % fields.LARGEST_SEED + 1 for i in range(self.count)]
+        requests = [request(sex=sexes[i % 2], seed=seed, fill="sample") for i, seed in enumerate(seeds)]
+        placed = 0
+        with library.model().start(requests) as job:
+            while placed < self.count:
+                # Few at a time: each batch keeps the window waiting.
+                done = min(job.progress.done, placed + _BATCH)
+                if done == placed:
+                    yield None
+                    continue
+                people = [(job.take(i), requests[i], self._place(context, i)) for i in range(placed, done)]
+                tones = [i % 10 + 1 if self.skin_tones else 0 for i in range(placed, done)]
+                character.add(context, people, lod=int(self.lod), tones=tones)
+                placed, self.changed = done, True
+                yield placed / self.count
 
-    def cancel(self, context):
-        """Blender ends: stop the work."""
-        self._finish(context)
-
-    def _finish(self, context):
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        self._crowd.job.close()
-        placed = self._crowd.placed
-        if placed < self.count:
-            self.report({"INFO"}, f"Stopped after {placed} of {self.count} people")
-        return {"FINISHED"} if placed else {"CANCELLED"}
+    def _place(self, context, index):
+        columns = max(1, round(self.count**0.5))
+        row, column = divmod(index, columns)
+        place = context.scene.cursor.location.copy()
+        place.x += (column - (columns - 1) / 2) * self.spacing
+        place.y += row * self.spacing
+        return place
 
 
-class _Crowd:
-    """People that are being made, and how many of them stand in the scene."""
-
-    def __init__(self, asked):
-        request = library.anthronet().Request
-        sexes = ("female", "male")
-        self._requests = [request(sex=sexes[i % 2], seed=asked.seed + i, fill="sample") for i in range(asked.count)]
-        self._columns = max(1, round(asked.count**0.5))
-        self._spacing, self._lod, self._tones = asked.spacing, int(asked.lod), asked.skin_tones
-        self.placed = 0
-        self.job = library.model().start(self._requests)
-
-    def ready(self):
-        """Bodies that are made and do not stand yet."""
-        return [self.job.take(index) for index in range(self.placed, self.job.progress.done)]
-
-    def place(self, context, bodies):
-        """Stands bodies in the next places of the grid."""
-        if not bodies:
-            return
-        people = []
-        for index, body in enumerate(bodies, self.placed):
-            row, column = divmod(index, self._columns)
-            place = context.scene.cursor.location.copy()
-            place.x += (column - (self._columns - 1) / 2) * self._spacing
-            place.y += row * self._spacing
-            people.append((body, self._requests[index], place))
-        for index, made in enumerate(character.add(context, people, lod=self._lod), self.placed):
-            made.anthronet.skin_tone = index % 10 + 1 if self._tones else 0
-        self.placed += len(bodies)
-
-
-_add_measures()
 CLASSES = (ANTHRONET_OT_character_add, ANTHRONET_OT_crowd_add)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators share: a poll for characters, and errors that a user can read."""
+"""What operators share: polls for characters, and errors that a user can read."""
 
 from functools import wraps
 
 from .. import library
-from ..services import character
+from ..services import character, live
 
 
 class NeedsCharacter:
@@ -19,30 +19,32 @@ class NeedsCharacter:
         return True
 
 
+class ChangesCharacter(NeedsCharacter):
+    """An operator that changes the selected characters."""
+
+    @classmethod
+    def poll(cls, context):
+        """Whether there is one that can be changed."""
+        owner = character.active(context)
+        if owner is None:
+            cls.poll_message_set("Select an AnthroNet character")
+            return False
+        reason = live.refusal(owner, context)
+        if reason:
+            cls.poll_message_set(reason)
+            return False
+        return True
+
+
 def reported(method):
-    """An operator's method whose failures become reports in words."""
+    """An operator's ``execute`` whose failures become reports in words."""
 
-    def failed(self, error):
-        self.report({"ERROR"}, str(error))
-        return {"CANCELLED"}
-
-    # Blender counts the arguments, so there is one wrapper for ``execute`` and one for ``invoke`` and ``modal``.
-    if method.__code__.co_argcount == 2:
-
-        @wraps(method)
-        def run(self, context):
-            try:
-                return method(self, context)
-            except library.failures() as error:
-                return failed(self, error)
-
-    else:
-
-        @wraps(method)
-        def run(self, context, event):
-            try:
-                return method(self, context, event)
-            except library.failures() as error:
-                return failed(self, error)
+    @wraps(method)
+    def run(self, context):
+        try:
+            return method(self, context)
+        except library.failures() as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
 
     return run

@@ -4,39 +4,49 @@
 import bpy
 from bpy.props import BoolProperty
 
-from ..services import character, live, mesh
-from .base import NeedsCharacter, reported
+from .. import properties, units
+from ..services import character, live
+from .base import ChangesCharacter, NeedsCharacter, reported
 
 
 class ANTHRONET_OT_measure_selected(NeedsCharacter, bpy.types.Operator):
-    """Measure the active character's mesh as it is now, sculpted or not, and show the result"""
+    """Measure the active character's mesh as it is now, sculpted or not, show the result and keep it as a property"""
 
     bl_idname = "anthronet.measure_selected"
     bl_label = "Measure"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
-    popup: BoolProperty(name="Show", default=True, options={"HIDDEN", "SKIP_SAVE"})
+    popup: BoolProperty(
+        name="Show",
+        description="Show the measures in a window of their own",
+        default=True,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
 
     @reported
     def execute(self, context):
         owner = character.active(context)
         measured = character.measured(owner)
-        owner["anthronet_measured"] = {
-            **measured.measures,
-            "mass_kg": measured.mass_kg,
-            "volume_m3": measured.volume_m3,
-        }
+        if owner.library is None:
+            owner["anthronet_measured"] = {
+                **measured.measures,
+                "mass_kg": measured.mass_kg,
+                "volume_m3": measured.volume_m3,
+            }
         for name, value in measured.measures.items():
-            self.report({"INFO"}, f"{name}: {1000 * value:.1f} mm")
+            self.report({"INFO"}, f"{name}: {units.length(context.scene, value)}")
         if self.popup and not bpy.app.background:
             context.window_manager.popup_menu(
-                lambda menu, _context: _draw(menu.layout, measured), title="Measures", icon="DRIVER_DISTANCE"
+                lambda menu, opened: _draw(menu.layout, opened.scene, measured),
+                title="Measures",
+                icon="DRIVER_DISTANCE",
             )
         return {"FINISHED"}
 
 
-class ANTHRONET_OT_fit_selected(NeedsCharacter, bpy.types.Operator):
-    """Give the active character the measures of its own mesh as it is now, so that sculpting becomes measures"""
+class ANTHRONET_OT_fit_selected(ChangesCharacter, bpy.types.Operator):
+    """Give the selected characters the measures of their own meshes as they are now, so that sculpting becomes measures. Where
+    nobody has such measures, sculpting stays as it is"""
 
     bl_idname = "anthronet.fit_selected"
     bl_label = "Measures from Mesh"
@@ -44,29 +54,20 @@ class ANTHRONET_OT_fit_selected(NeedsCharacter, bpy.types.Operator):
 
     @reported
     def execute(self, context):
-        owner = character.active(context)
-        settings = owner.anthronet
-        found = character.measured(owner).measures
-        before = settings.measures()
-        settings.set_measures({name: (value, True) for name, value in found.items()})
-        mesh.forget_sculpting(character.mesh_of(owner).data)
-        if live.regenerate(owner, context):
-            return {"FINISHED"}
-        message = settings.error
-        settings.set_measures(before)
-        live.regenerate(owner, context)
-        self.report({"ERROR"}, message)
-        return {"CANCELLED"}
+        requests = []
+        for owner in character.selected(context):
+            found = {name: float(f"{value:.7g}") for name, value in character.measured(owner).measures.items()}
+            requests.append((owner, properties.from_fields(owner.anthronet.request_fields(measures=found))))
+        live.change(requests, context, forget_sculpting=True)
+        return {"FINISHED"}
 
 
-def _draw(layout, measured):
+def _draw(layout, scene, measured):
     columns = layout.grid_flow(columns=2, even_columns=True)
     for name, value in measured.measures.items():
-        columns.label(
-            text=f"{name.replace('_', ' ')}: {bpy.utils.units.to_string('METRIC', 'LENGTH', value, precision=4)}"
-        )
+        columns.label(text=f"{name.replace('_', ' ')}: {units.length(scene, value)}")
     layout.separator()
-    layout.label(text=f"{measured.mass_kg:.1f} kg, BMI {measured.bmi:.1f}")
+    layout.label(text=f"{units.mass(scene, measured.mass_kg)}, BMI {measured.bmi:.1f}")
 
 
 CLASSES = (ANTHRONET_OT_measure_selected, ANTHRONET_OT_fit_selected)

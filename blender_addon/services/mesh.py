@@ -5,11 +5,15 @@ A character's mesh holds all parts: the body's vertices first and in the model's
 lashes, with a material slot each. Topology, texture coordinates and weights are the same for everybody, so they are made
 once a session; a character is a copy with other positions."""
 
+import zlib
+
 import bpy
 import numpy as np
 
 from . import material
 
+#: The level of detail, on every mesh.
+LOD = "anthronet_lod"
 #: Positions as they were generated: what a sculpted mesh differs from.
 GENERATED = "anthronet_generated"
 _KEY = "anthronet_template"
@@ -18,11 +22,17 @@ _KEY = "anthronet_template"
 def template(body, lod, accessories, bone_names):
     """The mesh that characters of a level of detail are copies of; made on first use."""
     key = f"{lod} {accessories} {' '.join(bone_names)}"
-    for mesh in bpy.data.meshes:
-        if mesh.get(_KEY) == key and mesh.library is None:
-            return mesh
+    # Names are looked up fast; that several vocabularies share one is told apart by the key.
+    title = f".AnthroNet {lod} {'whole' if accessories else 'body'} {zlib.crc32(key.encode()):08x}"
+    found = bpy.data.meshes.get((title, None))
+    if found is not None and found.get(_KEY) == key:
+        if not all(one is not None and material.is_ours(one) for one in found.materials):
+            # Somebody edited one: new characters do not get it.
+            for slot, part in enumerate(body.mesh(lod=lod, layout="model", body_only=not accessories).parts):
+                found.materials[slot] = material.find_or_new(part)
+        return found
     surface = body.mesh(lod=lod, influences=8, space="blender", layout="model", body_only=not accessories)
-    mesh = _build(surface, bone_names)
+    mesh = _build(surface, bone_names, title)
     mesh[_KEY] = key
     return mesh
 
@@ -32,7 +42,7 @@ def new(body, lod, accessories, bone_names, name):
     mesh = template(body, lod, accessories, bone_names).copy()
     del mesh[_KEY]
     mesh.name = name
-    mesh["anthronet_lod"] = lod
+    mesh[LOD] = lod
     mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
     _write(mesh, positions(body, lod, accessories))
     return mesh
@@ -44,27 +54,30 @@ def positions(body, lod, accessories):
     return np.concatenate([part.positions for part in surface.parts])
 
 
-def move(mesh, places):
-    """Gives a mesh another body's positions. What was sculpted, and shape keys, stay on top of them."""
+def check(mesh, places):
+    """ValueError where a mesh cannot take positions."""
+    if len(places) != len(mesh.vertices):
+        raise ValueError(
+            f"{mesh.name}: expected {len(places)} vertices, the mesh has {len(mesh.vertices)}: choose its Detail anew"
+        )
+
+
+def move(mesh, places, forget_sculpting=False):
+    """Gives a mesh another body's positions. What was sculpted stays on top of them unless it is to be forgotten; shape keys
+    stay."""
+    check(mesh, places)
     count = len(mesh.vertices)
-    if len(places) != count:
-        raise ValueError(f"{mesh.name}: expected {len(places)} vertices, the mesh has {count}")
-    generated = mesh.attributes.get(GENERATED)
-    before = np.empty(3 * count, np.float32)
-    if generated is None:
-        mesh.attributes["position"].data.foreach_get("vector", before)
+    moved, before = _now_and_generated(mesh)
+    if GENERATED not in mesh.attributes:
         mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
-    else:
-        generated.data.foreach_get("vector", before)
-    step = places.reshape(-1) - before
-    moved = np.empty(3 * count, np.float32)
+    step = places.reshape(-1) - (moved if forget_sculpting else before)
     if mesh.shape_keys:
+        shape = np.empty(3 * count, np.float32)
         for block in mesh.shape_keys.key_blocks:
-            block.points.foreach_get("co", moved)
-            block.points.foreach_set("co", moved + step)
-    mesh.attributes["position"].data.foreach_get("vector", moved)
+            block.points.foreach_get("co", shape)
+            block.points.foreach_set("co", shape + step)
     # Untouched vertices get exactly what the library made, not a sum of roundings.
-    sculpted = moved != before
+    sculpted = (moved != before) & (not forget_sculpting)
     _write(mesh, np.where(sculpted, moved + step, places.reshape(-1)), places)
 
 
@@ -82,7 +95,7 @@ def body_positions(mesh, vertex_count):
     return places.reshape(-1, 3)[:vertex_count]
 
 
-def _build(surface, bone_names):
+def _build(surface, bone_names, title):
     parts = surface.parts
     starts = np.cumsum([0] + [len(part.positions) for part in parts])
     uv_starts = np.cumsum([0] + [len(part.uvs) for part in parts])
@@ -96,7 +109,7 @@ def _build(surface, bone_names):
     corners, corner_uvs = np.concatenate(corners), np.concatenate(corner_uvs)
     sizes, slots = np.concatenate(sizes), np.concatenate(slots)
 
-    mesh = bpy.data.meshes.new(".AnthroNet Template")
+    mesh = bpy.data.meshes.new(title)
     mesh.vertices.add(int(starts[-1]))
     mesh.loops.add(len(corners))
     mesh.polygons.add(len(sizes))
@@ -145,11 +158,16 @@ def is_sculpted(mesh):
     return not np.array_equal(*_now_and_generated(mesh))
 
 
-def forget_sculpting(mesh):
-    """Puts the vertices back to where they were generated."""
-    _, generated = _now_and_generated(mesh)
-    mesh.attributes["position"].data.foreach_set("vector", generated)
-    mesh.update()
+def sculpting(mesh):
+    """How far vertices are from where they were generated: (V, 3), metres."""
+    now, generated = _now_and_generated(mesh)
+    return (now - generated).reshape(-1, 3)
+
+
+def add_sculpting(mesh, offsets):
+    """Moves vertices from where they were generated; shape keys are not looked at."""
+    now, generated = _now_and_generated(mesh)
+    _write(mesh, now + offsets.reshape(-1).astype(np.float32), generated)
 
 
 def _now_and_generated(mesh):

@@ -6,9 +6,11 @@ import bpy
 
 def _add(self, _context):
     self.layout.separator()
-    self.layout.operator_context = "INVOKE_DEFAULT"
-    self.layout.operator("anthronet.character_add", icon="OUTLINER_OB_ARMATURE")
-    self.layout.operator("anthronet.crowd_add", icon="COMMUNITY")
+    # A layout of its own: the context of the menu's holds for the entries of others.
+    own = self.layout.column()
+    own.operator_context = "INVOKE_DEFAULT"
+    own.operator("anthronet.character_add", icon="OUTLINER_OB_ARMATURE")
+    own.operator("anthronet.crowd_add", icon="COMMUNITY")
 
 
 def _import(self, _context):

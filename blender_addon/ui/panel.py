@@ -3,9 +3,9 @@
 
 import bpy
 
-from .. import measures
-from ..presets import ANTHRONET_MT_presets
-from ..services import character
+from .. import measures, units
+from ..presets import ANTHRONET_PT_presets
+from ..services import action, character, live
 
 
 class _Panel:
@@ -42,12 +42,20 @@ class ANTHRONET_PT_person(_Panel, bpy.types.Panel):
     bl_label = "Person"
 
     def draw_header_preset(self, _context):
-        self.layout.menu(ANTHRONET_MT_presets.__name__, text="", icon="PRESET")
+        ANTHRONET_PT_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
-        layout, settings = self.layout, character.active(context).anthronet
+        layout, owner = self.layout, character.active(context)
+        settings = owner.anthronet
         layout.use_property_split = True
         layout.use_property_decorate = False
+        reason = live.refusal(owner, context)
+        if reason:
+            box = layout.box()
+            _sentences(box, reason, "LOCKED")
+            if "Make Local" in reason:
+                box.operator("anthronet.make_local", icon="FILE_BLEND")
+        layout.prop(context.scene, "anthronet_edit_together")
         layout.prop(settings, "sex")
         row = layout.row()
         row.active = not settings.identity_by_hand or settings.fill == "SAMPLE"
@@ -93,6 +101,9 @@ class ANTHRONET_PT_measures(_Panel, bpy.types.Panel):
         settings = character.active(context).anthronet
         if settings.error:
             _sentences(self.layout.box(), settings.error, "ERROR")
+        if abs(context.scene.unit_settings.scale_length - 1.0) > 1e-6:
+            scale = context.scene.unit_settings.scale_length
+            _sentences(self.layout.box(), f"Unit Scale is {scale:g}: lengths are shown times that", "INFO")
         row = self.layout.row(align=True)
         row.operator("anthronet.measure_selected", icon="DRIVER_DISTANCE")
         row.operator("anthronet.fit_selected")
@@ -105,7 +116,7 @@ def _group_panel(group):
         column = self.layout.column(align=True)
         for measure, report in zip(measures.all_measures(), settings.report):
             if measure.group == group:
-                _measure_row(column, settings, measure, report)
+                _measure_row(column, context.scene, settings, measure, report)
 
     return type(
         f"ANTHRONET_PT_{group.lower()}",
@@ -120,20 +131,21 @@ def _group_panel(group):
     )
 
 
-def _measure_row(column, settings, measure, report):
+def _measure_row(column, scene, settings, measure, report):
     given = settings.is_given(measure.name)
-    row = column.row(align=True)
-    row.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
+    row = column.split(factor=0.62, align=True)
     value = row.row(align=True)
-    value.active = given
-    value.prop(settings, measure.name, text=_label(measure))
+    value.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
+    slider = value.row(align=True)
+    slider.active = given
+    slider.prop(settings, measure.name, text=_label(measure), slider=True)
     if given:
-        text = f"{1000 * report.residual:+.2f} mm  {report.percentile:.0f} %"
+        text = units.millimetres(scene, report.residual)
     else:
-        text = f"{report.low90:.3f}–{report.high90:.3f} m"
+        text = f"{units.length(scene, report.low90, 3)} – {units.length(scene, report.high90, 3)}"
     told = row.row()
     told.active = False
-    told.label(text=text)
+    told.label(text=f"P{report.percentile:.0f}  {text}")
 
 
 class ANTHRONET_PT_report(_Panel, bpy.types.Panel):
@@ -145,7 +157,8 @@ class ANTHRONET_PT_report(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings = character.active(context).anthronet
         layout = self.layout
-        layout.label(text=f"{settings.body_sex.capitalize()}, {settings.mass:.1f} kg, BMI {settings.bmi:.1f}")
+        mass = units.mass(context.scene, settings.mass)
+        layout.label(text=f"{settings.body_sex.capitalize()}, {mass}, BMI {settings.bmi:.1f}")
         for warning in filter(None, settings.warnings.split("\n")):
             _sentences(layout.box(), warning, "INFO")
         pairs = zip(measures.all_measures(), settings.report)
@@ -155,8 +168,8 @@ class ANTHRONET_PT_report(_Panel, bpy.types.Panel):
         for measure, report in rows:
             row = layout.row()
             row.label(text=_label(measure))
-            row.label(text=f"{getattr(settings, measure.name):.4f} m")
-            row.label(text=f"{1000 * report.residual:+.3f} mm")
+            row.label(text=units.length(context.scene, getattr(settings, measure.name)))
+            row.label(text=units.millimetres(context.scene, report.residual))
             row.label(text=f"percentile {report.percentile:.0f}")
 
 
@@ -179,11 +192,17 @@ class ANTHRONET_PT_motion(_Panel, bpy.types.Panel):
 
     bl_label = "Motion and Files"
 
-    def draw(self, _context):
+    def draw(self, context):
+        owner = character.active(context)
         column = self.layout.column()
         column.operator("anthronet.clip_apply", icon="ANIM_DATA")
         column.operator_menu_enum("anthronet.clip_builtin", "name", icon="PLAY")
         column.operator("anthronet.clip_from_armature", icon="ARMATURE_DATA")
+        if action.is_of_another_body(owner):
+            box = column.box()
+            _sentences(box, "The motion was made for the body of before", "INFO")
+            box.operator("anthronet.clip_refit", icon="FILE_REFRESH")
+        column.operator("anthronet.metarig_add", icon="OUTLINER_OB_ARMATURE")
         column.operator("anthronet.character_export", text="Export", icon="EXPORT")
 
 

@@ -1,7 +1,7 @@
 //! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made by the commands that a user has.
 
 use crate::tools::{self, Outcome};
-use crate::{bindings, requests};
+use crate::{bindings, hosts, requests};
 use std::process::Command;
 
 /// What can be generated alone.
@@ -44,6 +44,13 @@ fn pictures() -> Outcome {
         if !picture.is_file() {
             return Err(format!("{}: the command succeeded and wrote nothing", picture.display()));
         }
+    }
+    match hosts::blender_picture(&scratch)? {
+        Ok(picture) => {
+            let copy = root.join("docs/blender.png");
+            std::fs::copy(&picture, &copy).map_err(|e| format!("{}: cannot copy: {e}", picture.display()))?;
+        }
+        Err(reason) => println!("skipped docs/blender.png: {reason}"),
     }
     println!("look at the pictures in docs before you commit them");
     Ok(())

@@ -20,6 +20,8 @@ pub(crate) enum Part {
     Python,
     /// Of those, the Unity package alone
     Unity,
+    /// Of those, the Blender extension alone
+    Blender,
 }
 
 /// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
@@ -51,6 +53,9 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     }
     if only == Some(Part::Unity) {
         failures.extend(hosts::run_unity().err());
+    }
+    if only == Some(Part::Blender) {
+        failures.extend(hosts::run_blender().err());
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
 }

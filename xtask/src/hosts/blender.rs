@@ -4,8 +4,11 @@ use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::package_blender;
 use crate::tools::{self, Outcome};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// The picture that the tests render, in the folder that they are given.
+const PICTURE: &str = "blender_people.png";
 
 pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let archive = match package_blender(environment, anthronet)? {
@@ -15,22 +18,41 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             return Ok(());
         }
     };
-    let script = |name, python: &Path| {
-        let mut command = Command::new(python);
-        // The library has to come from the extension, not from a developer's folder.
-        command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("ANTHRONET_LIBRARY");
-        command.arg(tools::root().join("tests").join(name)).arg(&archive);
-        command
-    };
     for (version, python) in environment.blenders()? {
         let name = format!("Blender extension in {version}");
         match python {
             Ok(python) => {
-                tally.script(&name, script("blender_addon.py", &python).arg(folder.join(version)));
-                tally.script(&format!("its panels in {version}"), &mut script("blender_panels.py", &python));
+                let mut addon = script("blender_addon.py", &python, &archive);
+                tally.script(&name, addon.arg(folder.join(version)));
+                let mut panels = script("blender_panels.py", &python, &archive);
+                tally.script(&format!("its panels in {version}"), &mut panels);
             }
             Err(reason) => tally.skip(&name, &reason),
         }
     }
     Ok(())
+}
+
+/// The picture of the documentation, as the tests render it. The inner error is a reason for which this machine cannot.
+pub(crate) fn picture(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+) -> Outcome<Result<PathBuf, String>> {
+    let archive = match package_blender(environment, anthronet)? {
+        Ok(archive) => archive,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let python = environment.python.as_ref().map_err(String::clone)?;
+    tools::run(script("blender_addon.py", python, &archive).arg(folder).arg("picturing"))?;
+    Ok(Ok(folder.join(PICTURE)))
+}
+
+/// A script of `tests` in a Blender, with the extension as its first argument.
+fn script(name: &str, python: &Path, archive: &Path) -> Command {
+    let mut command = Command::new(python);
+    // The library has to come from the extension, not from a developer's folder.
+    command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("ANTHRONET_LIBRARY");
+    command.arg(tools::root().join("tests").join(name)).arg(archive);
+    command
 }

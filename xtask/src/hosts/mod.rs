@@ -77,6 +77,20 @@ pub(crate) fn run_unity() -> Outcome {
     close(&tally)
 }
 
+/// The Blender extension alone.
+pub(crate) fn run_blender() -> Outcome {
+    let mut tally = Tally::default();
+    let folder = tools::target().join("test-env/out");
+    blender::run(&tools::command_line()?, &environment::prepare()?, &folder, &mut tally)?;
+    close(&tally)
+}
+
+/// The picture of the Blender extension, rendered anew into a folder; the inner error is a reason for which this machine
+/// cannot.
+pub(crate) fn blender_picture(folder: &Path) -> Outcome<Result<PathBuf, String>> {
+    blender::picture(&tools::command_line()?, &environment::prepare()?, folder)
+}
+
 /// Prints the counts.
 fn close(tally: &Tally) -> Outcome {
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);

@@ -1,0 +1,1 @@
+"""The parts of blender_addon.py, by what they are about."""

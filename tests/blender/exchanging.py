@@ -1,0 +1,162 @@
+"""Characters as files, read back."""
+
+import shutil
+
+import bpy
+import numpy as np
+
+from blender.harness import (
+    add,
+    check,
+    clean,
+    curves,
+    expected_positions,
+    failure,
+    generated,
+    home,
+    joints,
+    mesh_of,
+    place,
+    positions,
+    select,
+)
+
+
+def _export(name, **options):
+    path = home / name
+    assert bpy.ops.anthronet.character_export(filepath=str(path), **options) == {"FINISHED"}
+    return path
+
+
+def _read(path, body):
+    """The clip of a file on the body that it was written for: (frames, joints, 3), Blender's axes."""
+    import anthronet
+
+    motion = anthronet.open_motion(str(path))
+    return motion.retarget(body, limits=False, feet=False).bake(relative="model", space="blender")[:, :, 4:]
+
+
+def exporting():
+    import anthronet
+
+    clean()
+    scene = bpy.context.scene
+    scene.render.fps = 30
+    character = add(sex="FEMALE", height=1.70)
+    body = generated(character)
+    bpy.ops.anthronet.clip_builtin(name="RANGE_OF_MOTION", use_scene_range=True)
+    clip = anthronet.builtin_clip("range_of_motion", body).resample(30)
+    for name in ("out.glb", "out.usdc"):
+        path = _export(name)
+        back = anthronet.open_motion(str(path))
+        check(f"{name} has the motion", back.clip_names and path.stat().st_size > 100_000, str(back.clip_names))
+    off = np.abs(_read(home / "out.glb", body) - clip.bake(relative="model", space="blender")[:, :, 4:]).max()
+    check("the exported motion is the scene's", off < 2e-3, f"{1000 * off:.2f} mm")
+
+    scene.frame_end = 5
+    for ending, start in ((".usdc", b"PXR-USDC"), (".usda", b"#usda"), (".vrm", b"glTF"), (".obj", None)):
+        path = _export(f"ending{ending}")
+        check(f"a script's ending is the format: {ending}", start is None or path.read_bytes().startswith(start))
+    check("a format makes the ending", _export("plain", format=".glb") and (home / "plain.glb").exists())
+    check("without either it is glTF", _export("bare") and (home / "bare.glb").exists())
+    scene.frame_set(5)
+    message = failure(lambda: bpy.ops.anthronet.character_export(filepath="/nowhere/a.glb"))
+    check("a failed export puts the frame back", message and scene.frame_current == 5, message)
+    _reading_back(character)
+    posing(character)
+
+
+def _reading_back(character):
+    """The files in Blender's own importers, which share nothing with the library."""
+    expected = expected_positions(character)
+    shutil.copy(home / "ending.vrm", home / "vrm.glb")
+    # The USD of Blender 4.2 is older than the binary files of today's; it reads text.
+    usd = "out.usdc" if bpy.app.version >= (4, 5, 0) else "ending.usda"
+    for name, work in (
+        (usd, lambda path: bpy.ops.wm.usd_import(filepath=path)),
+        ("vrm.glb", lambda path: bpy.ops.import_scene.gltf(filepath=path)),
+        ("ending.obj", lambda path: bpy.ops.wm.obj_import(filepath=path)),
+    ):
+        before = set(bpy.data.objects)
+        work(str(home / name))
+        bpy.context.view_layer.update()
+        made = sorted(set(bpy.data.objects) - before, key=lambda ob: ob.name)
+        meshes = [ob for ob in made if ob.type == "MESH" and ob.name != "Icosphere"]
+        vertices = sum(len(ob.data.vertices) for ob in meshes)
+        check(f"{name} in Blender: its vertices", vertices >= 0.9 * len(expected), f"{vertices} of {len(expected)}")
+        biggest = max(meshes, key=lambda ob: len(ob.data.vertices))
+        there = positions(biggest.data) @ np.array(biggest.matrix_world)[:3, :3].T
+        sizes = np.ptp(there, axis=0), np.ptp(expected, axis=0)
+        check(f"{name} in Blender: its size", np.allclose(*sizes, atol=2e-3), str(sizes))
+        rigs = [ob for ob in made if ob.type == "ARMATURE"]
+        if name != "ending.obj":
+            check(f"{name} in Blender: its bones", rigs and len(rigs[0].data.bones) >= 60, str(rigs))
+        if name == usd:
+            action = rigs[0].animation_data.action if rigs and rigs[0].animation_data else None
+            check(f"{name} in Blender: its motion", action and len(curves(action)) > 100, str(action))
+        for ob in made:
+            bpy.data.objects.remove(ob)
+    select(character)
+
+
+def posing(character):
+    """A pose without an action, constraints, the object's own way."""
+    scene, body = bpy.context.scene, generated(character)
+    character.animation_data_clear()
+    scene.frame_start, scene.frame_end = 1, 12
+    for bone in character.pose.bones:
+        bone.location, bone.rotation_quaternion = (0, 0, 0), (1, 0, 0, 0)
+    import anthronet
+
+    rest = _export("rest.glb")
+    check("a rest pose is no motion", failure_of_motion(rest), str(rest))
+    bone = character.pose.bones["forearm.L"]
+    bone.rotation_quaternion = (0.9, 0.43589, 0, 0)
+    there = joints(character, body)
+    read = _read(_export("pose.glb"), body)
+    off = np.abs(read[0] - there).max()
+    check("a pose without an action is exported", len(read) == 1 and off < 2e-3, f"{1000 * off:.2f} mm")
+    check("a pose in USD, too", anthronet.open_motion(str(_export("pose.usda"))).clip_names == ("Pose",))
+
+    target = bpy.data.objects.new("target", None)
+    bpy.context.collection.objects.link(target)
+    for frame, goal in ((1, (-2, 0, 1.4)), (12, (-1, -2, 0.5))):
+        target.location = goal
+        target.keyframe_insert("location", frame=frame)
+    character.pose.bones["upper_arm.R"].constraints.new("DAMPED_TRACK").target = target
+    poses = []
+    for frame in range(1, 13):
+        scene.frame_set(frame)
+        poses.append(joints(character, body))
+    read = _read(_export("constraint.glb"), body)
+    off = np.abs(read - np.array(poses)).max()
+    way = np.ptp(poses, axis=0).max()
+    check("motion of constraints is exported", way > 0.1 and off < 2e-3, f"{1000 * off:.2f} mm of {way:.2f} m")
+
+    character.location = (2, 3, 0)
+    character.keyframe_insert("location", frame=1)
+    character.location = (2, 2, 0)
+    character.keyframe_insert("location", frame=12)
+    hips = list(body.joint_names()).index("pelvis")
+    way = _read(_export("way.glb"), body)[:, hips]
+    step = way[-1] - way[0]
+    check("the way of the object is exported", np.allclose(step, (0, -1, 0), atol=2e-3), str(step))
+    check("from where it is at the first frame", np.abs(way[0][:2]).max() < 0.2, str(way[0]))
+    placed = _read(_export("placed.glb", use_world=True), body)[:, hips]
+    check("or from the scene's origin", np.allclose(placed - way, (2, 3, 0), atol=2e-3), str(placed[0] - way[0]))
+
+    surface = mesh_of(character)
+    moved = positions(surface.data).copy()
+    moved[3] += 0.1
+    place(surface.data, moved)
+    check("a sculpted mesh is written as its measures have it", _export("sculpted.obj").exists())
+
+
+def failure_of_motion(path):
+    """Whether a file has no motion."""
+    import anthronet
+
+    try:
+        return anthronet.open_motion(str(path)).clip_names == ()
+    except anthronet.Error as error:
+        return "animation" in str(error) or "motion" in str(error) or "clip" in str(error)
