@@ -77,6 +77,9 @@ pub fn train_generator(options: &GeneratorOptions) -> Result<()> {
         seed: TRAINING_SEED,
         epochs: options.epochs.unwrap_or(defaults.epochs),
         resume: options.resume,
+        // Without the skip the network starts far from people, and with running statistics, which lag behind it, its
+        // loss grows without bound. The paper never freezes them.
+        freeze_norm: if options.plain { 1.0 } else { defaults.freeze_norm },
         ..defaults
     };
     let trained = train(
