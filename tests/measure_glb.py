@@ -3,9 +3,8 @@
     python measure_glb.py ANTHRONET FOLDER
 
 The six vectors of the paper's interpolation table as request files, some partial requests as arguments, and random
-people. All 36 measures of every file have to equal the
-report's, and the given ones what was asked. A slice cuts the edges that its definition lists; that they are all there is
-to cut is checked on the whole mesh.
+people. All 36 measures of every file have to equal the report's, and the given ones what was asked. A slice cuts the edges
+that its definition lists; that they are all there is to cut is checked on the whole mesh.
 """
 
 import json
