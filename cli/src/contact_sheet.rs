@@ -171,14 +171,11 @@ mod tests {
         let sheet = people(24, 1, usual);
         assert_eq!(sheet.len(), 24);
         for sex in [SexChoice::Female, SexChoice::Male] {
-            for k in 0..2 {
+            for (k, [low, high]) in REACH.into_iter().enumerate() {
                 let mut strata: Vec<i64> = sheet
                     .iter()
                     .filter(|p| p.sex == Some(sex))
-                    .map(|p| {
-                        let [low, high] = REACH[k];
-                        (12.0 * (p.measures[k].1 - low) / (high - low)).floor() as i64
-                    })
+                    .map(|p| (12.0 * (p.measures[k].1 - low) / (high - low)).floor() as i64)
                     .collect();
                 strata.sort_unstable();
                 assert_eq!(strata, (0..12).collect::<Vec<_>>());

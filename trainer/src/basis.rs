@@ -183,7 +183,8 @@ mod tests {
     fn cube(components: usize) -> (Basis, Topology) {
         let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let mut random = Random::new(3, 0);
-        let mean = (0..24).map(|i| (i / 3 >> (i % 3) & 1) as f32 + 0.2 * random.uniform() as f32).collect();
+        let mean =
+            (0..24).map(|i| (((i / 3) >> (i % 3)) & 1) as f32 + 0.2 * random.uniform() as f32).collect();
         let rows = Mat::from_fn(24, components, |_, _| random.uniform() as f32 - 0.5);
         let cage = Topology { vertex_count: 8, quads, uvs: vec![[0.0; 2]], quad_uvs: vec![[0; 4]; 6] };
         (Basis { mean, rows, std: vec![1.0; components] }, cage)

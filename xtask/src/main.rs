@@ -62,7 +62,7 @@ enum Verb {
         #[arg(value_enum)]
         kind: package::Kind,
     },
-    /// Rewrite generated files: ffi/include/anthronet.h, the bindings of C# and Python, docs/preview.png, docs/people.png
+    /// Rewrite generated files: ffi/include/anthronet.h, the bindings of C# and Python, the pictures in docs
     Gen {
         /// One kind alone
         #[arg(long, value_enum)]
