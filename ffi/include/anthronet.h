@@ -12,7 +12,8 @@
  * has and NULL where something is needed are refused. What no library can see is the caller's to keep: pointers point to
  * what is alive and to as much as the counts beside them say.
  *
- * Text is a pointer and a length in bytes, UTF-8, not ended by a zero, both ways.
+ * Text is a pointer and a length in bytes, UTF-8, not ended by a zero, both ways. Texts have up to 1 MiB, files in memory
+ * up to 1 GiB, lists up to 1,048,576 entries.
  *
  * Structures that begin with `struct_size` are filled with zeros by the caller, who then sets `struct_size` to their
  * sizeof. Zeros ask for the defaults. NULL for one that is read is a structure of zeros.
@@ -342,7 +343,7 @@ typedef struct anthronet_job_progress {
     uint32_t struct_size;
     // `ANTHRONET_JOB_…`.
     uint32_t state;
-    // Requests that have their body or error.
+    // Requests that have their body or error; what a body is made of is not counted.
     uint32_t done;
     // Requests altogether.
     uint32_t total;
@@ -812,7 +813,7 @@ anthronet_status anthronet_job_poll(const struct anthronet_job *job,
                                     struct anthronet_job_progress *out_progress,
                                     struct anthronet_error *error);
 
-// Asks the job to stop after the body that it is at. Returns at once.
+// Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
 anthronet_status anthronet_job_cancel(const struct anthronet_job *job, struct anthronet_error *error);
 
 // Takes the body of a request, once, as soon as it is there; while the job goes on, too. Fails with the error of that

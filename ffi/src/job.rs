@@ -52,7 +52,7 @@ pub struct anthronet_job_progress {
     pub struct_size: u32,
     /// `ANTHRONET_JOB_…`.
     pub state: u32,
-    /// Requests that have their body or error.
+    /// Requests that have their body or error; what a body is made of is not counted.
     pub done: u32,
     /// Requests altogether.
     pub total: u32,
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn anthronet_job_poll(
     })
 }
 
-/// Asks the job to stop after the body that it is at. Returns at once.
+/// Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_job_cancel(
     job: *const anthronet_job,

@@ -55,6 +55,31 @@ impl<'a> BytesMut<'a> {
         }
     }
 
+    /// Writes a block of packed vectors; false when they do not fit there.
+    #[inline(always)]
+    fn write_packed(&mut self, at: usize, vectors: &[[u8; 16]; LANES]) -> bool {
+        let place = at..at + LANES * WIDTH;
+        // Whole registers, each over the last one's unused fourth number.
+        let (whole, last) = (&vectors[..LANES - 1], &vectors[LANES - 1][..WIDTH]);
+        match self {
+            Self::Init(bytes) => {
+                let Some(packed) = bytes.get_mut(place) else { return false };
+                for (lane, vector) in whole.iter().enumerate() {
+                    packed[lane * WIDTH..lane * WIDTH + 16].copy_from_slice(vector);
+                }
+                packed[(LANES - 1) * WIDTH..].copy_from_slice(last);
+            }
+            Self::Uninit(bytes) => {
+                let Some(packed) = bytes.get_mut(place) else { return false };
+                for (lane, vector) in whole.iter().enumerate() {
+                    packed[lane * WIDTH..lane * WIDTH + 16].write_copy_of_slice(vector);
+                }
+                packed[(LANES - 1) * WIDTH..].write_copy_of_slice(last);
+            }
+        }
+        true
+    }
+
     /// Writes at a place; nothing when they do not fit there.
     #[inline(always)]
     fn write(&mut self, at: usize, values: &[u8]) {
@@ -240,12 +265,7 @@ impl Part<'_> {
         let vectors =
             transposed([x, y, z, Vec4::ZERO]).map(|v| bytemuck::cast::<[f32; 4], [u8; 16]>(v.to_array()));
         let start = first * self.stride + offset;
-        if self.stride == WIDTH && start + LANES * WIDTH <= self.bytes.len() {
-            // Whole registers, each over the last one's unused fourth number.
-            for (lane, vector) in vectors.iter().enumerate().take(LANES - 1) {
-                self.bytes.write(start + lane * WIDTH, vector);
-            }
-            self.bytes.write(start + (LANES - 1) * WIDTH, &vectors[LANES - 1][..WIDTH]);
+        if self.stride == WIDTH && self.bytes.write_packed(start, &vectors) {
             return;
         }
         for (lane, vector) in vectors.iter().enumerate().take(self.count.saturating_sub(first)) {

@@ -21,6 +21,7 @@ mod joint_translation;
 mod linear;
 mod skinner;
 #[cfg(feature = "test-hooks")]
+#[doc(hidden)]
 pub mod test_hooks;
 #[cfg(test)]
 mod tests;

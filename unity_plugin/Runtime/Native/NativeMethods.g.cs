@@ -555,7 +555,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_job_poll(anthronet_job* job, anthronet_job_progress* out_progress, anthronet_error* error);
 
         /// <summary>
-        ///  Asks the job to stop after the body that it is at. Returns at once.
+        ///  Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_job_cancel", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_job_cancel(anthronet_job* job, anthronet_error* error);
@@ -1075,7 +1075,7 @@ namespace Anthronet.Native
         /// </summary>
         public uint state;
         /// <summary>
-        ///  Requests that have their body or error.
+        ///  Requests that have their body or error; what a body is made of is not counted.
         /// </summary>
         public uint done;
         /// <summary>
