@@ -55,7 +55,15 @@ fn link(library: &Path, to: &Path) -> Outcome {
     command.arg(root.join("ffi/include")).arg("-o").arg(to).arg(sources.join("UnityPlugin.c"));
     command.arg("-Wl,--whole-archive").arg(library.with_extension("a")).arg("-Wl,--no-whole-archive");
     command.arg(format!("-Wl,--version-script={}", sources.join("UnityPlugin.map").display()));
-    command.args(["-Wl,--gc-sections", "-Wl,-Bstatic", "-lstdc++", "-Wl,-Bdynamic", "-lgcc_s", "-lpthread"]);
+    command.args([
+        "-Wl,--gc-sections",
+        "-Wl,-s",
+        "-Wl,-Bstatic",
+        "-lstdc++",
+        "-Wl,-Bdynamic",
+        "-lgcc_s",
+        "-lpthread",
+    ]);
     tools::run(command.args(["-ldl", "-lm"]))
 }
 
