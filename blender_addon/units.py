@@ -31,7 +31,6 @@ def millimetres(scene, metres):
 
 def mass(scene, kilograms):
     """A mass."""
-    settings = scene.unit_settings
-    if settings.system == "NONE":
-        return f"{kilograms:.1f} kg"
-    return bpy.utils.units.to_string(settings.system, "MASS", kilograms, precision=3)
+    if scene.unit_settings.system == "IMPERIAL":
+        return f"{kilograms / 0.45359237:.1f} lb"
+    return f"{kilograms:.1f} kg"

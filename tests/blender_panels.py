@@ -224,7 +224,7 @@ def read_panels(texts):
     )
     cases.case(
         "a given one its percentile and residual",
-        re.search(r"P\d+  [+-]0\.00 mm", groups["torso"]),
+        re.search(r"P\d+  off by [+-]0\.00 mm", groups["torso"]),
         groups["torso"][:300],
     )
 

@@ -133,19 +133,20 @@ def _group_panel(group):
 
 def _measure_row(column, scene, settings, measure, report):
     given = settings.is_given(measure.name)
-    row = column.split(factor=0.62, align=True)
-    value = row.row(align=True)
-    value.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
-    slider = value.row(align=True)
+    row = column.row(align=True)
+    row.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
+    slider = row.row(align=True)
     slider.active = given
     slider.prop(settings, measure.name, text=_label(measure), slider=True)
     if given:
-        text = units.millimetres(scene, report.residual)
+        text = f"off by {units.millimetres(scene, report.residual)}"
     else:
         text = f"{units.length(scene, report.low90, 3)} – {units.length(scene, report.high90, 3)}"
-    told = row.row()
+    # Below and not beside: a side bar of usual width has no room for both.
+    told = column.row()
     told.active = False
-    told.label(text=f"P{report.percentile:.0f}  {text}")
+    told.scale_y = 0.7
+    told.label(text=f"P{report.percentile:.0f}  {text}", icon="BLANK1")
 
 
 class ANTHRONET_PT_report(_Panel, bpy.types.Panel):

@@ -162,8 +162,9 @@ def unitising():
     for system, scale in (("METRIC", 1.0), ("IMPERIAL", 1.0), ("NONE", 1.0), ("METRIC", 0.1)):
         settings.system, settings.scale_length = system, scale
         told[system, scale] = units.length(scene, 1.70), units.millimetres(scene, 0.0004), units.mass(scene, 70.0)
-    check("metres", told["METRIC", 1.0] == ("1.7 m", "+0.40 mm", "70 kg"), str(told))
-    check("feet and pounds", "'" in told["IMPERIAL", 1.0][0] and "in" in told["IMPERIAL", 1.0][1], str(told))
+    check("metres", told["METRIC", 1.0] == ("1.7 m", "+0.40 mm", "70.0 kg"), str(told))
+    check("feet and pounds", "'" in told["IMPERIAL", 1.0][0] and
+          told["IMPERIAL", 1.0][1:] == ("+0.0157 in", "154.3 lb"), str(told))
     check("no unit", told["NONE", 1.0][0] == "1.7000", str(told))
     check("lengths follow the Unit Scale as sliders do", told["METRIC", 0.1][0] in ("0.17 m", "17 cm"), str(told))
     assert service("character").active(bpy.context) is None

@@ -72,13 +72,17 @@ def _reading_back(character):
     shutil.copy(home / "ending.vrm", home / "vrm.glb")
     # The USD of Blender 4.2 is older than the binary files of today's; it reads text.
     usd = "out.usdc" if bpy.app.version >= (4, 5, 0) else "ending.usda"
-    for name, work in (
-        (usd, lambda path: bpy.ops.wm.usd_import(filepath=path)),
-        ("vrm.glb", lambda path: bpy.ops.import_scene.gltf(filepath=path)),
-        ("ending.obj", lambda path: bpy.ops.wm.obj_import(filepath=path)),
-    ):
+    importers = {
+        usd: bpy.ops.wm.usd_import,
+        "vrm.glb": bpy.ops.import_scene.gltf,
+        "ending.obj": bpy.ops.wm.obj_import,
+    }
+    if bpy.app.version < (4, 5, 0):
+        del importers["vrm.glb"]
+        print("skipped vrm.glb in Blender: the importer of 4.2 as a module may crash after others have run")
+    for name, work in importers.items():
         before = set(bpy.data.objects)
-        work(str(home / name))
+        work(filepath=str(home / name))
         bpy.context.view_layer.update()
         made = sorted(set(bpy.data.objects) - before, key=lambda ob: ob.name)
         meshes = [ob for ob in made if ob.type == "MESH" and ob.name != "Icosphere"]
