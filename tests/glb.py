@@ -74,6 +74,22 @@ class Glb:
         # Stored column by column.
         return skin["joints"], matrices.reshape(-1, 4, 4).transpose(0, 2, 1)
 
+    def skinned(self, node, world, least=0.0):
+        """Positions of a node's primitives one after the other (vertices, 3): linear blend skinning in double precision.
+
+        `world` are the matrices of all nodes. Weights below `least` are left out.
+        """
+        joints, joint_from_bind = self.skin(node)
+        matrices, parts = world[joints] @ joint_from_bind, []
+        for primitive in self.primitives(node):
+            slots, weights = self.influences(primitive)
+            if least > 0:
+                weights = np.where(weights < least, 0, weights)
+                weights /= weights.sum(1, keepdims=True)
+            points = np.c_[self.positions(primitive), np.ones(len(slots))]
+            parts.append(np.einsum("vk,vkij,vj->vi", weights, matrices[slots], points)[:, :3])
+        return np.vstack(parts)
+
     def animated(self, animation, time):
         """{node: {path: value}} of an animation at a time, seconds: linear, spherical for rotations."""
         values = {}

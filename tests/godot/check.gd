@@ -1,8 +1,11 @@
-# Godot 3 has imported figure.glb: skeleton, meshes, clips, as expected.json says.
+# Godot 3 has imported figure.glb: skeleton, meshes, clips, and where joints are in a frame of each, as expected.json says.
 #
 #     godot3-server --path FOLDER --script check.gd
 
 extends SceneTree
+
+# Metres. Godot keeps single precision, and slerps and blends in matrices.
+const TOLERANCE = 1e-4
 
 var failed = 0
 
@@ -21,6 +24,37 @@ func find_all(node, kind, found):
 	for child in node.get_children():
 		find_all(child, kind, found)
 	return found
+
+
+# Plays the clip up to a time and compares where joints are.
+func places(scene, player, skeleton, clip):
+	for bone in range(skeleton.get_bone_count()):
+		skeleton.set_bone_pose(bone, Transform())
+	player.play(clip.name)
+	player.seek(clip.time, true)
+	player.stop(false)
+	var above = Transform()
+	var node = skeleton
+	while node != scene.get_parent():
+		above = node.transform * above
+		node = node.get_parent()
+	var worst = 0.0
+	var at = "none"
+	var found = 0
+	for bone in range(skeleton.get_bone_count()):
+		var name = skeleton.get_bone_name(bone)
+		if not clip.places.has(name):
+			continue
+		found += 1
+		var place = clip.places[name]
+		var goal = Vector3(place[0], place[1], place[2])
+		var off = (above.xform(skeleton.get_bone_global_pose(bone).origin) - goal).length()
+		if not off <= worst:
+			worst = off
+			at = name
+	case("%s: all %d joints have their names" % [clip.name, clip.places.size()], found == clip.places.size(), str(found))
+	case("%s: joints at %.3f s (largest difference %.4f mm)" % [clip.name, clip.time, worst * 1000], worst <= TOLERANCE,
+		"%s is %f mm off" % [at, worst * 1000])
 
 
 func _init():
@@ -59,5 +93,7 @@ func _init():
 			case("%s lasts %.4f s" % [clip.name, length], abs(length - clip.length) < 1e-3, "expected %f" % clip.length)
 			var tracks = animation.get_track_count()
 			case("%s has %d tracks" % [clip.name, tracks], tracks == int(clip.tracks), "expected %d" % clip.tracks)
+			if skeletons.size() == 1:
+				places(scene, players[0], skeletons[0], clip)
 	scene.free()
 	quit(1 if failed > 0 else 0)

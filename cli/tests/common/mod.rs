@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
@@ -59,6 +60,9 @@ pub(crate) fn model_is_built_in() -> bool {
     let trained = fs::metadata(file).is_ok_and(|metadata| metadata.len() > 0);
     if trained {
         anthronet(&["info", "--json"], &[]).succeeds();
+    } else {
+        // Past the harness, which keeps the output of tests that pass to itself.
+        let _ = std::io::stdout().write_all(b"\nskipped a test of the command: there is no trained model\n");
     }
     trained
 }
