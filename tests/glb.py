@@ -152,7 +152,7 @@ def slerp(a, b, t):
     b, cosine = (-b, -cosine) if cosine < 0 else (b, cosine)
     angle = np.arccos(min(cosine, 1.0))
     if angle < 1e-9:
-        return a
+        return a + (b - a) * t
     return (np.sin((1 - t) * angle) * a + np.sin(t * angle) * b) / np.sin(angle)
 
 
