@@ -103,8 +103,8 @@ impl Still {
     fn animated(&self, options: &[&str]) -> (Scene, Value) {
         let out = self.path("out.glb");
         let all = [&["animate", &self.file, "--motion-report", "-", "-o", &out], options].concat();
-        let report: Value = serde_json::from_str(&anthronet(&all, &[]).succeeds().out).unwrap();
-        (open_scene(&out).unwrap(), report["motions"][0].clone())
+        let report: Value = serde_json::from_str(&anthronet(&all, &[]).succeeds().out).expect("a report");
+        (open_scene(&out).expect("a character"), report["motions"][0].clone())
     }
 }
 
