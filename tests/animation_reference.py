@@ -4,7 +4,8 @@
 
 Checks the tracks and writes what viewers have to agree with: FILE.animated.json, a list of clips with the frames that
 were taken and their times; FILE.animated.f64, the positions of all skinned vertices, clip after clip, frame after
-frame, node after node, little endian; FILE.expected.json, numbers of joints, meshes and tracks.
+frame, node after node, little endian; FILE.expected.json, numbers of joints, meshes and tracks, and per clip where
+joints are at a time.
 """
 
 import json
@@ -13,18 +14,6 @@ import sys
 import numpy as np
 
 from glb import Cases, Glb
-
-
-def skinned(glb, node, world):
-    """Positions of a node's primitives one after the other (vertices, 3)."""
-    joints, joint_from_bind = glb.skin(node)
-    matrices = world[joints] @ joint_from_bind
-    parts = []
-    for primitive in glb.primitives(node):
-        slots, weights = glb.influences(primitive)
-        points = np.c_[glb.positions(primitive), np.ones(len(slots))]
-        parts.append(np.einsum("vk,vkij,vj->vi", weights, matrices[slots], points)[:, :3])
-    return np.vstack(parts)
 
 
 def check_tracks(cases, glb, animation):
@@ -62,7 +51,7 @@ def main(path):
                       "times": [f / rate for f in taken]})
         for frame in taken:
             world = glb.world(animated=glb.animated(animation, frame / rate))
-            positions.append(np.vstack([skinned(glb, node, world) for node in nodes]))
+            positions.append(np.vstack([glb.skinned(node, world) for node in nodes]))
         moved = float(np.abs(positions[-1] - positions[-len(taken)]).max())
         far = float(np.abs(positions[-2] - positions[-len(taken)]).max()) if len(taken) > 1 else 0.0
         far = max(moved, far)
@@ -70,9 +59,14 @@ def main(path):
     with open(f"{path}.animated.json", "w", encoding="utf-8") as file:
         json.dump(clips, file)
     joints, _ = glb.skin(nodes[0])
-    expected = [{"name": a["name"], "length": (c["frames"] - 1) / c["rate"],
-                 "tracks": len({channel["target"]["node"] for channel in a["channels"]})}
-                for a, c in zip(animations, clips)]
+    expected = []
+    for animation, clip in zip(animations, clips):
+        # A frame in the middle, where nothing is as at rest.
+        time = clip["times"][len(clip["times"]) // 2]
+        world = glb.world(animated=glb.animated(animation, time))
+        expected.append({"name": clip["name"], "length": (clip["frames"] - 1) / clip["rate"], "time": time,
+                         "tracks": len({channel["target"]["node"] for channel in animation["channels"]}),
+                         "places": {glb.nodes[j]["name"]: world[j, :3, 3].tolist() for j in joints}})
     with open(f"{path}.expected.json", "w", encoding="utf-8") as file:
         json.dump({"joints": len(joints), "meshes": len(nodes), "clips": expected}, file)
     np.vstack(positions).astype("<f8").tofile(f"{path}.animated.f64")

@@ -46,12 +46,7 @@ def main(folder, printed):
         ours = animation["extras"]["anthronet"]
         cases.case(f"C++: frames of {animation['name']}", ours["frames"] == int(frames), str(ours["frames"]))
         time = FRAME / ours["frames_per_second"]
-        world = glb.world(animated=glb.animated(animation, time))
-        joints, joint_from_bind = glb.skin(node)
-        slots, weights = glb.influences(primitive)
-        matrices = (world[joints] @ joint_from_bind)[slots]
-        points = np.c_[bind, np.ones(len(bind))]
-        moved.append(np.einsum("vk,vkij,vj->vi", weights, matrices, points)[:, :3])
+        moved.append(glb.skinned(node, glb.world(animated=glb.animated(animation, time))))
     skinned = np.fromfile(folder / "frame.f32", "<f4").reshape(-1, 3)
     cases.close_to("C++: the skinned frame is that of the file", skinned, moved[0], 1e-5)
     arms = float(np.abs(moved[1] - bind).max())

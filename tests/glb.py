@@ -74,6 +74,22 @@ class Glb:
         # Stored column by column.
         return skin["joints"], matrices.reshape(-1, 4, 4).transpose(0, 2, 1)
 
+    def skinned(self, node, world, least=0.0):
+        """Positions of a node's primitives one after the other (vertices, 3): linear blend skinning in double precision.
+
+        `world` are the matrices of all nodes. Weights below `least` are left out.
+        """
+        joints, joint_from_bind = self.skin(node)
+        matrices, parts = world[joints] @ joint_from_bind, []
+        for primitive in self.primitives(node):
+            slots, weights = self.influences(primitive)
+            if least > 0:
+                weights = np.where(weights < least, 0, weights)
+                weights /= weights.sum(1, keepdims=True)
+            points = np.c_[self.positions(primitive), np.ones(len(slots))]
+            parts.append(np.einsum("vk,vkij,vj->vi", weights, matrices[slots], points)[:, :3])
+        return np.vstack(parts)
+
     def animated(self, animation, time):
         """{node: {path: value}} of an animation at a time, seconds: linear, spherical for rotations."""
         values = {}
@@ -136,7 +152,7 @@ def slerp(a, b, t):
     b, cosine = (-b, -cosine) if cosine < 0 else (b, cosine)
     angle = np.arccos(min(cosine, 1.0))
     if angle < 1e-9:
-        return a
+        return a + (b - a) * t
     return (np.sin((1 - t) * angle) * a + np.sin(t * angle) * b) / np.sin(angle)
 
 

@@ -23,18 +23,6 @@ def quaternion(axis, degrees):
     return [*(axis * np.sin(half)), np.cos(half)]
 
 
-def skinned(glb, node, rotations):
-    """Positions of a node's primitives one after the other (vertices, 3)."""
-    joints, joint_from_bind = glb.skin(node)
-    world = glb.world(rotations)[joints] @ joint_from_bind
-    parts = []
-    for primitive in glb.primitives(node):
-        slots, weights = glb.influences(primitive)
-        points = np.c_[glb.positions(primitive), np.ones(len(slots))]
-        parts.append(np.einsum("vk,vkij,vj->vi", weights, world[slots], points)[:, :3])
-    return np.vstack(parts)
-
-
 def main(path):
     cases, glb = Cases(), Glb(path)
     nodes = glb.skinned_nodes()
@@ -68,18 +56,19 @@ def main(path):
     cases.case("joints of the test pose exist", not missing, f"{missing} not among {names}")
     pose = {name: quaternion(*turn) for name, turn in POSE.items() if name in names}
 
-    rest = skinned(glb, body, {})
+    rest = glb.skinned(body, bind)
     cases.close_to("the rest pose is the bind pose", rest, np.vstack([glb.positions(p) for p in glb.primitives(body)]), 1e-5)
     if "lowerarm_l" in pose:
-        moved = np.linalg.norm(skinned(glb, body, {"lowerarm_l": pose["lowerarm_l"]}) - rest, axis=1) > 1e-3
+        moved = np.linalg.norm(glb.skinned(body, glb.world({"lowerarm_l": pose["lowerarm_l"]})) - rest, axis=1) > 1e-3
         cases.case("the left forearm moves left vertices alone", moved.any() and (rest[moved, 0] > 0).all(),
                    f"{int(moved.sum())} moved, smallest x {rest[moved, 0].min() if moved.any() else None}")
 
     # The pose once more as a change in model space, for a program whose bones have axes of their own.
-    change = glb.world(pose)[joints] @ np.linalg.inv(bind[joints])
+    posed = glb.world(pose)
+    change = posed[joints] @ np.linalg.inv(bind[joints])
     with open(f"{path}.posed.json", "w", encoding="utf-8") as file:
         json.dump({"rotations": pose, "change": dict(zip(names, change.tolist()))}, file)
-    np.vstack([skinned(glb, node, pose) for node in nodes]).astype("<f8").tofile(f"{path}.posed.f64")
+    np.vstack([glb.skinned(node, posed) for node in nodes]).astype("<f8").tofile(f"{path}.posed.f64")
     cases.exit()
 
 

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from glb import Cases, Glb, rotation
+from glb import Cases, Glb
 
 TOLERANCE = 1e-5  # metres; both files hold single precision
 FRAMES = 5
@@ -21,71 +21,31 @@ BLENDER_FROM_FILE = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 
 
 class Reference:
-    """The first animation of a .glb: skinned vertices at its key times."""
+    """One animation of a .glb: skinned vertices at its key times."""
 
-    def __init__(self, path):
+    def __init__(self, path, place=0):
         self.glb = Glb(path)
-        animation = self.glb.json["animations"][0]
-        self.name = animation.get("name")
-        self.tracks, times = {}, set()
-        for channel in animation["channels"]:
-            sampler = animation["samplers"][channel["sampler"]]
-            at = self.glb.accessor(sampler["input"]).astype(float)
-            assert sampler.get("interpolation", "LINEAR") == "LINEAR"
-            target = channel["target"]
-            self.tracks[target["node"], target["path"]] = at, self.glb.accessor(sampler["output"]).astype(float)
-            times.update(at.tolist())
-        self.times = np.array(sorted(times))
-
-    def local(self, node, time):
-        """parent_from_node at a key time; what has no track, or none at this time, stands between its keys."""
-        rest = self.glb.nodes[node]
-        parts = {"translation": rest.get("translation", (0, 0, 0)), "rotation": rest.get("rotation", (0, 0, 0, 1))}
-        for part in parts:
-            if (node, part) in self.tracks:
-                at, values = self.tracks[node, part]
-                i = int(np.clip(np.searchsorted(at, time + 1e-9) - 1, 0, len(at) - 1))
-                share = 0 if i + 1 == len(at) else (time - at[i]) / (at[i + 1] - at[i])
-                parts[part] = values[i] if share < 1e-6 else values[i] * (1 - share) + values[i + 1] * share
-        matrix = np.eye(4)
-        matrix[:3, :3] = rotation(np.array(parts["rotation"]) / np.linalg.norm(parts["rotation"]))
-        matrix[:3, 3] = parts["translation"]
-        return matrix
-
-    def world(self, time):
-        done = {}
-
-        def at(node):
-            if node not in done:
-                above = at(self.glb.parent[node]) if node in self.glb.parent else np.eye(4)
-                done[node] = above @ self.local(node, time)
-            return done[node]
-
-        return np.array([at(i) for i in range(len(self.glb.nodes))])
+        self.animation = self.glb.json["animations"][place]
+        self.name = self.animation.get("name")
+        samplers = [self.animation["samplers"][channel["sampler"]] for channel in self.animation["channels"]]
+        self.rate = self.animation["extras"]["anthronet"]["frames_per_second"]
+        self.times = np.unique(np.concatenate([self.glb.accessor(s["input"]).astype(float) for s in samplers]))
 
     def skinned(self, time, least=0.0):
         """By mesh: positions (vertices, 3), with the copies at texture seams after the model's own vertices.
 
         Weights below `least` are left out.
         """
-        world, meshes = self.world(time), {}
-        for node in self.glb.skinned_nodes():
-            joints, joint_from_bind = self.glb.skin(node)
-            matrices, parts = world[joints] @ joint_from_bind, []
-            for primitive in self.glb.primitives(node):
-                slots, weights = self.glb.influences(primitive)
-                weights = np.where(weights < least, 0, weights)
-                weights /= weights.sum(1, keepdims=True)
-                points = np.c_[self.glb.positions(primitive), np.ones(len(slots))]
-                parts.append(np.einsum("vk,vkij,vj->vi", weights, matrices[slots], points)[:, :3])
-            meshes[self.glb.nodes[node]["name"]] = np.vstack(parts)
-        return meshes
+        world = self.glb.world(animated=self.glb.animated(self.animation, time))
+        nodes = self.glb.skinned_nodes()
+        return {self.glb.nodes[node]["name"]: self.glb.skinned(node, world, least) for node in nodes}
 
 
-def pick(times, rate):
-    """Some key times and their frames: a .glb tells seconds in single precision, and a key is a whole frame."""
+def pick(reference, codes):
+    """Some key times and their time codes: a .glb tells seconds in single precision, and a key is a whole frame."""
+    times = reference.times
     chosen = [times[i * (len(times) - 1) // (FRAMES - 1)] for i in range(FRAMES)]
-    return [(time, round(time * rate)) for time in chosen]
+    return [(time, round(time * reference.rate) * codes / reference.rate) for time in chosen]
 
 
 def valid(cases, stage):
@@ -112,30 +72,37 @@ def stage_metadata(cases, stage, reference):
     return rate
 
 
-def skins(cases, stage, reference, rate):
-    """UsdSkel's own skinning; the points of all meshes by time, for the extents."""
+def skins(cases, stage, reference, rate, prim=None):
+    """UsdSkel's own skinning, and the extents, which are those of the first animation.
+
+    `prim` is a SkelAnimation that is to play instead of the one that the skeleton is bound to.
+    """
     from pxr import Usd, UsdGeom, UsdSkel
 
-    cache, root = UsdSkel.Cache(), UsdSkel.Root(stage.GetDefaultPrim())
+    root, title = UsdSkel.Root(stage.GetDefaultPrim()), f"USD: {reference.name}"
+    if prim:
+        skeleton = next(p for p in stage.Traverse() if p.IsA(UsdSkel.Skeleton))
+        UsdSkel.BindingAPI(skeleton).GetAnimationSourceRel().SetTargets([prim.GetPath()])
+    cache = UsdSkel.Cache()
     cache.Populate(root, Usd.TraverseInstanceProxies())
     bindings = cache.ComputeSkelBindings(root, Usd.TraverseInstanceProxies())
-    cases.case("USD: one skeleton", len(bindings) == 1, f"{len(bindings)} skeletons")
+    cases.case(f"{title}: one skeleton", len(bindings) == 1, f"{len(bindings)} skeletons")
     skeleton = cache.GetSkelQuery(bindings[0].GetSkeleton())
     animation = skeleton.GetAnimQuery()
-    cases.case("USD: skeleton and animation are valid", bool(skeleton) and bool(animation) and skeleton.HasBindPose()
+    cases.case(f"{title}: skeleton and animation are valid", bool(skeleton) and bool(animation) and skeleton.HasBindPose()
                and skeleton.HasRestPose(), skeleton)
-    cases.case("USD: joints of animation and skeleton are one list",
+    cases.case(f"{title}: joints of animation and skeleton are one list",
                list(animation.GetJointOrder()) == list(skeleton.GetJointOrder()))
 
     targets = bindings[0].GetSkinningTargets()
     names = [t.GetPrim().GetDisplayName() or t.GetPrim().GetName() for t in targets]
     at_rest = reference.skinned(reference.times[0])
-    cases.case("USD: all meshes are skinned", sorted(names) == sorted(at_rest), sorted(set(names) ^ set(at_rest)))
+    cases.case(f"{title}: all meshes are skinned", sorted(names) == sorted(at_rest), sorted(set(names) ^ set(at_rest)))
     worst = {name: 0.0 for name in names}
     extents = UsdGeom.Boundable(root.GetPrim()).GetExtentAttr()
     spare, inside = 0.0, True
-    for time, frame in pick(reference.times, rate):
-        code = Usd.TimeCode(frame)
+    for time, code in pick(reference, rate):
+        code = Usd.TimeCode(code)
         transforms, goal = skeleton.ComputeSkinningTransforms(code), reference.skinned(time)
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for name, target in zip(names, targets):
@@ -150,8 +117,22 @@ def skins(cases, stage, reference, rate):
         inside &= bool((extent[0] <= low).all() and (extent[1] >= high).all())
         spare = max(spare, float((extent[1] - extent[0]).max() / (high - low).max()))
     for name, off in worst.items():
-        cases.case(f"USD: skinned points of {name} (off by {off:.1e} m)", off <= TOLERANCE)
-    cases.case(f"USD: the extent holds the character (at most {spare:.2f} times its size)", inside and spare < 2)
+        cases.case(f"{title}: skinned points of {name} (off by {off:.1e} m)", off <= TOLERANCE)
+    if prim is None:
+        cases.case(f"USD: the extent holds the character (at most {spare:.2f} times its size)", inside and spare < 2)
+
+
+def others(cases, stage, path_of_reference, rate):
+    """Every animation after the first, which nothing is bound to, played in its place."""
+    from pxr import UsdSkel
+
+    names = [animation["name"] for animation in Glb(path_of_reference).json["animations"]]
+    prims = [prim for prim in stage.Traverse() if prim.IsA(UsdSkel.Animation)]
+    found = {prim.GetDisplayName() or prim.GetName(): prim for prim in prims}
+    cases.case(f"USD: {len(names)} animations", sorted(found) == sorted(names), f"{sorted(found)} for {names}")
+    for place, name in enumerate(names[1:], 1):
+        if name in found:
+            skins(cases, stage, Reference(path_of_reference, place), rate, found[name])
 
 
 def surfaces(cases, stage):
@@ -192,8 +173,8 @@ def blender(cases, path, reference, rate):
     at_rest = reference.skinned(reference.times[0])
     cases.case("Blender: all skinned meshes", sorted(meshes) == sorted(at_rest), f"{sorted(meshes)} for {sorted(at_rest)}")
     worst = {name: 0.0 for name in meshes}
-    for time, frame in pick(reference.times, rate):
-        scene.frame_set(frame)
+    for time, frame in pick(reference, rate):
+        scene.frame_set(round(frame))
         graph, goal = bpy.context.evaluated_depsgraph_get(), reference.skinned(time, BLENDER_LEAST_WEIGHT)
         for name, thing in meshes.items():
             owner = thing.evaluated_get(graph)
@@ -210,8 +191,8 @@ def blender(cases, path, reference, rate):
         cases.case(f"Blender: {name} plays (off by {off:.1e} m)", off <= TOLERANCE)
 
 
-def main(path, reference, *options):
-    cases, reference = Cases(), Reference(reference)
+def main(path, path_of_reference, *options):
+    cases, reference = Cases(), Reference(path_of_reference)
     # Blender carries a USD of its own under the same name, so a process has one or the other.
     if "--blender" in options:
         blender(cases, path, reference, (len(reference.times) - 1) / reference.times[-1])
@@ -226,6 +207,7 @@ def main(path, reference, *options):
     valid(cases, stage)
     rate = stage_metadata(cases, stage, reference)
     skins(cases, stage, reference, rate)
+    others(cases, stage, path_of_reference, rate)
     surfaces(cases, stage)
     cases.exit()
 

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::backend;
 use crate::failure::{Failure, Result};
-use crate::generate::CHARACTER_ENDINGS;
+use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
 use crate::motion::MotionArguments;
 use crate::request::check_ending;
 
@@ -30,6 +30,10 @@ pub(crate) struct Arguments {
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 
+    /// What the joints are called; left out, as in the input.
+    #[arg(long)]
+    joint_names: Option<JointNamesChoice>,
+
     /// Write a .glb or .gltf with EXT_meshopt_compression.
     #[arg(long)]
     compress: bool,
@@ -42,7 +46,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         return Err(Failure::usage("--clip: expected at least one motion, got none"));
     }
     let mut scene = backend::motion::open(&arguments.input)?;
-    let rest = backend::motion::rest_pose(&scene)?;
-    backend::motion::animate(&mut scene, rest, &arguments.motion)?;
+    if let Some(names) = arguments.joint_names {
+        backend::motion::rename_joints(&mut scene, names);
+    }
+    backend::motion::animate(&mut scene, &arguments.motion)?;
     backend::write_scene(&scene, &arguments.output, arguments.compress)
 }

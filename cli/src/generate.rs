@@ -132,7 +132,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     };
     let mut scene = person.scene(&choice)?;
-    backend::motion::animate(&mut scene, person.rest_pose()?, &arguments.motion)?;
+    backend::motion::animate(&mut scene, &arguments.motion)?;
     backend::write_scene(&scene, &arguments.output, arguments.compress)?;
     if let Some(path) = &arguments.report {
         backend::write_or_print(path, &(person.report_json() + "\n"))?;

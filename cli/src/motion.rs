@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::backend::motion::BUILTIN;
 use crate::failure::Failure;
 use crate::request::ending;
 
@@ -63,11 +64,11 @@ pub(crate) struct MotionArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) mapping: Option<PathBuf>,
 
-    /// Frames per second of the written motion; left out, those of the motion file.
+    /// Frames per second of the written motion; left out, those of the motion file, 30 for built-in ones.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) fps: Option<f64>,
 
-    /// Where the fingers' pose comes from [default: source].
+    /// Where the fingers' pose comes from, for motion files [default: source].
     #[arg(long)]
     pub(crate) fingers: Option<FingersChoice>,
 
@@ -75,15 +76,15 @@ pub(crate) struct MotionArguments {
     #[arg(long)]
     pub(crate) in_place: bool,
 
-    /// Make the end meet the beginning.
+    /// Make the end meet the beginning; built-in motions do already.
     #[arg(long = "loop")]
     pub(crate) looped: bool,
 
-    /// Leave feet where the motion puts them: they may slide and sink.
+    /// Leave feet where the motion file puts them: they may slide and sink.
     #[arg(long)]
     pub(crate) no_feet: bool,
 
-    /// Let joints turn further than people's do.
+    /// Let joints turn further than people's do where the motion file does.
     #[arg(long)]
     pub(crate) no_limits: bool,
 
@@ -104,10 +105,49 @@ impl MotionArguments {
                 format!("--clip: a .{ending} holds no motion, expected .glb .gltf .usda .usdc or .usdz");
             return Err(Failure::usage(message));
         }
-        if self.clips.is_empty() && self.motion_report.is_some() {
-            return Err(Failure::usage("--motion-report: expected together with --clip"));
+        if self.clips.is_empty() {
+            let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);
+            return match given {
+                Some((option, _)) => Err(Failure::usage(format!("{option}: expected together with --clip"))),
+                None => Ok(()),
+            };
+        }
+        if self.clips.iter().all(|clip| BUILTIN.contains(&clip.as_str())) {
+            let given = self.of_files().into_iter().find(|(_, given)| *given);
+            if let Some((option, _)) = given {
+                let clips = self.clips.join(", ");
+                let message = format!(
+                    "{option}: says how a motion file comes onto a body, expected one of those with --clip, got the built-in \
+                     {clips}"
+                );
+                return Err(Failure::usage(message));
+            }
         }
         Ok(())
+    }
+
+    /// Options that mean something for motion files alone, and whether they were given. Built-in clips are made for the
+    /// body, with feet on the floor, joints within their limits and hands relaxed.
+    fn of_files(&self) -> [(&'static str, bool); 7] {
+        [
+            ("--clip-unit", self.clip_unit.is_some()),
+            ("--clip-up", self.clip_up.is_some()),
+            ("--clip-fps", self.clip_fps.is_some()),
+            ("--mapping", self.mapping.is_some()),
+            ("--fingers", self.fingers.is_some()),
+            ("--no-feet", self.no_feet),
+            ("--no-limits", self.no_limits),
+        ]
+    }
+
+    /// Options that mean something for every motion; built-in clips loop already.
+    fn of_all(&self) -> [(&'static str, bool); 4] {
+        [
+            ("--fps", self.fps.is_some()),
+            ("--in-place", self.in_place),
+            ("--loop", self.looped),
+            ("--motion-report", self.motion_report.is_some()),
+        ]
     }
 }
 

@@ -4,53 +4,22 @@ mod common;
 
 use std::fs;
 
+use anthronet::clip::Clip;
+use anthronet::export::Scene;
+use anthronet::import::scene::open_scene;
+use anthronet::rig::humanoid::{JointNames, renamed};
 use common::{anthronet, files_in, folder, write};
 use serde_json::Value;
+use tempfile::TempDir;
 
-/// A person of a few joints in centimetres, who bends a knee and has a tail.
-fn bvh() -> String {
-    let joint = |name: &str, offset: &str, inside: &str| {
-        format!("JOINT {name}\n{{\nOFFSET {offset}\nCHANNELS 3 Zrotation Xrotation Yrotation\n{inside}\n}}\n")
-    };
-    let end = |offset: &str| format!("End Site\n{{\nOFFSET {offset}\n}}");
-    let leg = |side: &str, x: i32| {
-        let toe = joint(&format!("{side}ToeBase"), "0 -6 12", &end("0 0 6"));
-        let foot = joint(&format!("{side}Foot"), "0 -42 0", &toe);
-        let knee = joint(&format!("{side}Leg"), "0 -42 0", &foot);
-        joint(&format!("{side}UpLeg"), &format!("{x} -4 0"), &knee)
-    };
-    let arm = |side: &str, x: i32| {
-        let hand =
-            joint(&format!("{side}Hand"), &format!("{} 0 0", 25 * x), &end(&format!("{} 0 0", 15 * x)));
-        let elbow = joint(&format!("{side}ForeArm"), &format!("{} 0 0", 28 * x), &hand);
-        let upper = joint(&format!("{side}Arm"), &format!("{} 0 0", 12 * x), &elbow);
-        joint(&format!("{side}Shoulder"), &format!("{} 40 0", 4 * x), &upper)
-    };
-    let head = joint("Head", "0 10 0", &end("0 20 0"));
-    let neck = joint("Neck", "0 45 0", &head);
-    let spine = joint("Spine", "0 10 0", &[neck, arm("Left", 1), arm("Right", -1)].concat());
-    let tail = joint("Tail", "0 0 -10", &end("0 0 -20"));
-    let tree = [leg("Left", 9), leg("Right", -9), spine, tail].concat();
-    let joints = tree.matches("CHANNELS").count();
-    let knee = 2; // hips, LeftUpLeg, LeftLeg
-    let frames: String = (0..4)
-        .map(|frame| {
-            let angles =
-                (0..=joints).map(|j| if j == knee { format!("0 {} 0", 20 * frame) } else { "0 0 0".into() });
-            format!("0 96 {} {}\n", 3 * frame, angles.collect::<Vec<_>>().join(" "))
-        })
-        .collect();
-    format!(
-        "HIERARCHY\nROOT Hips\n{{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation \
-         Yrotation\n{tree}}}\nMOTION\nFrames: 4\nFrame Time: 0.04\n{frames}"
-    )
-}
+/// A person of a few joints in centimetres, 25 frames a second, who bends a knee and has a tail.
+const BVH: &str = include_str!("../../tests/data/bend.bvh");
 
 #[test]
 fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let clip = write(&folder, "bend.bvh", bvh().as_bytes());
+    let clip = write(&folder, "bend.bvh", BVH.as_bytes());
     let (glb, usdc, back, moves) = (path("a.glb"), path("a.usdc"), path("b.glb"), path("c.usda"));
     let run = anthronet(
         &[
@@ -105,12 +74,156 @@ fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
     assert_eq!(files_in(folder.path()), ["a.glb", "a.usdc", "b.glb", "bend.bvh", "c.usda"]);
 }
 
+/// A person without motion, in a folder with the motion of others.
+struct Still {
+    folder: TempDir,
+    file: String,
+    clip: String,
+}
+
+impl Still {
+    fn new() -> Self {
+        let folder = folder();
+        let clip = write(&folder, "bend.bvh", BVH.as_bytes());
+        let file = folder.path().join("still.glb").to_string_lossy().into_owned();
+        anthronet(&["generate", "--sex", "female", "--lod", "3", "-o", &file], &[]).succeeds();
+        Self { folder, file, clip }
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_string_lossy().into_owned()
+    }
+
+    /// `anthronet animate` with these options: the scene that it wrote, and its report of the first motion.
+    fn animated(&self, options: &[&str]) -> (Scene, Value) {
+        let out = self.path("out.glb");
+        let all = [&["animate", &self.file, "--motion-report", "-", "-o", &out], options].concat();
+        let report: Value = serde_json::from_str(&anthronet(&all, &[]).succeeds().out).expect("a report");
+        (open_scene(&out).expect("a character"), report["motions"][0].clone())
+    }
+}
+
+fn clip_names(scene: &Scene) -> Vec<&str> {
+    scene.clips.iter().map(Clip::name).collect()
+}
+
+#[test]
+fn motion_comes_onto_a_person_and_onto_the_file_of_it_alike() {
+    let still = Still::new();
+    let [once, then, first] = ["once.glb", "then.glb", "first.usda"].map(|name| still.path(name));
+    let made = ["generate", "--sex", "female", "--lod", "3"];
+    let clips = ["--clip", "walk", "--clip", &still.clip];
+    anthronet(&[&made[..], &clips, &["-o", &once]].concat(), &[]).succeeds();
+    anthronet(&[&["animate", &still.file][..], &clips, &["-o", &then]].concat(), &[]).succeeds();
+    assert!(fs::read(&once).unwrap() == fs::read(&then).unwrap(), "other bytes");
+
+    // The same through USD: the skeleton with its animations; texture coordinates turn over and are rounded there.
+    let [once, then] = ["once.usda", "then.usda"].map(|name| still.path(name));
+    anthronet(&[&made[..], &["-o", &first]].concat(), &[]).succeeds();
+    anthronet(&[&made[..], &clips, &["-o", &once]].concat(), &[]).succeeds();
+    anthronet(&[&["animate", &first][..], &clips, &["-o", &then]].concat(), &[]).succeeds();
+    let [a, b] = [once, then].map(|file| {
+        let text = fs::read_to_string(file).unwrap();
+        let start = text.find("def Skeleton").unwrap();
+        let end = text[start..].find("def Mesh").unwrap();
+        text[start..start + end].to_owned()
+    });
+    assert!(a.matches("def SkelAnimation").count() == 2 && a == b, "other animations");
+}
+
+#[test]
+fn clips_of_one_name_are_numbered_each_time_and_names_become_printable() {
+    let mut still = Still::new();
+    let odd = write(&still.folder, "be\tnd.bvh", BVH.as_bytes());
+    let (scene, _) =
+        still.animated(&["--clip", "idle", "--clip", "idle", "--clip", &odd, "--clip", &still.clip]);
+    assert_eq!(clip_names(&scene), ["idle", "idle 2", "bend", "bend 2"]);
+    still.file = still.path("out.glb");
+    let (scene, _) = still.animated(&["--clip", "idle", "--clip", &odd]);
+    assert_eq!(clip_names(&scene), ["idle", "idle 2", "bend", "bend 2", "idle 3", "bend 3"]);
+}
+
+#[test]
+fn every_option_of_motion_does_what_it_says() {
+    let still = Still::new();
+    let clip = ["--clip", still.clip.as_str()];
+    let with = |options: &[&str]| still.animated(&[&clip[..], options].concat());
+    let way = |scene: &Scene| {
+        let clip = &scene.clips[0];
+        let pelvis = clip.rest().find("pelvis").unwrap();
+        let at = |frame: usize| clip.pose(frame).model_from_joints(clip.rest().parents())[pelvis].translation;
+        (at(clip.frame_count() - 1) - at(0)).with_y(0.0).length()
+    };
+    let (plain, report) = with(&[]);
+    assert_eq!((plain.clips[0].frame_count(), plain.clips[0].frames_per_second()), (4, 25.0));
+    assert!(way(&plain) > 0.05 && report["onto"]["clips"][0]["feet"].is_object());
+
+    let (closed, _) = with(&["--loop"]);
+    let last = closed.clips[0].frame_count() - 1;
+    for (a, b) in closed.clips[0].rotations(0).iter().zip(closed.clips[0].rotations(last)) {
+        // Rounding of f32; of two signs both are the same turn.
+        assert!(a.dot(*b).abs() > 1.0 - 1e-6);
+    }
+    assert!(way(&with(&["--in-place"]).0) < 1e-5);
+    let (slides, report) = with(&["--no-feet"]);
+    assert!(report["onto"]["clips"][0]["feet"].is_null() && slides.clips != plain.clips);
+
+    let finger = plain.clips[0].rest().find("index_02_l").unwrap();
+    let bent = |scene: &Scene| {
+        let clip = &scene.clips[0];
+        clip.rotations(0)[finger].angle_between(clip.rest().pose().locals[finger].rotation)
+    };
+    assert!(bent(&plain) > 0.1 && bent(&with(&["--fingers", "relaxed"]).0) > 0.1);
+    assert!(bent(&with(&["--fingers", "rest"]).0) < 1e-3);
+
+    let (_, report) = with(&["--clip-unit", "in"]);
+    assert_eq!([&report["file"]["unit"], &report["file"]["unit_found"]], ["in", "asked"]);
+    let (_, report) = with(&["--clip-up", "z"]);
+    assert_eq!([&report["file"]["up"], &report["file"]["up_found"]], ["Z", "asked"]);
+    let (fast, report) = with(&["--clip-fps", "50"]);
+    assert_eq!((fast.clips[0].frames_per_second(), &report["file"]["rate_found"]), (50.0, &"asked".into()));
+    let (fine, _) = with(&["--fps", "50"]);
+    assert_eq!((fine.clips[0].frames_per_second(), fine.clips[0].frame_count()), (50.0, 7));
+
+    let mapping = write(&still.folder, "map.json", br#"{"Tail": "jaw", "Neck": null}"#);
+    let (_, report) = with(&["--mapping", &mapping]);
+    let matched = report["onto"]["joints"]["matched"].as_array().unwrap();
+    assert!(matched.iter().any(|m| m["source"] == "Tail" && m["target"] == "jaw" && m["by"] == "mapping"));
+    assert!(matched.iter().all(|m| m["source"] != "Neck"));
+
+    let backwards = write(&still.folder, "back.bvh", BVH.replace("0 60 0", "0 -60 0").as_bytes());
+    let beyond = |options: &[&str]| {
+        let (_, report) = still.animated(&[&["--clip", backwards.as_str()], options].concat());
+        report["onto"]["clips"][0]["beyond_limits"].as_f64().unwrap()
+    };
+    assert!(beyond(&["--no-feet"]) < 5.0 && beyond(&["--no-feet", "--no-limits"]) > 30.0);
+}
+
+#[test]
+fn joints_have_the_names_that_are_asked_for() {
+    let still = Still::new();
+    for names in JointNames::ALL {
+        let (scene, _) = still.animated(&["--clip", "idle", "--joint-names", names.name()]);
+        for joint in ["pelvis", "lowerarm_l", "thumb_02_r", "ball_l"] {
+            let expected = renamed(joint, names);
+            assert!(scene.joints.iter().any(|j| j.name == expected), "{}: {expected}", names.name());
+        }
+        // What was written is known again under every name: motion comes onto it, and it is measured.
+        let (named, again) = (still.path("out.glb"), still.path("again.glb"));
+        anthronet(&["animate", &named, "--clip", "wave", "--joint-names", "native", "-o", &again], &[])
+            .succeeds();
+        let scene = open_scene(&again).unwrap();
+        assert_eq!(clip_names(&scene), ["idle", "wave"]);
+        assert!(scene.joints.iter().any(|j| j.name == "thumb_02_r"));
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused_and_nothing_is_left() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let cut = write(&folder, "cut.bvh", &bvh().as_bytes()[..900]);
-    let whole = write(&folder, "whole.bvh", bvh().as_bytes());
+    let cut = write(&folder, "cut.bvh", &BVH.as_bytes()[..900]);
+    let whole = write(&folder, "whole.bvh", BVH.as_bytes());
     let map = write(&folder, "map.json", br#"{"Hip": "pelvis"}"#);
     let out = path("a.glb");
     let generate = |more: &[&str], code, words: &[&str]| {
@@ -122,6 +235,20 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
     generate(&["--clip", &whole, "--mapping", &map], 1, &["whole.bvh", "`Hip`", "did you mean `Hips`"]);
     generate(&["--clip", "walk", "--fps", "0"], 2, &["1 to 240 frames"]);
     generate(&["--motion-report", "-"], 2, &["--motion-report", "--clip"]);
+    generate(&["--in-place"], 2, &["--in-place", "--clip"]);
+    for option in [
+        &["--no-feet"][..],
+        &["--no-limits"],
+        &["--fingers", "rest"],
+        &["--mapping", &map],
+        &["--clip-unit", "m"],
+        &["--clip-up", "z"],
+        &["--clip-fps", "50"],
+    ] {
+        generate(option, 2, &[option[0], "together with --clip"]);
+        let built_in = [&["--clip", "walk", "--clip", "idle"], option].concat();
+        generate(&built_in, 2, &[option[0], "expected one of those with --clip", "walk, idle"]);
+    }
     anthronet(&["generate", "--clip", "walk", "-o", &path("a.vrm")], &[]).fails(2, &[".vrm holds no motion"]);
     anthronet(&["animate", &whole, "--clip", "walk", "-o", &out], &[])
         .fails(1, &["whole.bvh", "unknown ending"]);

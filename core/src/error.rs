@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 /// What the library's fallible functions return.
 pub type Result<T> = std::result::Result<T, Error>;
 
+/// What readers of files return among themselves: what is wrong, and where within the file. Who knows the file's path
+/// puts it in front with [`Error::file`].
+pub(crate) type Outcome<T> = std::result::Result<T, String>;
+
 /// Everything that can go wrong, grouped by what the caller can do about it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -1,26 +1,12 @@
 //! Reads the motion clips beside the repository: people of ordinary size who stand upright on a floor.
 
-use std::path::PathBuf;
+mod common;
 
 use anthronet::clip::{self, ReadOptions};
 
-/// The folder of shared data, where there is one.
-fn clips() -> Option<Vec<PathBuf>> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared");
-    let shared = std::env::var_os("ANTHRONET_SHARED").map_or_else(|| beside.into(), PathBuf::from);
-    let mut files: Vec<PathBuf> =
-        std::fs::read_dir(shared.join("data/clips")).ok()?.flatten().map(|entry| entry.path()).collect();
-    files.sort();
-    Some(files)
-}
-
 #[test]
 fn every_clip_is_a_person_on_a_floor() {
-    let Some(files) = clips() else {
-        println!("skipped: there is no folder shared/data/clips beside the repository");
-        return;
-    };
-    for path in files {
+    for path in common::clips("clips of people on a floor") {
         let motion = clip::read(&path, &ReadOptions::default()).unwrap();
         let report = &motion.report;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -61,10 +47,7 @@ fn every_clip_is_a_person_on_a_floor() {
 
 #[test]
 fn damaged_clips_do_no_harm() {
-    let Some(files) = clips() else {
-        println!("skipped: there is no folder shared/data/clips beside the repository");
-        return;
-    };
+    let files = common::clips("damaged clips");
     for path in files.iter().filter(|path| path.extension().is_some_and(|e| e == "fbx")) {
         let bytes = std::fs::read(path).unwrap();
         for i in 0..40 {

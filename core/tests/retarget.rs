@@ -1,6 +1,7 @@
 //! Real clips on a body: limbs point where the source's point. Skipped where the clips are not.
 
-use std::path::PathBuf;
+mod common;
+
 use std::sync::Arc;
 
 use anthronet::clip::{JointMap, ReadOptions, RetargetOptions, Retargeter, direction_error, read};
@@ -9,21 +10,10 @@ use anthronet::measure::Sex;
 use anthronet::model::Model;
 use anthronet::pose::RestPose;
 
-fn clips() -> Vec<PathBuf> {
-    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let shared = std::env::var_os("ANTHRONET_SHARED").map_or_else(beside, PathBuf::from);
-    let Ok(folder) = std::fs::read_dir(shared.join("data/clips")) else { return Vec::new() };
-    let mut paths: Vec<PathBuf> = folder.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.retain(|path| path.extension().is_some_and(|e| e == "bvh" || e == "fbx"));
-    paths.sort();
-    paths
-}
-
 #[test]
 fn limbs_of_real_clips_point_where_the_sources_point() {
-    let paths = clips();
+    let paths = common::clips("limbs of real clips");
     if paths.is_empty() {
-        println!("skipped: no clips in shared/data/clips");
         return;
     }
     let request = Request { sex: Some(Sex::Female), ..Request::default() };

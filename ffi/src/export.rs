@@ -87,7 +87,7 @@ fn scene(
     let gltf = GltfOptions { compress: flag(asked.compress, "compress")? };
     let mut scene = Scene::from_body(&body.body, &looks)?;
     for clip in list(asked.clips, asked.clip_count, "clips")? {
-        scene.clips.push(read(*clip, "clip")?.0.clone());
+        scene.add_clip(read(*clip, "clip")?.0.clone());
     }
     Ok((scene, WriteOptions { gltf, ..WriteOptions::default() }))
 }

@@ -1,7 +1,80 @@
-//! `cargo xtask bench`: the library's benchmarks.
+//! `cargo xtask bench`: the library's benchmarks, and what is promised of motion: skinning beside numpy, PyTorch and a copy,
+//! and whole runs of the released command. Each promise is printed with its bar, what was measured and whether it is met.
 
+use crate::environment;
+use crate::requests::{self, README};
 use crate::tools::{self, Outcome, cargo};
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+/// Frames of the motion that is written, and how often: the least time counts, as what else runs can only add to it.
+const FRAMES: usize = 300;
+const RUNS: usize = 7;
+/// Endings and the most seconds from the start of the command to its end.
+const FILES: [(&str, f64); 2] = [("glb", 1.0), ("usdc", 3.0)];
 
 pub(crate) fn run(rest: &[String]) -> Outcome {
-    tools::run(cargo("bench").args(["--package", "anthronet"]).args(rest))
+    tools::run(cargo("bench").args(["--package", "anthronet"]).args(rest))?;
+    // Who asks for some of the benchmarks wants those alone.
+    if !rest.is_empty() {
+        return Ok(());
+    }
+    let mut missed = Vec::new();
+    missed.extend(skinning().err());
+    missed.extend(files().err());
+    if missed.is_empty() { Ok(()) } else { Err(missed.join("\nxtask: ")) }
+}
+
+fn skinning() -> Outcome {
+    tools::run(cargo("build").args(["--release", "--package", "anthronet", "--example", "skin_dump"]))?;
+    let program = tools::target().join("release/examples/skin_dump");
+    let program = program.with_extension(std::env::consts::EXE_EXTENSION);
+    let mut command = Command::new(environment::bench_python()?);
+    command.arg(tools::root().join("tests/skin_speed.py")).arg(program);
+    tools::run(&mut command)
+}
+
+/// A motion of others onto a person of level of detail 0, from the command's start to its end.
+fn files() -> Outcome {
+    let anthronet = tools::command_line()?;
+    let folder = tools::target().join("bench");
+    let clip = folder.join("frames.bvh");
+    tools::write(&clip, &longer(&tools::read(&tools::root().join(requests::BVH))?)?)?;
+    let mut missed = Vec::new();
+    for (ending, most) in FILES {
+        let out = folder.join(format!("frames.{ending}"));
+        let least = (0..RUNS).map(|_| seconds(&anthronet, &clip, &out)).collect::<Outcome<Vec<f64>>>()?;
+        let least = least.into_iter().fold(f64::INFINITY, f64::min);
+        let bytes = std::fs::metadata(&out).map_err(|e| format!("{}: {e}", out.display()))?.len();
+        let met = if least <= most { "met" } else { "MISSED" };
+        println!(
+            "{FRAMES} frames on level 0 to .{ending}, whole process: bar {most:.1} s, measured {least:.3} s ({:.1} MB), {met}",
+            bytes as f64 / 1e6
+        );
+        missed.extend(
+            (least > most).then(|| format!(".{ending} took {least:.3} s, at most {most} s expected")),
+        );
+    }
+    if missed.is_empty() { Ok(()) } else { Err(missed.join("; ")) }
+}
+
+fn seconds(anthronet: &Path, clip: &Path, out: &Path) -> Outcome<f64> {
+    let mut command = Command::new(anthronet);
+    command.arg("generate").args(README).arg("--clip").arg(clip).arg("-o").arg(out);
+    let start = Instant::now();
+    tools::output(&mut command)?;
+    Ok(start.elapsed().as_secs_f64())
+}
+
+/// The motion file, its frames over and over.
+fn longer(bvh: &str) -> Outcome<String> {
+    let cannot = || format!("{}: expected MOTION, Frames, Frame Time and frames", requests::BVH);
+    let (head, motion) = bvh.split_once("MOTION\n").ok_or_else(cannot)?;
+    let mut lines = motion.lines();
+    let (_, time) = (lines.next().ok_or_else(cannot)?, lines.next().ok_or_else(cannot)?);
+    let frames: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+    let all: Vec<&str> =
+        frames.iter().copied().cycle().take(if frames.is_empty() { 0 } else { FRAMES }).collect();
+    Ok(format!("{head}MOTION\nFrames: {}\n{time}\n{}\n", all.len(), all.join("\n")))
 }

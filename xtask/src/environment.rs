@@ -3,6 +3,7 @@
 //! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
 //!   CMake and Ninja)
 //! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
+//! - `bench`: likewise for `cargo xtask bench` alone, with `tests/requirements-bench.txt`
 //! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
@@ -165,7 +166,11 @@ fn program(venv: &Path, name: &str) -> PathBuf {
 
 /// The virtual environment's Python, after installing the pinned packages.
 fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
-    let requirements = tools::root().join("tests/requirements.txt");
+    virtual_environment_of(venv, base, "tests/requirements.txt")
+}
+
+fn virtual_environment_of(venv: &Path, base: &Path, requirements: &str) -> Outcome<PathBuf> {
+    let requirements = tools::root().join(requirements);
     let python = program(venv, "python");
     installed_once(venv, &tools::read(&requirements)?, || {
         let create = || tools::run(Command::new(base).args(["-m", "venv", "--clear"]).arg(venv));
@@ -179,6 +184,12 @@ fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
         tools::run(Command::new(&python).args(pip).arg(&requirements))
     })?;
     Ok(python)
+}
+
+/// Python with what the benchmarks alone need, `tests/requirements-bench.txt`: PyTorch is several gigabytes.
+pub(crate) fn bench_python() -> Outcome<PathBuf> {
+    let venv = tools::target().join("test-env/bench");
+    virtual_environment_of(&venv, &python()?, "tests/requirements-bench.txt")
 }
 
 /// The versions of Python that the Python package is tested with: first the one that Blender 5.0 has.

@@ -3,6 +3,9 @@
 /// The README's first command, without its output.
 pub(crate) const README: &[&str] = &["--sex", "female", "-m", "height=1.70"];
 
+/// Somebody else's motion, from the repository's root: a few joints in centimetres, 25 frames a second.
+pub(crate) const BVH: &str = "tests/data/bend.bvh";
+
 /// A named request.
 pub(crate) struct Person {
     /// File stem and key of the golden.

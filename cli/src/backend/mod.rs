@@ -2,6 +2,7 @@
 
 pub(crate) mod motion;
 pub(crate) mod motion_table;
+mod soles;
 
 use std::path::Path;
 
@@ -10,7 +11,6 @@ use anthronet::condition::{Fill, Request, refusal_json};
 use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
-use anthronet::pose::RestPose;
 pub(crate) use anthronet::random::Random;
 use anthronet::rig::humanoid::JointNames;
 use glam::Vec3;
@@ -103,11 +103,6 @@ impl Person {
     pub(crate) fn figure(&self, lod: u8, skin_tone: Option<&str>) -> Result<Figure> {
         let joint_names = JointNamesChoice::Native;
         figure_from_scene(&self.scene(&FileChoice { lod, influences: 4, joint_names, skin_tone })?)
-    }
-
-    /// The joints at rest.
-    pub(crate) fn rest_pose(&self) -> Result<RestPose> {
-        Ok(RestPose::of_joints(self.0.joints())?)
     }
 
     /// Where a joint of the bind pose is, metres.

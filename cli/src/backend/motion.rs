@@ -1,11 +1,11 @@
 //! From the words of motion on the command line to the library's types.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use anthronet::clip::BUILTIN;
 use anthronet::clip::feet::FeetOptions;
-use anthronet::clip::{self, BUILTIN, Clip, FingerMode, OntoOptions, ReadOptions};
+use anthronet::clip::{self, Clip, FingerMode, OntoOptions, ReadOptions};
 use anthronet::export::Scene;
 use anthronet::pose::RestPose;
 use anthronet::rig::humanoid::{native_name, renamed};
@@ -23,11 +23,6 @@ pub(crate) fn open(path: &Path) -> Result<Scene> {
     Ok(anthronet::import::scene::open_scene(path)?)
 }
 
-/// The joints of a scene under our names, at rest.
-pub(crate) fn rest_pose(scene: &Scene) -> Result<RestPose> {
-    Ok(scene.rest_pose(|name| native_name(name).into_owned())?)
-}
-
 /// Names the joints in another vocabulary.
 pub(crate) fn rename_joints(scene: &mut Scene, names: JointNamesChoice) {
     for joint in &mut scene.joints {
@@ -36,22 +31,15 @@ pub(crate) fn rename_joints(scene: &mut Scene, names: JointNamesChoice) {
 }
 
 /// Adds the motions that the options ask for to the scene, and writes the report.
-pub(crate) fn animate(scene: &mut Scene, rest: RestPose, arguments: &MotionArguments) -> Result<()> {
+pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<()> {
     if arguments.clips.is_empty() {
         return Ok(());
     }
-    let rest = Arc::new(rest);
-    let mut names: BTreeMap<String, usize> =
-        scene.clips.iter().map(|clip| (clip.name().to_owned(), 1)).collect();
+    let rest = Arc::new(scene.rest_pose(|name| native_name(name).into_owned())?);
     let mut reports = Vec::new();
     for source in &arguments.clips {
         let (clips, report) = load(source, &rest, arguments)?;
-        for clip in clips {
-            let count = names.entry(clip.name().to_owned()).or_insert(0);
-            *count += 1;
-            let name = if *count > 1 { format!("{} {count}", clip.name()) } else { clip.name().to_owned() };
-            scene.clips.push(clip.with_name(name));
-        }
+        clips.into_iter().for_each(|clip| scene.add_clip(clip));
         reports.push(report);
     }
     let Some(path) = &arguments.motion_report else { return Ok(()) };

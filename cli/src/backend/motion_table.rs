@@ -1,4 +1,6 @@
 //! The table of motion: every clip of a folder on bodies from small to tall, and the built-in clips.
+//!
+//! What feet do is measured on the skin, which knows nothing of the points that [`feet::plant`] holds.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,6 +14,7 @@ use anthronet::pose::limits::JointLimits;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::soles::{SkinMeasure, Soles};
 use crate::failure::{Failure, Result};
 use crate::progress::bar;
 
@@ -34,12 +37,14 @@ pub(crate) struct Row {
     jump_at: Option<String>,
     /// Contacts of both feet, mean over the bodies.
     contacts: f64,
-    /// The longest path of a touching point within one contact, before and after feet were held.
+    /// The longest way of the skin that stands on the floor within one contact, before and after feet were held.
     slide_before_mm: f64,
     slide_mm: f64,
-    /// The deepest point of a foot under the floor.
+    /// The lowest vertex of a foot, under the floor.
     under_floor_before_mm: f64,
     under_floor_mm: f64,
+    /// Vertices of frames that are nowhere.
+    not_finite: usize,
 }
 
 /// The table, and the worst of all clips.
@@ -53,32 +58,35 @@ pub(crate) struct MotionTable {
     jump_deg: f64,
     slide_mm: f64,
     under_floor_mm: f64,
+    not_finite: usize,
+    /// Vertices of both feet that are looked at, level of detail 1.
+    foot_vertices: usize,
     rows: Vec<Row>,
 }
 
 /// Every motion file of the folder on this many bodies.
 pub(crate) fn motion_table(folder: &Path, bodies: usize) -> Result<MotionTable> {
     let files = files(folder)?;
-    let rests = bodies_of(bodies)?;
+    let bodies = bodies_of(bodies)?;
     let bar = bar(files.len() + BUILTIN.len(), "clips");
     let mut rows = files
         .par_iter()
         .map(|path| {
             let motion = clip::read(path, &ReadOptions::default())?;
-            let row = row(path, &motion, &rests)?;
+            let row = row(path, &motion, &bodies)?;
             bar.inc(1);
             Ok(row)
         })
         .collect::<Result<Vec<Row>>>()?;
     for name in BUILTIN {
-        rows.push(builtin_row(name, &rests)?);
+        rows.push(builtin_row(name, &bodies)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
     let worst = |of: fn(&Row) -> f64| rows.iter().map(of).fold(0.0, f64::max);
     let of_files = &rows[..files.len()];
     Ok(MotionTable {
-        bodies,
+        bodies: bodies.len(),
         clips: rows.len(),
         direction_mean_deg: of_files.iter().map(|r| r.direction_mean_deg).sum::<f64>() / files.len() as f64,
         direction_worst_clip_mean_deg: worst(|r| r.direction_mean_deg),
@@ -86,6 +94,8 @@ pub(crate) fn motion_table(folder: &Path, bodies: usize) -> Result<MotionTable> 
         jump_deg: worst(|r| r.jump_deg),
         slide_mm: worst(|r| r.slide_mm),
         under_floor_mm: worst(|r| r.under_floor_mm),
+        not_finite: rows.iter().map(|r| r.not_finite).sum(),
+        foot_vertices: bodies.first().map_or(0, |body| body.soles.vertex_count()),
         rows,
     })
 }
@@ -105,28 +115,40 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Rest poses of bodies of evenly spaced statures; the sex is the likelier one.
-fn bodies_of(count: usize) -> Result<Vec<Arc<RestPose>>> {
+/// A body as motion comes onto it.
+struct OnBody {
+    rest: Arc<RestPose>,
+    soles: Soles,
+}
+
+/// Bodies of evenly spaced statures; the sex is the likelier one.
+fn bodies_of(count: usize) -> Result<Vec<OnBody>> {
     let model = Model::from_environment()?;
     (0..count)
         .map(|i| {
             let t = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.5 };
             let mut request = Request::default();
             request.set("height", STATURES[0] + (STATURES[1] - STATURES[0]) * t)?;
-            Ok(Arc::new(RestPose::of_joints(model.generate(&request)?.joints())?))
+            let body = model.generate(&request)?;
+            let rest = Arc::new(RestPose::of_joints(body.joints())?);
+            Ok(OnBody { soles: Soles::of(&body, &rest)?, rest })
         })
         .collect()
 }
 
-fn row(path: &Path, motion: &Motion, rests: &[Arc<RestPose>]) -> Result<Row> {
+fn row(path: &Path, motion: &Motion, bodies: &[OnBody]) -> Result<Row> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let mut row = Row::new(name);
-    for rest in rests {
-        let (_, report) = clip::onto(motion, rest, &OntoOptions::default())
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    for body in bodies {
+        let onto = |options: &OntoOptions| {
+            let done = clip::onto(motion, &body.rest, options);
+            done.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+        };
+        let (clips, report) = onto(&OntoOptions::default())?;
+        let (as_they_came, _) = onto(&OntoOptions { feet: None, ..OntoOptions::default() })?;
         row.unmatched = report.joints.unmatched.len();
-        for quality in &report.clips {
-            let share = 1.0 / (rests.len() * report.clips.len()) as f64;
+        let share = 1.0 / (bodies.len() * report.clips.len()) as f64;
+        for ((clip, came), quality) in clips.iter().zip(&as_they_came).zip(&report.clips) {
             row.frames = row.frames.max(quality.frames);
             row.direction_mean_deg += share * quality.direction.mean();
             row.beyond(quality.beyond_limits, quality.beyond_limits_joint.as_deref());
@@ -135,21 +157,25 @@ fn row(path: &Path, motion: &Motion, rests: &[Arc<RestPose>]) -> Result<Row> {
                 row.jump_at = quality.jump.joint.as_ref().map(|j| format!("{j} {}", quality.jump.frame));
             }
             if let Some(feet) = &quality.feet {
-                row.feet(&feet.before, &feet.after, share);
+                let found = &feet.contacts;
+                let before = body.soles.measure(came, found)?;
+                let after = body.soles.measure(clip, &feet::Contacts { floor: 0.0, ..found.clone() })?;
+                row.feet(found, &before, &after, share);
             }
         }
     }
     Ok(row)
 }
 
-fn builtin_row(name: &str, rests: &[Arc<RestPose>]) -> Result<Row> {
+fn builtin_row(name: &str, bodies: &[OnBody]) -> Result<Row> {
     let mut row = Row::new(name.to_owned());
-    for rest in rests {
+    for OnBody { rest, soles } in bodies {
         let clip = clip::builtin(name, rest)?;
         row.frames = clip.frame_count();
         let options = feet::FeetOptions { find_floor: false, ..feet::FeetOptions::default() };
-        let measured = feet::measure(&clip, &feet::contacts(&clip, &options)?)?;
-        row.feet(&measured, &measured, 1.0 / rests.len() as f64);
+        let found = feet::contacts(&clip, &options)?;
+        let measured = soles.measure(&clip, &found)?;
+        row.feet(&found, &measured, &measured, 1.0 / bodies.len() as f64);
         let (excess, joint) = clip::worst_excess(&JointLimits::of_rig(rest), &clip);
         let name = joint.and_then(|j| rest.names().get(j)).map(String::as_str);
         row.beyond(f64::from(excess).to_degrees(), name);
@@ -173,6 +199,7 @@ impl Row {
             slide_mm: 0.0,
             under_floor_before_mm: 0.0,
             under_floor_mm: 0.0,
+            not_finite: 0,
         }
     }
 
@@ -183,13 +210,14 @@ impl Row {
         }
     }
 
-    fn feet(&mut self, before: &feet::FeetMeasure, after: &feet::FeetMeasure, share: f64) {
-        let worst = |pair: [f32; 2]| 1000.0 * f64::from(pair[0].max(pair[1]));
-        self.contacts += share * after.contacts.iter().sum::<usize>() as f64;
-        self.slide_before_mm = self.slide_before_mm.max(worst(before.worst_slide));
-        self.slide_mm = self.slide_mm.max(worst(after.worst_slide));
-        self.under_floor_before_mm = self.under_floor_before_mm.max(worst(before.deepest));
-        self.under_floor_mm = self.under_floor_mm.max(worst(after.deepest));
+    fn feet(&mut self, found: &feet::Contacts, before: &SkinMeasure, after: &SkinMeasure, share: f64) {
+        let mm = |metres: f32| 1000.0 * f64::from(metres);
+        self.contacts += share * found.feet.iter().map(Vec::len).sum::<usize>() as f64;
+        self.slide_before_mm = self.slide_before_mm.max(mm(before.slide));
+        self.slide_mm = self.slide_mm.max(mm(after.slide));
+        self.under_floor_before_mm = self.under_floor_before_mm.max(mm(before.deepest));
+        self.under_floor_mm = self.under_floor_mm.max(mm(after.deepest));
+        self.not_finite += after.not_finite;
     }
 }
 
@@ -197,8 +225,9 @@ impl MotionTable {
     /// As text, the worst over the bodies.
     pub(crate) fn to_text(&self) -> String {
         let mut out = format!(
-            "{} clips on {} bodies; the worst over the bodies, in brackets before feet were held\n",
-            self.clips, self.bodies
+            "{} clips on {} bodies; the worst over the bodies, in brackets before feet were held; feet measured on {} vertices \
+             of the skin\n",
+            self.clips, self.bodies, self.foot_vertices
         );
         let _ = writeln!(
             out,
@@ -234,13 +263,14 @@ impl MotionTable {
         let _ = writeln!(
             out,
             "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; jump in one frame \
-             {:.1} °; slide a stride {:.1} mm; under the floor {:.1} mm",
+             {:.1} °; slide a stride {:.1} mm; under the floor {:.1} mm; {} vertices not finite",
             self.direction_mean_deg,
             self.direction_worst_clip_mean_deg,
             self.beyond_limits_deg,
             self.jump_deg,
             self.slide_mm,
-            self.under_floor_mm
+            self.under_floor_mm,
+            self.not_finite
         );
         out
     }

@@ -93,8 +93,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
     let last = clip.frame_count() - 1;
     // Frames fade..=last remain. Over its last `fade` frames the clip becomes frames 0..=fade, moved to where it is.
     let fade = fade.min(last / 2);
-    let travel: Vec<(u32, Vec3)> =
-        clip.top_tracks().map(|t| (t.joint, (t.values[last] - t.values[fade]).with_y(0.0))).collect();
+    let travel = travel(clip, fade, last);
     let poses = (fade..=last).map(|frame| {
         let mut pose = clip.pose(frame);
         let into = frame + fade - last.min(frame + fade);
@@ -112,6 +111,64 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
         pose
     });
     clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+}
+
+/// A clip whose last frame is its first but for its travel, `times` times one after the other.
+///
+/// # Errors
+/// As [`Clip::new`].
+pub(super) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
+    let cycle = clip.frame_count() - 1;
+    let travel = travel(clip, 0, cycle);
+    let poses = (0..=times * cycle).map(|frame| {
+        let turn = (frame / cycle.max(1)).min(times.saturating_sub(1));
+        let mut pose = clip.pose(frame - turn * cycle);
+        for (joint, by) in &travel {
+            pose.locals[*joint as usize].translation += *by * turn as f32;
+        }
+        pose
+    });
+    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+}
+
+/// `count` frames of a clip, from `start` on, above the place where the whole clip starts.
+///
+/// # Errors
+/// As [`Clip::new`].
+pub(super) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
+    let travel = travel(clip, 0, start);
+    let poses = (start..start + count).map(|frame| {
+        let mut pose = clip.pose(frame);
+        for (joint, by) in &travel {
+            pose.locals[*joint as usize].translation -= *by;
+        }
+        pose
+    });
+    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+}
+
+/// The clip with its first pose for its last, where that stands.
+///
+/// # Errors
+/// As [`Clip::new`].
+pub(super) fn closed(clip: &Clip) -> Result<Clip> {
+    let last = clip.frame_count() - 1;
+    let travel = travel(clip, 0, last);
+    let poses = (0..=last).map(|frame| {
+        let mut pose = clip.pose(if frame < last { frame } else { 0 });
+        if frame == last {
+            for (joint, by) in &travel {
+                pose.locals[*joint as usize].translation += *by;
+            }
+        }
+        pose
+    });
+    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+}
+
+/// How far a clip goes along the floor between two frames: the joints that do, metres.
+fn travel(clip: &Clip, from: usize, to: usize) -> Vec<(u32, Vec3)> {
+    clip.top_tracks().map(|t| (t.joint, (t.values[to] - t.values[from]).with_y(0.0))).collect()
 }
 
 /// The clip on the spot: joints with translations that have no such parent stay over the place that they start at;

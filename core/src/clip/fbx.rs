@@ -5,6 +5,8 @@
 //! has one. Axes other than +Y or +Z up are turned here, as the format lets any axis point anywhere.
 
 #[cfg(test)]
+mod binary;
+#[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
@@ -12,8 +14,9 @@ use std::collections::BTreeMap;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use ufbx::{CoordinateAxis, Node, Scene};
 
-use super::raw::{self, Outcome, Raw, Recorder, Rigid};
+use super::raw::{self, Raw, Recorder, Rigid};
 use super::{Found, ReadOptions};
+use crate::error::Outcome;
 use crate::pose::MAX_JOINTS;
 use crate::space::{Axis, Unit};
 
@@ -38,6 +41,9 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
         file_format: ufbx::FileFormat::Fbx,
         ..Default::default()
     };
+    if !bytes.starts_with(b"Kaydara FBX Binary") {
+        check_braces(bytes)?;
+    }
     let scene = ufbx::load_memory(bytes, opts).map_err(|error| {
         let info = error.info();
         let more = if info.is_empty() { String::new() } else { format!(" ({info})") };
@@ -57,6 +63,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
         .map(|&node| nodes.ancestors(node).find_map(|above| place.get(&above).copied()))
         .collect();
     let still: Vec<ufbx::Transform> = scene.nodes.iter().map(|node| node.local_transform).collect();
+    finite(&scene, &still)?;
     if let Some(&joint) = joints.iter().find(|&&joint| !is_one(still[joint].scale)) {
         let scaled = &*scene.nodes[joint].element.name;
         warnings.push(format!("joint `{scaled}` and perhaps others are scaled: folded into translations"));
@@ -93,6 +100,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
             let time = begin + frame as f64 / rate;
             let locals: Vec<ufbx::Transform> =
                 scene.nodes.iter().map(|node| ufbx::evaluate_transform(&stack.anim, node, time)).collect();
+            finite(&scene, &locals).map_err(|e| format!("animation `{title}`: frame {frame}: {e}"))?;
             let world = nodes.world(&scene, &locals);
             let rigid: Vec<Rigid> = joints.iter().map(|&node| Rigid::of(&(turn * world[node]))).collect();
             recorder.push(&Rigid::locals(&rigid, &parents));
@@ -118,6 +126,40 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
         rate_found,
         warnings,
     })
+}
+
+/// Refuses numbers that are none: places and turns would become others of them.
+fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Outcome<()> {
+    let is = |t: &ufbx::Transform| {
+        vec3(t.translation).is_finite() && quat(t.rotation).is_finite() && vec3(t.scale).is_finite()
+    };
+    match locals.iter().position(|local| !is(local)) {
+        None => Ok(()),
+        Some(node) => {
+            Err(format!("node `{}`: its transform is not finite", &*scene.nodes[node].element.name))
+        }
+    }
+}
+
+/// Refuses text that ends within a node, which the parser takes for the end of it.
+fn check_braces(text: &[u8]) -> Outcome<()> {
+    let (mut open, mut quoted, mut comment, mut line) = (Vec::new(), false, false, 1);
+    for byte in text {
+        match byte {
+            b'\n' => (comment, line) = (false, line + 1),
+            _ if comment => {}
+            b'"' => quoted = !quoted,
+            _ if quoted => {}
+            b';' => comment = true,
+            b'{' => open.push(line),
+            b'}' => drop(open.pop()),
+            _ => {}
+        }
+    }
+    match open.last() {
+        Some(line) => Err(format!("is damaged or truncated: what line {line} opens has no end")),
+        None => Ok(()),
+    }
 }
 
 /// The nodes of a scene by their place in `Scene::nodes`, which is their `typed_id`.

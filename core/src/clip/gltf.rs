@@ -16,8 +16,9 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf_json::animation::Property;
 use gltf_json::{Node, Value};
 
-use super::raw::{self, Outcome, Raw, Recorder, Rigid};
+use super::raw::{self, Raw, Recorder, Rigid};
 use super::{Found, ReadOptions};
+use crate::error::Outcome;
 use crate::input::gltf::{Document, Tree};
 use crate::pose::MAX_JOINTS;
 use crate::space::{Axis, Unit};

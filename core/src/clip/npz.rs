@@ -4,6 +4,12 @@
 //! The files hold no skeleton, which comes from the body model. The rest pose here has the public names of the
 //! joints and **assumed lengths of bones**, round numbers for a person of 1.70 m: see [`smpl`]. World axes are AMASS'
 //! +Z up, unless the body stands along Y; rest poses of the body models are +Y up, facing +Z.
+//!
+//! The pelvis is put where `trans` says. The body models put it at `trans` + J₀, where J₀ is the pelvis' place in the
+//! model's own rest pose: some 0.2 to 0.4 m below the model's origin, the same vector in every frame of a file. J₀ belongs
+//! to the body model, whose numbers may not be used here, and differs with the shape. What is missing is one constant
+//! shift of the whole clip, sideways in a world of +Z up and downwards in one of +Y up; it leaves poses, speeds and ways
+//! alone, and the height is found from the feet ([`plant`](super::feet::plant)).
 
 mod array;
 mod smpl;
@@ -13,8 +19,9 @@ mod tests;
 
 use glam::{DVec3, Quat, Vec3};
 
-use super::raw::{Outcome, Raw, Recorder};
+use super::raw::{Raw, Recorder};
 use super::{Found, MAX_FRAMES, ReadOptions};
+use crate::error::Outcome;
 use crate::space::{Axis, Unit};
 use array::Archive;
 
@@ -74,6 +81,11 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<R
         rate_found,
         warnings: vec![
             "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
+            format!(
+                "`{key}` is taken for the place of the pelvis: the {} body model adds a constant of its own, by which the \
+                 whole clip is shifted",
+                skeleton.model
+            ),
         ],
     })
 }

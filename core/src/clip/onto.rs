@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::feet::{FeetOptions, FeetReport, plant};
+use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides, read_overrides};
 use super::retarget::{
     DirectionError, FingerMode, Jump, RetargetOptions, Retargeter, RootMotion, direction_error, worst_jump,
@@ -110,7 +110,7 @@ pub struct ClipQuality {
     pub beyond_limits_joint: Option<String>,
     /// The farthest that a limb turns in one frame beyond the motion.
     pub jump: Jump,
-    /// What was done about the feet; `None` where nothing was asked for.
+    /// What was done about the feet, before motion over the ground was left out; `None` where nothing was asked for.
     pub feet: Option<FeetReport>,
 }
 
@@ -183,6 +183,7 @@ impl<'a> Way<'a> {
                 limits.clamp_after(target, pose, &mut twists);
             }
         })?;
+        let as_it_came = options.looped.then(|| clip.clone());
         let mut feet = None;
         if let Some(options) = &options.feet {
             let (planted, found) = plant(&clip, options)?;
@@ -191,11 +192,16 @@ impl<'a> Way<'a> {
         // Both compare with the motion as it was, so before its end is bent to its beginning.
         let direction = direction_error(source, &clip, map);
         let jump = worst_jump(source, &clip, map);
+        if let Some(came) = as_it_came {
+            // Feet are held after the bend, or they would slide in it.
+            clip = looped(&came, LOOP_BLEND.min(came.duration() / 3.0))?;
+            if let Some(options) = &options.feet {
+                let (planted, found) = plant_loop(&clip, options)?;
+                (clip, feet) = (planted, Some(found));
+            }
+        }
         if options.in_place {
             clip = in_place(&clip)?;
-        }
-        if options.looped {
-            clip = looped(&clip, LOOP_BLEND.min(clip.duration() / 3.0))?;
         }
         let (beyond, joint) = worst_excess(limits, &clip);
         report.clips.push(ClipQuality {
@@ -225,3 +231,7 @@ pub fn worst_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
     }
     worst
 }
+
+#[cfg(test)]
+#[path = "onto_tests.rs"]
+mod tests;

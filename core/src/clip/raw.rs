@@ -3,11 +3,9 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::{Found, TranslationTrack};
+use crate::error::Outcome;
 use crate::pose::Local;
 use crate::space::{Axis, Unit};
-
-/// What is wrong with a file; the path is added at the end.
-pub(super) type Outcome<T> = Result<T, String>;
 
 /// A skeleton and its motions as a file has them.
 #[derive(Debug)]
@@ -102,6 +100,10 @@ impl Rigid {
 
     pub(super) fn rotation(&self) -> DQuat {
         self.rotation
+    }
+
+    pub(super) fn to_affine(self) -> DAffine3 {
+        DAffine3::from_rotation_translation(self.rotation, self.position)
     }
 
     /// Each joint's transform to its parent, for joints that stand after their parents.

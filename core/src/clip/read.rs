@@ -4,8 +4,9 @@ use std::{ffi::OsStr, path::Path};
 
 use serde::Serialize;
 
-use super::raw::{Outcome, Raw};
+use super::raw::Raw;
 use super::{Clip, bvh, fbx, gltf, npz, settle, usd};
+use crate::error::Outcome;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result, input};
 

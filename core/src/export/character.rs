@@ -58,6 +58,7 @@ impl Scene {
                 name: renamed(&joint.name, options.joint_names).into_owned(),
                 parent: joint.parent,
                 model_from_joint: joint.model_from_joint,
+                bone_length: Some(joint.length),
             })
             .collect();
         let mut meshes = vec![body_mesh(body, options)?];

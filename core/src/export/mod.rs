@@ -14,6 +14,7 @@ pub mod skin_tone;
 mod split;
 #[cfg(test)]
 pub(crate) mod synthetic;
+pub(crate) mod titles;
 pub mod usd;
 
 pub use buffers::{BlendShape, Layout, MeshBuffers};

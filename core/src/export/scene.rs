@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use glam::{Affine3A, Vec3};
 
+use super::titles::Titles;
 use crate::clip::Clip;
 use crate::pose::RestPose;
 use crate::rig::Joint;
@@ -36,7 +37,7 @@ pub struct Scene {
     /// The materials that meshes refer to.
     pub materials: Vec<SceneMaterial>,
     /// Motions of the joint tree: the joints of each clip are [`Scene::joints`] in their order, and rest in the bind
-    /// pose; what the clips call them does not matter. Names are unique.
+    /// pose; what the clips call them does not matter. Names are unique: [`add_clip`](Scene::add_clip) sees to it.
     pub clips: Vec<Clip>,
     /// Anything to be kept with the file, such as the report: an object, or `null` for nothing.
     pub extras: serde_json::Value,
@@ -51,6 +52,8 @@ pub struct SceneJoint {
     pub parent: Option<u32>,
     /// Rotation and translation from the joint's space to model space, metres; no scale.
     pub model_from_joint: Affine3A,
+    /// How far the bone reaches along the joint's +Y axis, metres; `None` where nothing says so.
+    pub bone_length: Option<f32>,
 }
 
 /// One mesh with one material. Positions and texture coordinates have index spaces of their own.
@@ -216,6 +219,11 @@ impl Scene {
             if !transform.is_finite() {
                 return fault("bind pose is not finite".into());
             }
+            if let Some(length) = joint.bone_length
+                && !(0.0..f32::INFINITY).contains(&length)
+            {
+                return fault(format!("expected a bone length of 0 or more, got {length}"));
+            }
             let m = transform.matrix3;
             let off = (m.transpose() * m - glam::Mat3A::IDENTITY).to_cols_array();
             if off.iter().any(|v| v.abs() > ROTATION_TOLERANCE) || m.determinant() < 0.0 {
@@ -245,21 +253,34 @@ impl Scene {
                 name: name(&joint.name),
                 parent: joint.parent,
                 model_from_joint: joint.model_from_joint,
-                length: 0.0,
+                length: joint.bone_length.unwrap_or(0.0),
             })
             .collect();
         let rest = RestPose::of_joints(&joints)?;
-        // A scene does not say where a bone ends: at the farthest of the joints that stand on its axis, if there are any.
-        let mut ends = vec![None; rest.len()];
+        if self.joints.iter().all(|joint| joint.bone_length.is_some()) {
+            return Ok(rest);
+        }
+        // Characters of others do not say where a bone ends: at the farthest of the joints that stand on its axis, if there
+        // are any.
+        let mut ends: Vec<Option<Vec3>> =
+            self.joints.iter().map(|joint| joint.bone_length.map(|length| Vec3::Y * length)).collect();
         for (parent, local) in rest.parents().iter().zip(&rest.pose().locals) {
             let at = local.translation;
             let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
-            if let (Some(parent), true) = (*parent, on_axis) {
-                let end: &mut Option<Vec3> = &mut ends[parent as usize];
+            if let (Some(parent), true) = (*parent, on_axis)
+                && self.joints[parent as usize].bone_length.is_none()
+            {
+                let end = &mut ends[parent as usize];
                 *end = Some(Vec3::Y * end.map_or(at.y, |e| e.y.max(at.y)));
             }
         }
         RestPose::new(rest.names().to_vec(), rest.parents().to_vec(), rest.pose().locals.clone(), ends)
+    }
+
+    /// Adds a motion. Its name loses control characters, and gets a number behind it where another has it already.
+    pub fn add_clip(&mut self, clip: Clip) {
+        let name = Titles::taken(self.clips.iter().map(Clip::name)).unique(clip.name());
+        self.clips.push(clip.with_name(name));
     }
 
     fn validate_clips(&self) -> Result<()> {
@@ -439,6 +460,7 @@ mod tests {
             ("`lower`: parent 1 does not come before", |s| s.joints[1].parent = Some(1)),
             ("only joint 0 may be a root", |s| s.joints[2].parent = None),
             ("bind pose is not finite", |s| s.joints[1].model_from_joint.translation.x = f32::NAN),
+            ("`lower`: expected a bone length", |s| s.joints[1].bone_length = Some(f32::NAN)),
             ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3 *= 1.1),
             ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3.x_axis *= -1.0),
             ("`Skin`: expected colours", |s| s.materials[0].base_color[1] = f32::NAN),
@@ -486,6 +508,33 @@ mod tests {
             let message = scene.validate().unwrap_err().to_string();
             assert!(message.contains(expected), "expected `{expected}` in `{message}`");
         }
+    }
+
+    #[test]
+    fn clips_of_one_name_or_with_unprintable_ones_are_numbered_and_written() {
+        let mut scene = arm(4);
+        let clip = bent(&scene);
+        for name in ["walk", "walk", "walk 2", "walk", "a\nb", ""] {
+            scene.add_clip(clip.clone().with_name(name));
+        }
+        let names: Vec<&str> = scene.clips.iter().map(Clip::name).collect();
+        assert_eq!(names, ["walk", "walk 2", "walk 2 2", "walk 3", "ab", "unnamed"]);
+        scene.validate().unwrap();
+    }
+
+    #[test]
+    fn bones_end_where_the_scene_says_else_where_the_next_joint_is() {
+        let mut scene = arm(4);
+        scene.joints[0].model_from_joint = Affine3A::IDENTITY;
+        scene.joints[1].model_from_joint = Affine3A::from_translation(Vec3::Y * 0.3);
+        for joint in &mut scene.joints {
+            joint.bone_length = None;
+        }
+        let ends = |scene: &Scene| scene.rest_pose(str::to_owned).unwrap().ends().to_vec();
+        assert_eq!(ends(&scene), [Some(Vec3::Y * 0.3), None, None]);
+        scene.joints[0].bone_length = Some(0.25);
+        scene.joints[2].bone_length = Some(0.1);
+        assert_eq!(ends(&scene), [Some(Vec3::Y * 0.25), None, Some(Vec3::Y * 0.1)]);
     }
 
     #[test]

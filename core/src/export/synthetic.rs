@@ -27,8 +27,12 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
             Vec3::from(at),
         )
     };
-    let joint =
-        |name: &str, parent, model_from_joint| SceneJoint { name: name.into(), parent, model_from_joint };
+    let joint = |name: &str, parent, model_from_joint| SceneJoint {
+        name: name.into(),
+        parent,
+        model_from_joint,
+        bone_length: Some(0.1 + 0.013 * name.len() as f32),
+    };
     let joints = vec![
         joint("upper", None, place(Vec3::new(1.0, 2.0, -0.5), 0.7, [0.1, 1.2, -0.03])),
         joint("lower", Some(0), place(Vec3::new(-1.0, 0.3, 0.9), 2.9, [0.37, 1.25, 0.02])),

@@ -8,10 +8,8 @@ use std::{collections::BTreeMap, path::Path};
 use glam::Vec3;
 
 use super::{ImportedMesh, ImportedScene, MAX_ELEMENTS};
+use crate::error::Outcome;
 use crate::{Error, Result, export::obj::COUNTS};
-
-/// What is wrong with a line; its number and the path are added at the end.
-type Outcome<T> = std::result::Result<T, String>;
 
 /// Reads an `.obj` that is already in memory; `path` is for messages.
 ///

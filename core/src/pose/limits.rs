@@ -43,6 +43,11 @@ const fn row(name: &'static str, x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> R
     Row { name, x, z, twist }
 }
 
+/// From the clinical ranges of active motion of the American Academy of Orthopaedic Surgeons (*Joint Motion: Method of
+/// Measuring and Recording*, 1965) and the American Medical Association (*Guides to the Evaluation of Permanent
+/// Impairment*), widened to passive range and to what one joint of a motion file does for several of a body; jaw, eyes and
+/// clavicles, of which those say nothing, by eye.
+///
 /// Joints that are not here (the root, the pelvis, twist joints) turn freely.
 const TABLE: [Row; 24] = [
     row("spine_01", [-40., 60.], [-40., 40.], [-45., 45.]),

@@ -3,6 +3,7 @@
 pub mod humanoid;
 mod skeleton;
 mod skin_weights;
+pub(crate) mod written;
 
 pub use skeleton::{Joint, Skeleton, SkeletonShape};
 pub use skin_weights::{Influences, SkinWeights};

@@ -6,6 +6,7 @@
 
 use glam::{Affine3A, Mat3, Vec3};
 
+use super::written::settle;
 use crate::{Error, Result};
 
 /// The hierarchy.
@@ -107,7 +108,7 @@ impl Skeleton {
         self.names.iter().position(|n| n == name)
     }
 
-    /// The bind pose of a body.
+    /// The bind pose of a body, rounded to what a file gives back of it.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the shape has another number of joints.
@@ -123,7 +124,7 @@ impl Skeleton {
                 ),
             ));
         }
-        Ok((0..self.len())
+        let mut joints: Vec<Joint> = (0..self.len())
             .map(|j| {
                 let bone = shape.tails[j] - shape.heads[j];
                 let rotation = if self.parents[j].is_none() {
@@ -138,7 +139,9 @@ impl Skeleton {
                     length: bone.length(),
                 }
             })
-            .collect())
+            .collect();
+        settle(&mut joints);
+        Ok(joints)
     }
 }
 

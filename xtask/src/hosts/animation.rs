@@ -14,9 +14,10 @@ const GODOT_LIMIT: Duration = Duration::from_secs(120);
 /// The Khronos validator, numpy, three.js, three-vrm, Blender and Godot over files of `anthronet`.
 pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let mut made = Vec::new();
+    let clips = ["--clip", "walk", "--clip", "wave", "--clip", requests::BVH];
     for (name, arguments) in [
-        ("animated.glb", &["--clip", "walk"][..]),
-        ("animated_meshopt.glb", &["--clip", "walk", "--compress"]),
+        ("animated.glb", &clips[..]),
+        ("animated_meshopt.glb", &[&clips[..], &["--compress"]].concat()),
         ("figure.vrm", &[]),
     ] {
         let file = folder.join(name);
@@ -86,7 +87,7 @@ fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Outc
     let project = folder.join("godot");
     let fault = |e: std::io::Error| format!("{}: {e}", project.display());
     std::fs::create_dir_all(&project).map_err(fault)?;
-    for name in ["project.godot", "check.gd"] {
+    for name in ["project.godot", "check.gd", "figure.glb.import"] {
         let text = tools::read(&tools::root().join("tests/godot").join(name))?;
         tools::write(&project.join(name), &text)?;
     }

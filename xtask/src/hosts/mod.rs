@@ -7,6 +7,7 @@ mod animation;
 mod blender;
 mod c;
 mod cpp;
+mod motion;
 mod python;
 mod skin;
 mod tally;
@@ -39,6 +40,7 @@ pub(crate) fn run() -> Outcome {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    motion::run(&anthronet, &mut tally);
     c::run(&environment.c, &folder, &mut tally)?;
     cpp::run(&anthronet, &environment, &folder, &mut tally)?;
     python::run(&anthronet, &environment, &folder, &mut tally)?;
@@ -91,6 +93,13 @@ pub(crate) fn blender_picture(folder: &Path) -> Outcome<Result<PathBuf, String>>
     blender::picture(&tools::command_line()?, &environment::prepare()?, folder)
 }
 
+/// The table of motion alone.
+pub(crate) fn run_motion() -> Outcome {
+    let mut tally = Tally::default();
+    motion::run(&tools::command_line()?, &mut tally);
+    close(&tally)
+}
+
 /// Prints the counts.
 fn close(tally: &Tally) -> Outcome {
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
@@ -103,7 +112,8 @@ fn close(tally: &Tally) -> Outcome {
 /// `anthronet generate` with these arguments into a file.
 fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Outcome {
     let mut command = Command::new(anthronet);
-    command.arg("generate").args(arguments).arg("-o").arg(file);
+    // From the root, where the motion files of the tests are.
+    command.current_dir(tools::root()).arg("generate").args(arguments).arg("-o").arg(file);
     if let Some(threads) = threads {
         command.env("RAYON_NUM_THREADS", threads.to_string());
     }

@@ -5,12 +5,12 @@ use std::path::Path;
 use super::generate;
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::requests::README;
+use crate::requests::{BVH, README};
 use crate::tools::Outcome;
 
 /// One file of every ending; quads and triangles, both numbers of influences, several clips.
 const FILES: [(&str, &str, &[&str]); 3] = [
-    ("quads", "usdc", &["--clip", "walk", "--clip", "wave"]),
+    ("quads", "usdc", &["--clip", "walk", "--clip", "wave", "--clip", BVH]),
     ("8_influences", "usda", &["--influences", "8", "--lod", "1", "--clip", "squat"]),
     ("triangles", "usdz", &["--lod", "2", "--clip", "range_of_motion"]),
 ];

@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 
-use super::Outcome;
 use super::lexer::{Lexer, shown};
+use crate::error::Outcome;
 use crate::pose::MAX_JOINTS;
 
 /// One number of a frame.

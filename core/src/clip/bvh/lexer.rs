@@ -1,6 +1,6 @@
 //! Lines and words of a BVH file, with the line they stand in.
 
-use super::Outcome;
+use crate::error::Outcome;
 
 /// Goes through the words of a text.
 pub(super) struct Lexer<'a> {

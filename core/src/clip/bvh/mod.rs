@@ -13,8 +13,9 @@ mod motion;
 #[cfg(test)]
 mod tests;
 
-use super::raw::{self, Outcome, Raw};
+use super::raw::{self, Raw};
 use super::{Found, ReadOptions};
+use crate::error::Outcome;
 use crate::pose::Local;
 use lexer::Lexer;
 

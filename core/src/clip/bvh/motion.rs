@@ -2,11 +2,11 @@
 
 use glam::{Quat, Vec3};
 
-use super::Outcome;
 use super::hierarchy::{Channel, Hierarchy};
 use super::lexer::{Lexer, shown};
 use crate::clip::MAX_FRAMES;
 use crate::clip::raw::{Recorder, Take, snapped_rate};
+use crate::error::Outcome;
 use crate::pose::Local;
 
 /// Reads from after the word MOTION to the end of the file.

@@ -3,6 +3,7 @@ use std::path::Path;
 
 use glam::{Quat, Vec3};
 
+use super::binary::binary;
 use crate::clip::{Found, Motion, ReadOptions, from_bytes};
 use crate::space::{Axis, Unit};
 
@@ -198,8 +199,60 @@ fn a_scaled_joint_moves_its_children_away() {
     assert!(leg.distance(Vec3::new(0.3, -0.3, 0.3)) < 1e-5, "{leg}");
 }
 
+/// What a reader makes of damage: a motion of finite numbers, or a reason that is ours.
+fn or_reason(bytes: &[u8]) -> Result<(), String> {
+    match from_bytes(bytes, Path::new("a.fbx"), &ReadOptions::default()) {
+        // Numbers are finite, or there is no clip.
+        Ok(motion) => {
+            assert!(!motion.clips.is_empty());
+            Ok(())
+        }
+        Err(error) => {
+            let error = error.to_string();
+            let known = [
+                "is damaged or truncated",
+                "expected ",
+                "too many frames",
+                "clip:",
+                "skeleton:",
+                "is not finite",
+                "nodes are",
+            ];
+            assert!(error.starts_with("a.fbx: ") && known.iter().any(|k| error.contains(k)), "{error}");
+            Err(error)
+        }
+    }
+}
+
+#[test]
+fn a_binary_file_is_the_same_motion() {
+    let bytes = binary(SMALL);
+    let motion = from_bytes(&bytes, Path::new("a.fbx"), &ReadOptions::default()).unwrap();
+    let text = read(SMALL).unwrap();
+    assert_eq!(motion.report, text.report);
+    assert_eq!(motion.clips, text.clips);
+}
+
 #[test]
 fn says_what_is_wrong() {
+    let key = |from: &str, to: &str| SMALL.replacen(from, to, 1);
+    let bones: String = (0..5000)
+        .map(|i| {
+            format!(
+                "NodeAttribute: {0}, \"NodeAttribute::\", \"LimbNode\" {{\n}}\nModel: {1}, \"Model::b{i}\", \"LimbNode\" {{\n}}\n",
+                100_000 + 2 * i,
+                100_001 + 2 * i
+            )
+        })
+        .collect();
+    let nodes: String =
+        (0..70_000).map(|i| format!("Model: {}, \"Model::n{i}\", \"Null\" {{\n}}\n", 100_000 + i)).collect();
+    let links: String =
+        (0..5000).map(|i| format!("C: \"OO\",{},{}\n", 100_000 + 2 * i, 100_001 + 2 * i)).collect();
+    let with = |objects: &str, links: &str| {
+        let text = SMALL.replacen("Objects: {\n", &format!("Objects: {{\n{objects}"), 1);
+        text.replacen("Connections: {\n", &format!("Connections: {{\n{links}"), 1)
+    };
     let cases = [
         ("expected an animation, got none", SMALL.replace("AnimationStack: 200", "Other: 200")),
         (
@@ -211,25 +264,61 @@ fn says_what_is_wrong() {
         ),
         ("too many frames", SMALL.replace("\"\",46186158000", "\"\",46186158000000000")),
         ("is damaged or truncated", SMALL[..SMALL.len() / 2].into()),
+        // Curves: other numbers of values than of times; none at all where flags say there are.
+        (
+            "is damaged or truncated",
+            key("KeyValueFloat: *2 {\n            a: 0,90", "KeyValueFloat: *1 {\n            a: 0"),
+        ),
+        (
+            "is damaged or truncated",
+            key("KeyTime: *2 {\n            a: 0,46186158000", "KeyTime: *1 {\n            a: 0"),
+        ),
+        ("expected at most 4096 joints, got 5002", with(&bones, &links)),
+        ("expected at most 65536 nodes, got ", with(&nodes, "")),
     ];
     for (expected, text) in cases {
         let error = read(&text).err().unwrap_or_default();
         assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
     }
+    // A key that is no number.
+    let mut bytes = binary(SMALL);
+    let value = bytes.windows(4).position(|w| w == 90.0_f32.to_le_bytes()).unwrap();
+    bytes[value..value + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let error = or_reason(&bytes).unwrap_err();
+    assert!(
+        error.contains("animation `Take 001`: frame ") && error.contains("`mixamorig:LeftUpLeg`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_file_that_ends_too_early_is_an_error() {
+    for end in (0..SMALL.rfind('}').unwrap()).step_by(11) {
+        assert!(or_reason(&SMALL.as_bytes()[..end]).is_err(), "{end} of {}", SMALL.len());
+    }
+    let bytes = binary(SMALL);
+    let footer = bytes.len() - 180;
+    for end in (27..footer).step_by(7) {
+        let error = or_reason(&bytes[..end]).unwrap_err();
+        assert!(error.contains("is damaged or truncated"), "{end}: {error}");
+    }
 }
 
 #[test]
 fn damage_is_an_error_or_another_motion() {
-    for end in (0..SMALL.len()).step_by(11) {
-        let _ = read(&SMALL[..end]);
-    }
-    let mut read = 0;
-    for at in (0..SMALL.len()).step_by(3) {
-        for byte in [b'9', b'{', b'"', 0xff] {
-            let mut bytes = SMALL.as_bytes().to_vec();
-            bytes[at] = byte;
-            read += usize::from(from_bytes(&bytes, Path::new("a.fbx"), &ReadOptions::default()).is_ok());
+    let text = SMALL.as_bytes().to_vec();
+    for (whole, bytes) in [(text, [b'9', b'{', b'"', 0xff]), (binary(SMALL), [0, 0x7f, 0x80, 0xff])] {
+        let (mut read, mut refused) = (0, 0);
+        for at in (0..whole.len()).step_by(3) {
+            for byte in bytes {
+                let mut damaged = whole.clone();
+                damaged[at] = byte;
+                match or_reason(&damaged) {
+                    Ok(()) => read += 1,
+                    Err(_) => refused += 1,
+                }
+            }
         }
+        assert!(read > 100 && refused > 100, "{read} read, {refused} refused");
     }
-    assert!(read > 0, "a changed digit leaves a motion");
 }

@@ -52,7 +52,10 @@ pub(super) fn corrections(
         let of_heel =
             |place: Vec3| place + Quat::from_scaled_axis(*turn) * (sole.joint - sole.heel) - sole.joint;
         match held {
-            (Some(heel), Some(ball)) => Some(0.5 * (of_heel(*heel) + (*ball - sole.ball))),
+            // Of a foot that lies flat the skin of the ball is straight under its joint.
+            (Some(heel), Some(ball)) => {
+                Some(0.5 * (of_heel(*heel) + (*ball - sole.joint.with_y(sole.ball.y))))
+            }
             (Some(heel), None) => Some(of_heel(*heel)),
             (None, Some(ball)) => Some(*ball - sole.ball),
             (None, None) => None,
@@ -114,7 +117,7 @@ fn flat_turn(turn: Quat, at_rest: Vec3, sole: Vec3) -> Option<Vec3> {
 
 /// Fills the frames without a value: values of the neighbouring runs fade out over `blend` frames, or over the gap
 /// when it is shorter, smoothly.
-fn bridged(values: &[Option<Vec3>], blend: usize) -> Vec<Vec3> {
+pub(super) fn bridged(values: &[Option<Vec3>], blend: usize) -> Vec<Vec3> {
     let mut out: Vec<Vec3> = values.iter().map(|v| v.unwrap_or_default()).collect();
     for (start, end) in runs(&values.iter().map(Option::is_none).collect::<Vec<_>>()) {
         let before = start.checked_sub(1).and_then(|f| values[f]);

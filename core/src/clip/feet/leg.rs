@@ -11,6 +11,8 @@ use crate::pose::{Local, Pose, RestPose, model_from_joints};
 /// How far the heel reaches behind the ankle, in distances from the ankle to the ball: bodies of the model have a
 /// quarter to a third.
 const HEEL: f32 = 0.28;
+/// Half of the width of the sole at heel and ball, in the same distance, where it is about to curve upwards.
+const HALF_WIDTHS: [f32; 2] = [0.18, 0.3];
 
 /// The joints of a leg, and where its sole is. Bodies rest with their feet on the floor, so the sole is what lies at
 /// y = 0 there.
@@ -32,6 +34,11 @@ pub(crate) struct Leg {
     pub(crate) sole: Vec3,
     /// The foot's rotation at rest, in model space.
     pub(crate) flat: Quat,
+    /// From the ball joint straight down to the sole at rest, in the foot's and in the ball joint's space: the skin there
+    /// follows both.
+    pub(crate) under_ball: [Vec3; 2],
+    /// Half of the foot's width at the heel and at the ball.
+    pub(crate) half_widths: [f32; 2],
 }
 
 /// The sole's points in model space, metres over the floor.
@@ -81,14 +88,22 @@ impl Leg {
             clearance: [joint.translation.y, (joint.translation + joint.rotation * tip).y],
             sole: forward * (1.0 + HEEL),
             flat: ankle.rotation,
+            under_ball: [ankle, joint].map(|j| j.rotation.conjugate() * (Vec3::NEG_Y * joint.translation.y)),
+            half_widths: HALF_WIDTHS.map(|share| share * forward.length()),
         })
+    }
+
+    /// The skin under the ball joint, from `model_from_joint` of foot and ball.
+    fn skin_of_ball(&self, foot: Local, ball: Local) -> Vec3 {
+        let [of_foot, of_ball] = self.under_ball;
+        ball.translation + 0.5 * (foot.rotation * of_foot + ball.rotation * of_ball)
     }
 
     /// The points of the sole from `model_from_joint` of foot and ball.
     pub(crate) fn points(&self, foot: Local, ball: Local) -> Sole {
         Sole {
             heel: foot.translation + foot.rotation * self.heel,
-            ball: ball.translation - Vec3::Y * self.clearance[0],
+            ball: self.skin_of_ball(foot, ball).with_y(ball.translation.y - self.clearance[0]),
             tip: ball.translation + ball.rotation * self.tip - Vec3::Y * self.clearance[1],
             joint: ball.translation,
             turn: (foot.rotation * self.flat.conjugate()).normalize(),

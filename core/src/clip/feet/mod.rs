@@ -19,7 +19,7 @@ use crate::{Error, Result};
 
 pub use contacts::{Contact, Contacts, FootPoint, contacts};
 pub(crate) use leg::Leg;
-pub use plant::plant;
+pub use plant::{plant, plant_loop};
 
 /// How contacts are found and feet are held.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ pub struct FeetMeasure {
 }
 
 /// What [`plant`] found and did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct FeetReport {
     /// Height of the floor in the clip that came in, metres; it is at 0 in the one that goes out.
     pub floor: f32,
@@ -101,6 +101,9 @@ pub struct FeetReport {
     pub after: FeetMeasure,
     /// The farthest that the pelvis sank, metres.
     pub pelvis_drop: f32,
+    /// The contacts: their frames are those of both clips, their floor that of the one that came in.
+    #[serde(skip)]
+    pub contacts: Contacts,
 }
 
 /// Measures a clip at contacts that were found on it or on the clip that it was made of.

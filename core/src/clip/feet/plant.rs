@@ -4,11 +4,12 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{Quat, Vec3};
 
-use super::contacts::{Contacts, contacts};
-use super::hold::{Correction, corrections, ramped};
+use super::contacts::{Contact, Contacts, FootPoint, contacts};
+use super::hold::{Correction, bridged, corrections, ramped};
 use super::leg::{self, Leg};
 use super::{FeetOptions, FeetReport, for_each_pose, measure};
 use crate::Result;
+use crate::clip::edit::{closed, cut, repeated};
 use crate::clip::{Clip, TranslationTrack};
 use crate::pose::ik::Reach;
 use crate::pose::limits::JointLimits;
@@ -22,6 +23,10 @@ const SPARED: f32 = 0.004;
 const GIVE: f32 = 0.07;
 /// How fast toes begin and end to bend at most, radians a second (600°).
 const TOES: f32 = 10.5;
+/// How much deeper than its middle an edge of the sole may be in the floor, metres: skin gives way.
+const EDGE: f32 = 0.006;
+/// How often what still slides is taken back: rolling over the ball changes how the toes bend, and that the rolling.
+const ROUNDS: usize = 2;
 
 /// Holds the feet of a clip of our rig: points in contact stay where they are, nothing sinks deeper than
 /// `options.depth`, toes bend instead of going through the floor. A foot keeps the rotation it has, but for the turn
@@ -30,8 +35,42 @@ const TOES: f32 = 10.5;
 /// # Errors
 /// [`Error`](crate::Error) naming a joint of the legs or the pelvis that is missing, or an option out of range.
 pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
+    let (planted, found, mut report) = held(clip, options)?;
+    report.before = measure(clip, &found)?;
+    report.after = measure(&planted, &Contacts { floor: 0.0, ..found.clone() })?;
+    report.contacts = found;
+    Ok((planted, report))
+}
+
+/// As [`plant`], of a clip whose last frame is its first but for its travel, so that it still is: feet are held as if the
+/// clip had come before already and went on after, and contacts reach over its ends.
+///
+/// # Errors
+/// As [`plant`].
+pub fn plant_loop(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
+    let cycle = clip.frame_count() - 1;
+    if cycle == 0 {
+        return plant(clip, options);
+    }
+    let (planted, found, mut report) = held(&repeated(clip, 3)?, options)?;
+    // The middle one of the three. Its contacts in frames of its own.
+    let planted = closed(&cut(&planted, cycle, clip.frame_count())?)?;
+    let within = |contact: &Contact| {
+        let start = contact.start.max(cycle) - cycle;
+        let end = contact.end.min(2 * cycle + 1).saturating_sub(cycle);
+        (start < end).then_some(Contact { start, end, ..*contact })
+    };
+    let feet = found.feet.map(|contacts| contacts.iter().filter_map(within).collect());
+    let found = Contacts { feet, floor: found.floor };
+    report.before = measure(clip, &found)?;
+    report.after = measure(&planted, &Contacts { floor: 0.0, ..found.clone() })?;
+    report.contacts = found;
+    Ok((planted, report))
+}
+
+/// The planted clip, the contacts of the one that came in, and the report without its measures.
+fn held(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetReport)> {
     let found = contacts(clip, options)?;
-    let before = measure(clip, &found)?;
     let rest = clip.rest();
     let legs = Leg::both(rest)?;
     let pelvis = rest.require("pelvis")?;
@@ -44,35 +83,20 @@ pub fn plant(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetReport)> {
     // Feet that are laid flat have their ankles at another height than the motion had them. What all have in common
     // moves the whole body, so that legs keep their bend.
     let floor = found.floor - common_rise(clip, &legs, &found, &corrected(found.floor));
-    let feet = corrected(floor);
+    let mut feet = corrected(floor);
     let planter = Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(GIVE), floor, options };
-    let drops = planter.pelvis_drops(clip, &feet, blend);
-
-    let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
-    let mut places = Vec::with_capacity(clip.frame_count());
-    let mut bends = [Vec::with_capacity(clip.frame_count()), Vec::with_capacity(clip.frame_count())];
-    let mut pose = Pose::default();
-    let mut model = Vec::new();
-    for frame in 0..clip.frame_count() {
-        clip.pose_into(frame, &mut pose);
-        let toes =
-            planter.frame(&mut pose, &mut model, pelvis, [feet[0][frame], feet[1][frame]], drops[frame]);
-        rotations.extend(pose.locals.iter().map(|l| l.rotation));
-        places.push(pose.locals[pelvis].translation);
-        bends.iter_mut().zip(toes).for_each(|(bends, bend)| bends.push(bend));
+    let (mut planted, mut drops) = planter.held(clip, &feet, pelvis, blend)?;
+    for _ in 0..ROUNDS {
+        for (foot, corrections) in feet.iter_mut().enumerate() {
+            let slips = slips(&planted, &planter.legs[foot], &found.feet[foot]);
+            for (correction, slip) in corrections.iter_mut().zip(bridged(&slips, blend)) {
+                correction.shift -= slip;
+            }
+        }
+        (planted, drops) = planter.held(clip, &feet, pelvis, blend)?;
     }
-    for (leg, bends) in planter.legs.iter().zip(&mut bends) {
-        ramped(bends, TOES / clip.frames_per_second() as f32);
-        planter.bend_toes(leg, bends, &mut pose, &mut rotations);
-    }
-    let mut tracks = clip.translations().to_vec();
-    tracks.retain(|track| track.joint as usize != pelvis);
-    tracks.push(TranslationTrack { joint: pelvis as u32, values: places });
-    let name = clip.name().to_owned();
-    let planted = Clip::new(name, rest.clone(), clip.frames_per_second(), rotations, tracks)?;
-    let after = measure(&planted, &Contacts { floor: 0.0, ..found.clone() })?;
     let pelvis_drop = drops.iter().copied().fold(0.0, f32::max);
-    Ok((planted, FeetReport { floor, before, after, pelvis_drop }))
+    Ok((planted, found, FeetReport { floor, pelvis_drop, ..FeetReport::default() }))
 }
 
 /// How far standing ankles are lifted by their corrections, metres: the median over frames and feet in which heel or
@@ -95,6 +119,30 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
     if rises.is_empty() { 0.0 } else { *rises.select_nth_unstable_by(middle, f32::total_cmp).1 }
 }
 
+/// How far the skin under the ball is, over the floor, from where it is on average in the contact, in frames in which it
+/// touches; of the frames in which the heel does too, where there are any, as the foot lies still in those.
+fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<Vec3>> {
+    let mut skin = Vec::with_capacity(clip.frame_count());
+    let mut model = Vec::new();
+    for_each_pose(clip, |_, pose| {
+        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+        skin.push(leg.points(model[leg.limb.end], model[leg.ball]).ball.with_y(0.0));
+    });
+    let of = |point: FootPoint| contacts.iter().filter(move |contact| contact.point == point);
+    let flat = |frame: &usize| of(FootPoint::Heel).any(|heel| (heel.start..heel.end).contains(frame));
+    let mut slips = vec![None; skin.len()];
+    for ball in of(FootPoint::Ball) {
+        let frames = ball.start..ball.end;
+        let lying: Vec<usize> = frames.clone().filter(flat).collect();
+        let still = if lying.is_empty() { frames.clone().collect() } else { lying };
+        let home = still.iter().map(|frame| skin[*frame]).sum::<Vec3>() / still.len().max(1) as f32;
+        for frame in frames {
+            slips[frame] = Some(if flat(&frame) { Vec3::ZERO } else { skin[frame] - home });
+        }
+    }
+    slips
+}
+
 struct Planter<'a> {
     legs: [Leg; 2],
     rest: &'a RestPose,
@@ -104,6 +152,41 @@ struct Planter<'a> {
 }
 
 impl Planter<'_> {
+    /// The clip with its feet at their corrected places, and how far the pelvis sank in each frame.
+    fn held(
+        &self,
+        clip: &Clip,
+        feet: &[Vec<Correction>; 2],
+        pelvis: usize,
+        blend: usize,
+    ) -> Result<(Clip, Vec<f32>)> {
+        let rest = clip.rest();
+        let drops = self.pelvis_drops(clip, feet, blend);
+        let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
+        let mut places = Vec::with_capacity(clip.frame_count());
+        let mut bends = [Vec::with_capacity(clip.frame_count()), Vec::with_capacity(clip.frame_count())];
+        let mut pose = Pose::default();
+        let mut model = Vec::new();
+        for frame in 0..clip.frame_count() {
+            clip.pose_into(frame, &mut pose);
+            let corrections = [feet[0][frame], feet[1][frame]];
+            let toes = self.frame(&mut pose, &mut model, pelvis, corrections, drops[frame]);
+            rotations.extend(pose.locals.iter().map(|l| l.rotation));
+            places.push(pose.locals[pelvis].translation);
+            bends.iter_mut().zip(toes).for_each(|(bends, bend)| bends.push(bend));
+        }
+        for (leg, bends) in self.legs.iter().zip(&mut bends) {
+            ramped(bends, TOES / clip.frames_per_second() as f32);
+            self.bend_toes(leg, bends, &mut pose, &mut rotations);
+        }
+        let mut tracks = clip.translations().to_vec();
+        tracks.retain(|track| track.joint as usize != pelvis);
+        tracks.push(TranslationTrack { joint: pelvis as u32, values: places });
+        let planted =
+            Clip::new(clip.name().to_owned(), rest.clone(), clip.frames_per_second(), rotations, tracks)?;
+        Ok((planted, drops))
+    }
+
     /// Where a foot goes, `model_from_foot`, before the pelvis is lowered: corrected, and lifted out of the floor.
     fn goal(&self, leg: &Leg, model: &[Local], correction: &Correction) -> Local {
         let (foot, ball) = (self.over_floor(model[leg.limb.end]), self.over_floor(model[leg.ball]));
@@ -111,7 +194,10 @@ impl Planter<'_> {
         let moved = correction.apply(foot.translation, sole.joint);
         let rise = moved.y - foot.translation.y;
         let spared = rise.clamp(-SPARED, SPARED);
-        let lowest = correction.apply(sole.heel, sole.joint).y.min(sole.ball.y + correction.shift.y) - spared;
+        let (heel, ball) = (correction.apply(sole.heel, sole.joint).y, sole.ball.y + correction.shift.y);
+        let tilt = libm::fabsf((correction.rotation() * foot.rotation * Vec3::X).y);
+        let edges = leg.half_widths.map(|half| tilt * half - EDGE).map(|drop| drop.max(0.0));
+        let lowest = (heel - edges[0]).min(ball - edges[1]) - spared;
         let lift = (-self.options.depth - lowest).max(0.0);
         Local {
             rotation: (correction.rotation() * foot.rotation).normalize(),

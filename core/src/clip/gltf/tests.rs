@@ -178,6 +178,25 @@ fn says_what_is_wrong_and_where() {
             j["animations"][0]["samplers"][0]["interpolation"] = json!("WAVY");
         }),
         ("reaches beyond", |j| j["accessors"][1]["count"] = json!(1_000_000)),
+        ("animations[0]: channels[0]: input: accessor 0: count 18446744073709551615 is beyond", |j| {
+            j["accessors"][0]["count"] = json!(u64::MAX);
+        }),
+        ("animations[0]: channels[0]: input: expected times of keys that rise", |j| {
+            j["accessors"][0]["count"] = json!(0);
+        }),
+        ("animations[0]: channels[0]: output: expected 2 values for 2 keys, got 1", |j| {
+            j["accessors"][1]["count"] = json!(1);
+        }),
+        ("animations[0]: channels[0]: output: ", |j| j["accessors"][1]["componentType"] = json!(5125)),
+        ("expected at most 65536 nodes, got 1000003", |j| {
+            let nodes = j["nodes"].as_array_mut().unwrap();
+            nodes.extend((0..1_000_000).map(|_| json!({})));
+        }),
+        ("expected at most 4096 joints, got 5000", |j| {
+            let nodes = j["nodes"].as_array_mut().unwrap();
+            nodes.extend((3..5000).map(|_| json!({})));
+            j["skins"][0]["joints"] = json!((0..5000).collect::<Vec<u32>>());
+        }),
         ("skins[0].joints: 8 of 3", |j| j["skins"][0]["joints"][0] = json!(8)),
         ("is its own ancestor", |j| j["nodes"][1]["children"] = json!([0])),
         ("too many frames", |j| {
@@ -202,6 +221,22 @@ fn says_what_is_wrong_and_where() {
         spoil(&mut json);
         let error = read(&(json, data)).unwrap_err();
         assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
+    }
+}
+
+#[test]
+fn numbers_that_are_none_are_found_where_they_are() {
+    // Times, rotations, translations of two keys; the first accessor's numbers lie first.
+    let cases = [
+        (1, f32::NAN, "animations[0]: channels[0]: input: "),
+        (2 + 1, f32::NAN, "animations[0]: channels[0]: output: "),
+        (2 + 8 + 4, f32::INFINITY, "animations[0]: channels[1]: output: "),
+    ];
+    for (place, number, expected) in cases {
+        let (json, mut data) = small(&[0.0, 0.1]);
+        data[4 * place..4 * place + 4].copy_from_slice(&number.to_le_bytes());
+        let error = read(&(json, data)).unwrap_err();
+        assert!(error.contains(expected) && error.contains("finite"), "expected `{expected}`, got `{error}`");
     }
 }
 

@@ -7,7 +7,8 @@ use gltf_json::validation::Checked;
 use glam::{DQuat, DVec3};
 
 use super::{Transform, unit};
-use crate::clip::raw::{Outcome, snapped_rate};
+use crate::clip::raw::snapped_rate;
+use crate::error::Outcome;
 use crate::input::gltf::Document;
 
 /// The rate for keys that lie on the frames of no usual rate.

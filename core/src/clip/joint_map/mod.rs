@@ -5,6 +5,8 @@ mod names;
 mod overrides;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vendors;
 
 use std::collections::{BTreeMap, BTreeSet};
 

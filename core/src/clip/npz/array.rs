@@ -7,7 +7,7 @@ use std::io::{Cursor, Read};
 use npyz::npz::NpzArchive;
 use npyz::{NpyFile, Order};
 
-use crate::clip::raw::Outcome;
+use crate::error::Outcome;
 
 /// Most bytes of one array: an hour of SMPL-X at 100 frames a second takes 475 MB as `f64`.
 const MAX_BYTES: u64 = 1 << 29;

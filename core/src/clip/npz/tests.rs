@@ -121,7 +121,22 @@ fn a_body_that_stands_along_y_is_taken_so() {
 
 #[test]
 fn names_what_lacks_or_does_not_fit() {
-    let cases: [(&str, Vec<Named>); 7] = [
+    let cases: [(&str, Vec<Named>); 11] = [
+        (
+            "poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got 3000000",
+            vec![("poses", &[1, 3_000_000], vec![0.0; 3_000_000])],
+        ),
+        ("poses: expected 1 to 1048576 frames by joints, got a shape of [2000000, 1]", {
+            vec![("poses", &[2_000_000, 1], vec![0.0; 2_000_000])]
+        }),
+        ("mocap_framerate: expected one number of 0.1 to 1000, got [NaN]", {
+            let [poses, trans, _] = standing(24);
+            vec![poses, trans, ("mocap_framerate", &[], vec![f64::NAN])]
+        }),
+        ("pose_body: expected 2 frames, got a shape of [3, 63]", {
+            let [_, trans, rate] = standing(24);
+            vec![("root_orient", &[2, 3], vec![0.0; 6]), ("pose_body", &[3, 63], vec![0.0; 189]), trans, rate]
+        }),
         (
             "expected an array poses, or root_orient and pose_body; the file has betas",
             vec![("betas", &[1], vec![0.0])],
@@ -153,6 +168,26 @@ fn names_what_lacks_or_does_not_fit() {
     poses[75] = f64::NAN;
     let error = read(&archive(&[(name, shape, poses), trans, rate])).unwrap_err();
     assert!(error.contains("frame 1, joint `left_hip`"), "{error}");
+    let [poses, (name, shape, mut trans), rate] = standing(24);
+    trans[4] = f64::INFINITY;
+    let error = read(&archive(&[poses, (name, shape, trans), rate])).unwrap_err();
+    assert!(error.contains("frame 1, joint `pelvis`"), "{error}");
+}
+
+#[test]
+fn the_constant_of_the_body_model_is_told_and_shifts_the_whole() {
+    let read_with = |shift: f64| {
+        let [poses, (name, shape, trans), rate] = standing(24);
+        read(&archive(&[poses, (name, shape, trans.iter().map(|t| t + shift).collect()), rate])).unwrap()
+    };
+    let (plain, shifted) = (read_with(0.0), read_with(0.25));
+    assert!(plain.report.warnings.iter().any(|w| w.contains("`trans` is taken for the place of the pelvis")));
+    for frame in 0..2 {
+        let [a, b] = [&plain, &shifted].map(|m| m.clips[0].pose(frame));
+        let by = b.locals[0].translation - a.locals[0].translation;
+        assert!(by.abs_diff_eq(Vec3::new(0.25, 0.25, -0.25), 1e-6), "{by}");
+        assert_eq!(a.locals[1..], b.locals[1..]);
+    }
 }
 
 /// A `.npy` with this header.

@@ -1,12 +1,13 @@
 //! One layer of scene description, with checks before and around what parses it.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::Once;
 
 use openusd::sdf::{AbstractData, ChildrenKey, FieldKey, Path, SpecType, Specifier, Value};
 use openusd::{usda, usdc, usdz};
 
-/// What is wrong with a file; the path of the file is added at the end.
-type Outcome<T> = Result<T, String>;
+use crate::error::Outcome;
 
 /// Most prims of a layer.
 const MAX_PRIMS: usize = 1 << 20;
@@ -179,10 +180,33 @@ impl Layer {
 ///
 /// The parser promises errors, but it is young, and a panic in it is the file's fault: it is caught at this one place.
 fn guarded<T, E: std::error::Error>(decode: impl FnOnce() -> Result<T, E>) -> Outcome<T> {
-    match catch_unwind(AssertUnwindSafe(decode)) {
+    match quietly(|| catch_unwind(AssertUnwindSafe(decode))) {
         Ok(result) => result.map_err(|error| chain(&error)),
         Err(_) => Err("is damaged in a way that the parser does not understand".into()),
     }
+}
+
+thread_local! {
+    /// Whether this thread is within [`quietly`].
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs what may panic without a word on standard error, which belongs to the program: the caller turns the panic into an
+/// error. Panics of other threads, and of this one afterwards, go to the hook that was there before.
+fn quietly<T>(work: impl FnOnce() -> T) -> T {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = take_hook();
+        set_hook(Box::new(move |info| {
+            if !QUIET.get() {
+                before(info);
+            }
+        }));
+    });
+    let outer = QUIET.replace(true);
+    let done = work();
+    QUIET.set(outer);
+    done
 }
 
 /// An error with its causes.

@@ -16,8 +16,9 @@ use self::layer::Layer;
 use self::skeleton::{Joints, chosen};
 use self::track::{Track, merged};
 use self::xform::Xforms;
-use super::raw::{Outcome, Raw, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
+use super::raw::{Raw, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
 use super::{Found, ReadOptions};
+use crate::error::Outcome;
 use crate::space::{Axis, Unit};
 
 /// Most joints of an animation; those beyond the skeleton's are for nobody.

@@ -2,15 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DAffine3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use openusd::sdf::Path;
 
 use super::layer::Layer;
 use super::values;
 use crate::clip::raw::Rigid;
+use crate::error::Outcome;
 use crate::pose::{Local, MAX_JOINTS};
-
-type Outcome<T> = Result<T, String>;
 
 /// The first skeleton with an animation of its own, else the first; and that animation.
 pub(crate) fn chosen<'a>(layer: &Layer, skeletons: &[&'a Path]) -> Outcome<Option<(&'a Path, Option<Path>)>> {
@@ -101,15 +100,17 @@ impl Joints {
         Ok(Self { paths, names, parents, rest, places })
     }
 
-    /// The bind pose, `model_from_joint` without scale, below what stands above the skeleton. The rest pose where the
-    /// file has no other.
-    pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Outcome<Vec<Local>> {
-        let world = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
+    /// The bind pose, `model_from_joint` without scale, below what stands above the skeleton; the file's own numbers where
+    /// it has none. The rest pose where the file has no other.
+    pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Outcome<Vec<DAffine3>> {
+        let world: Vec<DAffine3> = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
             Some(bind) => bind.iter().map(|joint| *above * *joint).collect(),
             None => self.world(above),
         };
-        let rigid: Vec<Rigid> = world.iter().map(Rigid::of).collect();
-        Ok(Rigid::locals(&rigid, &vec![None; rigid.len()]))
+        Ok(world
+            .iter()
+            .map(|joint| if is_rigid(joint) { *joint } else { Rigid::of(joint).to_affine() })
+            .collect())
     }
 
     fn rest(
@@ -182,4 +183,11 @@ impl Joints {
         }
         world
     }
+}
+
+/// Whether there is neither scale nor shear but for the rounding of numbers of `f32`.
+fn is_rigid(transform: &DAffine3) -> bool {
+    let m = transform.matrix3;
+    let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
+    off.iter().all(|v| v.abs() < 1e-6) && m.determinant() > 0.0
 }

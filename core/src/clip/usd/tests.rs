@@ -113,6 +113,7 @@ fn ops_above_may_move() {
 
 #[test]
 fn names_what_is_wrong() {
+    let many = format!("{}]", "\"a\", ".repeat(1_000_000));
     let deep = format!("#usda 1.0\n{}", "def \"a\" {\n".repeat(100_000));
     for (from, to, expected) in [
         ("#usda 1.0", "#usdb 1.0", "expected `#usda 1.0`"),
@@ -129,6 +130,23 @@ fn names_what_is_wrong() {
         ("xformOp:scale = (2, 2, 2)", "xformOp:scale = (2, 0, 2)", "flatten"),
         ("\"xformOp:scale\"]", "\"xformOp:shear\"]", "xformOpOrder names it, but it has no value"),
         (OTHERS, &deep, "brackets nest deeper than 256"),
+        (
+            "\"Hips/Leg\", \"Hips\", \"Hips/Arm\"]",
+            &many,
+            "Skel.joints: expected 1 to 4096 joints, got 1000000",
+        ),
+        ("\"Hips/Arm\", \"Other\", \"Hips\"]", &many, "Walk.joints: expected 1 to 4096 joints, got 1000000"),
+        ("\"Hips/Leg\", \"Hips\", \"Hips/Arm\"]", "]", "Skel.joints: expected 1 to 4096 joints, got 0"),
+        (
+            "5: [(20, 0, 0), (7, 7, 7), (0, 50, 8)]",
+            "5: []",
+            "Walk.translations at time code 5: expected 3 values",
+        ),
+        (
+            "5: [(20, 0, 0), (7, 7, 7)",
+            "5: [(20, 0, 0), (7, 7, inf)",
+            "Walk.translations at time code 5: value 1 is not",
+        ),
     ] {
         assert!(OTHERS.contains(from), "{from}");
         let error = read(&OTHERS.replacen(from, to, 1)).unwrap_err();
@@ -136,4 +154,13 @@ fn names_what_is_wrong() {
     }
     let error = super::read(b"\xff\xfe", "file", &ReadOptions::default()).unwrap_err();
     assert!(error.contains("not UTF-8 from byte 0"), "{error}");
+}
+
+#[test]
+fn text_that_ends_too_early_is_an_error() {
+    let whole = OTHERS.trim_end();
+    assert!(read(whole).is_ok());
+    for end in (0..whole.len()).step_by(7) {
+        assert!(read(&whole[..end]).is_err(), "{end}");
+    }
 }

@@ -5,8 +5,8 @@ use openusd::sdf::{Path, Value};
 
 use super::layer::Layer;
 use super::values;
+use crate::error::Outcome;
 
-type Outcome<T> = Result<T, String>;
 /// One row of `N` numbers per joint.
 type Rows<const N: usize> = Vec<[f64; N]>;
 

@@ -5,8 +5,7 @@ use openusd::sdf::{Path, Value};
 
 use super::layer::Layer;
 use super::values;
-
-type Outcome<T> = Result<T, String>;
+use crate::error::Outcome;
 
 /// One operation; its numbers over time codes, at least one sample.
 struct Op {

@@ -15,22 +15,18 @@ use serde_json::json;
 
 use super::super::accessor::{DocumentBuilder, Usage};
 use super::raw;
-use super::skeleton::{NodeTransform, WrittenTransform};
 use crate::Result;
 use crate::clip::Clip;
+use crate::rig::written::{ParentFromJoint, WrittenJoint};
 
 /// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
 /// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
 const REST_TOLERANCE: f32 = 5e-7;
 
 /// Appends a clip whose joints are nodes `0..joints`.
-pub(super) fn push(
-    builder: &mut DocumentBuilder,
-    clip: &Clip,
-    transforms: &[WrittenTransform],
-) -> Result<()> {
+pub(super) fn push(builder: &mut DocumentBuilder, clip: &Clip, transforms: &[WrittenJoint]) -> Result<()> {
     let (frames, rate) = (clip.frame_count(), clip.frames_per_second());
-    let rests: Vec<NodeTransform> = transforms.iter().map(|t| t.parent_from_joint).collect();
+    let rests: Vec<ParentFromJoint> = transforms.iter().map(|t| t.parent_from_joint).collect();
     let mut rotations: Vec<Vec<[f32; 4]>> = (0..rests.len()).map(|j| joint_rotations(clip, j)).collect();
     let mut translations: Vec<Vec<[f32; 3]>> =
         (0..rests.len()).map(|j| joint_translations(clip, j)).collect();

@@ -27,6 +27,7 @@ use serde_json::json;
 
 use super::accessor::DocumentBuilder;
 use super::scene::Scene;
+use crate::rig::written::written_joints;
 use crate::{Error, Result};
 pub use vrm::{VrmMeta, to_vrm};
 
@@ -116,8 +117,11 @@ fn document(scene: &Scene) -> Result<DocumentBuilder> {
         generator: Some(concat!("anthronet ", env!("CARGO_PKG_VERSION")).into()),
         ..Asset::default()
     };
-    let transforms = skeleton::written_transforms(&scene.joints);
-    let skin = (!scene.joints.is_empty()).then(|| skeleton::push(&mut builder, scene, &transforms));
+    let transforms = written_joints(scene.joints.iter().map(|joint| (joint.parent, joint.model_from_joint)));
+    let skin = match scene.joints.is_empty() {
+        true => None,
+        false => Some(skeleton::push(&mut builder, scene, &transforms)?),
+    };
     let joints = builder.root.nodes.len() as u32;
     for mesh in &scene.meshes {
         let mesh = mesh::push(&mut builder, mesh, scene.joints.len())?;

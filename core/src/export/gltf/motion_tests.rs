@@ -96,6 +96,7 @@ fn humanoid(names: JointNames) -> Scene {
     let mut scene = arm(4);
     let bones = humanoid_bones().iter().enumerate().skip(3);
     scene.joints.extend(bones.map(|(i, bone)| crate::export::SceneJoint {
+        bone_length: None,
         name: renamed(&bone.native, names).into_owned(),
         parent: Some(0),
         model_from_joint: glam::Affine3A::from_translation(Vec3::Y * i as f32),

@@ -253,6 +253,7 @@ fn a_long_chain_of_joints_does_not_drift() {
         pose *= DAffine3::from_rotation_translation(turn, DVec3::new(0.01, 0.007, 0.003));
         let rotation = DQuat::from_mat3(&pose.matrix3).as_quat();
         scene.joints.push(SceneJoint {
+            bone_length: None,
             name: format!("chain {i}"),
             parent: Some(i),
             model_from_joint: glam::Affine3A::from_rotation_translation(rotation, pose.translation.as_vec3()),

@@ -69,6 +69,16 @@ impl Layer {
         self.declare(prim, name, type_name, Variability::Uniform, Some(value))
     }
 
+    /// An attribute that no schema knows and that never changes over time.
+    pub(super) fn custom(&mut self, prim: &str, name: &str, type_name: &str, value: Value) -> Result<()> {
+        let path = format!("{prim}.{name}");
+        AttributeSpecMut::new(&mut self.0, path.as_str(), type_name, Variability::Uniform, true)
+            .map_err(fault)?
+            .set_default(value)
+            .map_err(fault)?;
+        Ok(())
+    }
+
     /// An attribute without a value, for connections and samples; its path.
     pub(super) fn declare(
         &mut self,

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Names that are no USD identifiers are narrowed to such, and the original is kept: of prims in `displayName`, of
-//! joints in the skeleton's `jointNames`. The scene's extras are a JSON text in the root's `customData`, under
+//! joints in the skeleton's `jointNames`. How long bones are is in its `anthronet:boneLengths`. The scene's extras are a JSON text in the root's `customData`, under
 //! `anthronetExtras`. A character without joints is an `Xform` with meshes alone.
 //!
 //! Time codes are frames of the first clip; a further clip of another rate keeps its seconds. Bytes depend on the
@@ -24,7 +24,7 @@ mod layer;
 mod material;
 mod mesh;
 pub(crate) mod names;
-mod skeleton;
+pub(crate) mod skeleton;
 
 use std::collections::HashMap;
 use std::io::Cursor;

@@ -10,6 +10,9 @@ use super::names::Names;
 use crate::Result;
 use crate::export::{Scene, SceneJoint};
 
+/// A custom attribute of the Skeleton: how far each joint's bone reaches along its +Y axis, metres.
+pub(crate) const BONE_LENGTHS: &str = "anthronet:boneLengths";
+
 /// The skeleton at this path and its animations.
 pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene) -> Result<()> {
     layer.prim(path, "Skel", "Skeleton")?;
@@ -22,6 +25,11 @@ pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene) -> Result<()> 
     layer.uniform(path, "joints", "token[]", joints.clone())?;
     let names = scene.joints.iter().map(|joint| joint.name.as_str());
     layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
+    // USD has no word for where a bone ends either; a negative length stands for none.
+    if scene.joints.iter().any(|joint| joint.bone_length.is_some()) {
+        let lengths = scene.joints.iter().map(|joint| joint.bone_length.unwrap_or(-1.0)).collect();
+        layer.custom(path, BONE_LENGTHS, "float[]", Value::FloatVec(lengths))?;
+    }
     layer.uniform(path, "bindTransforms", "matrix4d[]", matrices(bind.iter().copied()))?;
     layer.uniform(path, "restTransforms", "matrix4d[]", matrices(rest))?;
 

@@ -14,7 +14,9 @@ use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
 use crate::clip::gltf::told;
 use crate::clip::gltf::track::{self, FALLBACK_RATE, MAX_NUMBERS, ON_FRAME, Track};
 use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::input::gltf::{Document, Outcome};
+use crate::error::Outcome;
+use crate::export::titles::Titles;
+use crate::input::gltf::Document;
 use crate::pose::{Local, RestPose};
 
 /// How far scale may be from 1.
@@ -46,7 +48,7 @@ pub(super) fn clips(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Cli
         left = rotations.ok_or_else(|| fault(format!("{frames} frames of {joints} joints are too many")))?;
         motions.push((i, animation, motion));
     }
-    let mut names = super::character::Names::default();
+    let mut names = Titles::default();
     let mut clips = Vec::new();
     for (i, animation, motion) in motions {
         let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));

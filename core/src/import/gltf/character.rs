@@ -1,14 +1,14 @@
 //! A document as a [`Scene`]: joints, meshes with texture coordinates and weights, materials, clips.
 
-use std::collections::BTreeSet;
-
 use glam::{Affine3A, Vec3};
 use gltf_json::{
     Accessor, Index, Material, material::AlphaMode as GltfAlphaMode, mesh::Semantic, validation::Checked,
 };
 
 use super::skeleton::{Skeleton, hung_on};
-use super::{Outcome, Part, animation};
+use super::{Part, animation};
+use crate::error::Outcome;
+use crate::export::titles::Titles;
 use crate::export::{AlphaMode, Corners, Scene, SceneMaterial, SceneMesh};
 use crate::input::gltf::{Document, Tree};
 
@@ -21,7 +21,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
     let root = &document.root;
     let tree = document.tree()?;
     let skeleton = Skeleton::read(document, &tree)?;
-    let (mut names, mut material_names) = (Names::default(), Names::default());
+    let (mut names, mut material_names) = (Titles::default(), Titles::default());
     let mut materials: Vec<SceneMaterial> =
         root.materials.iter().map(|m| material(m, &mut material_names)).collect();
     let without = materials.len() as u32;
@@ -57,23 +57,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
     Ok(scene)
 }
 
-/// Names made unique and printable.
-#[derive(Default)]
-pub(super) struct Names(BTreeSet<String>);
-
-impl Names {
-    pub(super) fn unique(&mut self, name: &str) -> String {
-        let name: String = name.chars().filter(|c| !c.is_control()).collect();
-        let name = if name.is_empty() { "unnamed".to_owned() } else { name };
-        let numbered = (2..).map(|n| format!("{name} {n}"));
-        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !self.0.contains(name));
-        let free = free.unwrap_or_default();
-        self.0.insert(free.clone());
-        free
-    }
-}
-
-fn material(material: &Material, names: &mut Names) -> SceneMaterial {
+fn material(material: &Material, names: &mut Titles) -> SceneMaterial {
     let pbr = &material.pbr_metallic_roughness;
     let extensions = material.extensions.as_ref();
     SceneMaterial {

@@ -16,8 +16,9 @@ use gltf_json::{
 };
 
 use super::{ImportedMesh, ImportedScene, MAX_ELEMENTS, MAX_MESHES};
+use crate::error::Outcome;
 use crate::export::Scene;
-use crate::input::gltf::{Document, Outcome};
+use crate::input::gltf::Document;
 use crate::{Error, Result};
 
 /// Reads a `.glb` or `.gltf` that is already in memory. Buffers of a `.gltf` are looked for beside `path`.

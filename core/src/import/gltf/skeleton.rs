@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
-use gltf_json::{Index, Node, Skin};
+use gltf_json::{Index, Node, Skin, Value};
 
-use super::Outcome;
+use crate::error::Outcome;
 use crate::export::SceneJoint;
-use crate::export::gltf::skeleton::{NodeTransform, rounded};
+use crate::export::titles::Titles;
 use crate::input::gltf::{Document, Tree};
 use crate::pose::Local;
+use crate::rig::written::{ParentFromJoint, rounded};
 
 /// How far scale may be from 1, and axes from a right angle.
 const RIGID_TOLERANCE: f64 = 1e-4;
@@ -89,7 +90,7 @@ impl Skeleton {
             chains.push(chain);
         }
 
-        let mut names = super::character::Names::default();
+        let mut names = Titles::default();
         let mut rest: Vec<DAffine3> = Vec::with_capacity(nodes.len());
         let mut locals = Vec::with_capacity(nodes.len());
         let mut joints = Vec::with_capacity(nodes.len());
@@ -101,7 +102,13 @@ impl Skeleton {
             rest.push(model_from_joint);
             let name = root.nodes[*node].name.clone().unwrap_or_else(|| format!("node {node}"));
             let model_from_joint = rounded(&model_from_joint);
-            joints.push(SceneJoint { name: names.unique(&name), parent: *parent, model_from_joint });
+            joints.push(SceneJoint {
+                name: names.unique(&name),
+                parent: *parent,
+                model_from_joint,
+                bone_length: bone_length(&root.nodes[*node])
+                    .map_err(|message| format!("{}: {message}", named(document, *node)))?,
+            });
         }
         let mut skeleton = Self { joints, locals, chains, places };
         skeleton.bind(document, &nodes, &binds)?;
@@ -131,6 +138,18 @@ impl Skeleton {
             self.joints[i].model_from_joint = rounded(&rigid);
         }
         Ok(())
+    }
+}
+
+/// What our own files say of the length of a joint's bone.
+fn bone_length(node: &Node) -> Outcome<Option<f32>> {
+    let extras = node.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
+    let Some(length) = extras.as_ref().and_then(|e| e.pointer("/anthronet/bone_length")) else {
+        return Ok(None);
+    };
+    match length.as_f64().map(|length| length as f32) {
+        Some(length) if (0.0..f32::INFINITY).contains(&length) => Ok(Some(length)),
+        _ => Err(format!("extras.anthronet.bone_length: expected metres, got {length}")),
     }
 }
 
@@ -185,8 +204,8 @@ pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Outcome<D
 }
 
 /// Translation and rotation of a node that has no matrix and no scale.
-pub(super) fn written(node: &Node) -> Option<NodeTransform> {
-    (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| NodeTransform {
+pub(super) fn written(node: &Node) -> Option<ParentFromJoint> {
+    (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| ParentFromJoint {
         translation: node.translation.unwrap_or_default(),
         rotation: node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |r| r.0),
     })

@@ -2,9 +2,11 @@
 
 use openusd::sdf::{FieldKey, Path, Value};
 
-use super::{Outcome, Titles, title};
+use super::title;
 use crate::clip::usd::layer::Layer;
 use crate::clip::usd::values;
+use crate::error::Outcome;
+use crate::export::titles::Titles;
 use crate::export::usd::SPECULAR;
 use crate::export::{AlphaMode, SceneMaterial};
 

@@ -3,11 +3,11 @@
 use glam::{DAffine3, DMat4, DVec3};
 use openusd::sdf::{Path, Value};
 
-use super::Outcome;
 use crate::clip::usd::layer::Layer;
 use crate::clip::usd::skeleton::Joints;
 use crate::clip::usd::values;
 use crate::clip::usd::xform::Xforms;
+use crate::error::Outcome;
 use crate::export::SceneMesh;
 use crate::export::scene::flip_v;
 use crate::import::MAX_ELEMENTS;

@@ -7,25 +7,26 @@
 mod material;
 mod mesh;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{Affine3A, DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use openusd::sdf::{FieldKey, Path as PrimPath, Value};
 
 use super::{ImportedMesh, ImportedScene, MAX_MESHES};
 use crate::clip::usd::layer::Layer;
 use crate::clip::usd::skeleton::{Joints, chosen};
+use crate::clip::usd::values;
 use crate::clip::usd::xform::Xforms;
 use crate::clip::{Clip, ReadOptions, TranslationTrack, from_bytes as clips_from_bytes};
+use crate::error::Outcome;
+use crate::export::titles::Titles;
 use crate::export::usd::EXTRAS;
+use crate::export::usd::skeleton::BONE_LENGTHS;
 use crate::export::{Scene, SceneJoint};
-use crate::pose::Local;
+use crate::rig::written::rounded;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
-
-type Outcome<T> = std::result::Result<T, String>;
 
 /// Where a rest pose leaves the bind pose by so many metres, a clip says where its joints are.
 const REST_TOLERANCE: f32 = 1e-6;
@@ -135,6 +136,7 @@ fn character(bytes: &[u8]) -> Outcome<(Scene, Space)> {
             let above = ours_from_file * Xforms::read(&layer, prim)?.at_start()?;
             let bind = joints.bind_pose(&layer, prim, &above)?;
             scene.joints = scene_joints(&joints, &bind);
+            bone_lengths(&layer, prim, &joints, &mut scene.joints)?;
             Some(mesh::Skeleton { prim: prim.clone(), above, joints })
         }
     };
@@ -150,15 +152,37 @@ fn character(bytes: &[u8]) -> Outcome<(Scene, Space)> {
     Ok((scene, space))
 }
 
-fn scene_joints(joints: &Joints, bind: &[Local]) -> Vec<SceneJoint> {
+fn scene_joints(joints: &Joints, bind: &[DAffine3]) -> Vec<SceneJoint> {
+    let mut titles = Titles::default();
     let parts = joints.names.iter().zip(&joints.parents).zip(bind);
     parts
-        .map(|((name, parent), local)| SceneJoint {
-            name: name.clone(),
+        .map(|((name, parent), bind)| SceneJoint {
+            name: titles.unique(name),
             parent: *parent,
-            model_from_joint: Affine3A::from_rotation_translation(local.rotation, local.translation),
+            model_from_joint: rounded(bind),
+            bone_length: None,
         })
         .collect()
+}
+
+/// What our own files say of the lengths of bones.
+fn bone_lengths(
+    layer: &Layer,
+    prim: &PrimPath,
+    joints: &Joints,
+    scene_joints: &mut [SceneJoint],
+) -> Outcome<()> {
+    let Some(value) = layer.default(prim, BONE_LENGTHS)? else { return Ok(()) };
+    let lengths = values::rows::<1>(&value).unwrap_or_default();
+    if lengths.len() != joints.places.len() {
+        let (expected, got) = (joints.places.len(), lengths.len());
+        return Err(format!("{prim}.{BONE_LENGTHS}: expected {expected} numbers, got {got}"));
+    }
+    for (joint, place) in scene_joints.iter_mut().zip(&joints.places) {
+        let [length] = lengths[*place];
+        joint.bone_length = (length >= 0.0).then_some(length as f32);
+    }
+    Ok(())
 }
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
@@ -187,25 +211,6 @@ fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
 fn title(layer: &Layer, prim: &PrimPath) -> Outcome<String> {
     let shown = layer.text(prim, FieldKey::DisplayName.as_str())?.filter(|name| !name.is_empty());
     Ok(shown.unwrap_or_else(|| prim.name().unwrap_or("prim").to_owned()))
-}
-
-/// Names given out so far, each with the last number behind it.
-#[derive(Default)]
-struct Titles(BTreeMap<String, u32>);
-
-impl Titles {
-    /// The name, with a number behind it where it is taken.
-    fn unique(&mut self, name: &str) -> String {
-        let mut count = self.0.get(name).copied().unwrap_or(0);
-        let mut title = name.to_owned();
-        while self.0.contains_key(&title) {
-            count += 1;
-            title = format!("{name} {}", count + 1);
-        }
-        self.0.insert(title.clone(), 0);
-        self.0.insert(name.to_owned(), count);
-        title
-    }
 }
 
 #[cfg(test)]

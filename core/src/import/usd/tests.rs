@@ -105,10 +105,3 @@ fn damage_is_an_error() {
         }
     }
 }
-
-#[test]
-fn names_stay_apart() {
-    let mut titles = Titles::default();
-    let given = ["Nail", "Nail 2", "Nail", "Nail", "Nail 2"].map(|name| titles.unique(name));
-    assert_eq!(given, ["Nail", "Nail 2", "Nail 3", "Nail 4", "Nail 2 2"]);
-}

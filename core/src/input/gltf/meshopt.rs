@@ -4,8 +4,8 @@
 use gltf_json::{Buffer, Root, validation::USize64};
 use serde::Deserialize;
 
-use super::Outcome;
 use super::slice;
+use crate::error::Outcome;
 
 pub(crate) const NAME: &str = "EXT_meshopt_compression";
 

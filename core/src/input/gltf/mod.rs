@@ -15,10 +15,8 @@ use gltf_json::{
 };
 
 use super::MAX_ELEMENTS;
+use crate::error::Outcome;
 use crate::{Error, Result};
-
-/// What is wrong with a document; the path is added at the end.
-pub(crate) type Outcome<T> = std::result::Result<T, String>;
 
 /// Required extensions that change no geometry.
 const HARMLESS_EXTENSIONS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
