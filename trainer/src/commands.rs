@@ -53,6 +53,20 @@ impl GeneratorOptions {
         config.fourier.sigma = self.sigma.unwrap_or(config.fourier.sigma);
         config
     }
+
+    /// How they ask for it to be trained.
+    fn training(&self) -> TrainingOptions {
+        let defaults = TrainingOptions::default();
+        TrainingOptions {
+            seed: TRAINING_SEED,
+            epochs: self.epochs.unwrap_or(defaults.epochs),
+            resume: self.resume,
+            // Without the skip the network starts far from people, the running statistics lag behind it, and a loss
+            // through them grows without bound. The paper never freezes them.
+            freeze_norm: if self.plain { 1.0 } else { defaults.freeze_norm },
+            ..defaults
+        }
+    }
 }
 
 /// Trains the generator and writes the model file: data set, basis, network, scores.
@@ -69,19 +83,9 @@ pub fn train_generator(options: &GeneratorOptions) -> Result<()> {
         coefficient_std: dataset.basis.std.clone(),
         laplacian: Some(laplacian(&dataset.basis, corpus.cage())),
     };
-    let defaults = TrainingOptions::default();
     let out_dir = options.out.clone().unwrap_or_else(|| cache.join("generator"));
     std::fs::create_dir_all(&out_dir).map_err(Error::io(&out_dir))?;
-    let training = TrainingOptions {
-        out_dir,
-        seed: TRAINING_SEED,
-        epochs: options.epochs.unwrap_or(defaults.epochs),
-        resume: options.resume,
-        // Without the skip the network starts far from people, and with running statistics, which lag behind it, its
-        // loss grows without bound. The paper never freezes them.
-        freeze_norm: if options.plain { 1.0 } else { defaults.freeze_norm },
-        ..defaults
-    };
+    let training = TrainingOptions { out_dir, ..options.training() };
     let trained = train(
         &training_set(&dataset.train),
         &training_set(&dataset.validation),
@@ -217,6 +221,10 @@ mod tests {
             GeneratorOptions { plain: true, fourier: Some(4), sigma: Some(0.01), ..Default::default() };
         let config = options.config();
         assert_eq!((config.fourier.components, config.fourier.sigma, config.skip), (4, 0.01, false));
+        assert_eq!(
+            (options.training().freeze_norm, GeneratorOptions::default().training().freeze_norm),
+            (1.0, 0.5)
+        );
         let absurd = GeneratorOptions { sigma: Some(f64::NAN), ..Default::default() };
         assert!(train_generator(&absurd).unwrap_err().to_string().contains("fourier.sigma"));
     }
