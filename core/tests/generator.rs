@@ -126,7 +126,9 @@ fn the_bind_pose_is_an_exact_t_on_the_ground() {
         let shoulder = at(&format!("upperarm_{side}"));
         for name in ["lowerarm", "hand", "upperarm_twist_02", "lowerarm_twist_01"] {
             let joint = at(&format!("{name}_{side}"));
-            assert_eq!((joint.y, joint.z), (shoulder.y, shoulder.z), "{name}_{side}");
+            // Rounded to what files give back: places there are relative to parents, and sums of those are off by a bit.
+            let off = (joint - shoulder).with_x(0.0).length();
+            assert!(off < 1e-6, "{name}_{side}: {off} m off");
             assert!((joint.x - shoulder.x) * if side == "l" { 1.0 } else { -1.0 } > 0.0, "+X is the left");
         }
     }

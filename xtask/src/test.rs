@@ -31,7 +31,7 @@ pub(crate) enum Part {
 
 /// Runs `cargo test` and counts the tests that say `skipped NAME: why`, which cargo counts as passed.
 fn rust_tests(command: &mut Command) -> Outcome {
-    println!("$ cargo test --workspace --all-features");
+    println!("$ cargo test --no-fail-fast --workspace --all-features");
     let start = Instant::now();
     let did_not = |e: std::io::Error| format!("`cargo test` did not run: {e}");
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(did_not)?;
@@ -68,7 +68,7 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
         let everything = ["--workspace", "--all-features"];
         let targets = ["--lib", "--bins", "--tests", "--examples"];
         failures.extend(tools::run(cargo("build").args(everything).args(targets)).err());
-        failures.extend(rust_tests(cargo("test").args(everything)).err());
+        failures.extend(rust_tests(cargo("test").arg("--no-fail-fast").args(everything)).err());
     }
     if wanted(Part::Hosts) {
         failures.extend(hosts::run().err());
