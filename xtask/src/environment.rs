@@ -41,7 +41,7 @@ const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind",
 /// The compiler, the run time and the tests of C#, which Unity's are of the family of, and the packages that have them.
 const MONO_PROGRAMS: [&str; 3] = ["mcs", "mono", "nunit-console"];
 const MONO_PACKAGES: &[&str] =
-    &["mono-mcs", "mono-runtime", "mono-devel", "libnunit-cil-dev", "nunit-console"];
+    &["mono-mcs", "mono-runtime", "mono-devel", "libnunit-cil-dev", "nunit-console", "pkg-config"];
 /// Compiles with NUnit, which tests of Unity's are written for, too.
 pub(crate) const NUNIT: &str = "-pkg:nunit";
 
