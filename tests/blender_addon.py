@@ -2,7 +2,7 @@
 
     python blender_addon.py anthronet-….zip PICTURES [PART…]
 
-Runs in any Blender from 4.2 as a module. Speeds are printed beside their bars, and fail at several times those.
+Runs in any Blender from 4.2 as a module. Speeds are printed beside their bars and never fail.
 """
 
 import os
