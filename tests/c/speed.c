@@ -23,8 +23,7 @@ static double nanoseconds_per_call(double since) { return 1e9 * (now() - since) 
 static const char *met(int good) { return good ? "" : ", OVER THE BAR"; }
 
 static void nanoseconds(const char *what, double found) {
-    printf("  %s: %.1f ns (bar %.0f ns%s)
-", what, found, CALL_BAR, met(found <= CALL_BAR));
+    printf("  %s: %.1f ns (bar %.0f ns%s)\n", what, found, CALL_BAR, met(found <= CALL_BAR));
 }
 
 static double least(double a, double b) { return a < b ? a : b; }
