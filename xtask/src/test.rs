@@ -31,7 +31,7 @@ pub(crate) enum Part {
 
 /// Runs `cargo test` and counts the tests that say `skipped NAME: why`, which cargo counts as passed.
 fn rust_tests(command: &mut Command) -> Outcome {
-    println!("$ cargo test --no-fail-fast --workspace --all-features");
+    println!("$ {}", tools::shown(command));
     let start = Instant::now();
     let did_not = |e: std::io::Error| format!("`cargo test` did not run: {e}");
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(did_not)?;

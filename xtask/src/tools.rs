@@ -52,7 +52,7 @@ pub(crate) fn output(command: &mut Command) -> Outcome<String> {
 }
 
 /// The command as a person would type it, paths shortened to the repository's root.
-fn shown(command: &Command) -> String {
+pub(crate) fn shown(command: &Command) -> String {
     let root = format!("{}{}", root().display(), std::path::MAIN_SEPARATOR);
     let mut words = Vec::new();
     for (name, value) in command.get_envs() {
