@@ -175,9 +175,12 @@ fn values(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
         (name, bench.tests(&program, &[]))
     };
     let mut scripts: Vec<_> = programs.into_iter().flatten().map(run).collect();
-    if let Some(program) = bench.build(tally, "values in C99", "gcc", &[&C99[..], &["-g"]].concat(), &VALUES)
+    for (name, compiler, standard) in
+        [("values in C99", "gcc", &C99[..]), ("values in C++17", "g++", &CPP17[..])]
     {
-        scripts.push(bench.watched("values in C99", &program));
+        if let Some(program) = bench.build(tally, name, compiler, &[standard, &["-g"]].concat(), &VALUES) {
+            scripts.push(bench.watched(name, &program));
+        }
     }
     scripts
 }
@@ -224,11 +227,24 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
     // With the packages, features and profile of the unit tests, which have built it by now: that the profile differs
     // from the library's makes the test the harder.
     let mut test = cargo("test");
-    test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", library);
+    test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", &library);
     tally.case("same bytes: 200 requests through the crate and through the library", tools::run(&mut test));
-    let runner = VALGRIND.map(|word| format!("{word:?}")).join(",");
-    test.args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")]).env("ANTHRONET_REQUESTS", "4");
-    tally.case("valgrind: a program in Rust that opens the library, 4 requests", tools::run(&mut test));
+    // The sanitizer's allocator, which sees freed memory used by libc and freed twice, and what is lost: the code is not
+    // instrumented.
+    let sanitizer = tools::output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
+    let preload = format!("LD_PRELOAD={}", sanitizer.trim());
+    let sanitized = ["env", &preload, "ASAN_OPTIONS=detect_leaks=1"];
+    for (watcher, runner) in [("AddressSanitizer's allocator", &sanitized[..]), ("valgrind", &VALGRIND[..])] {
+        let runner = runner.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(",");
+        let mut watched = cargo("test");
+        watched
+            .args(["--workspace", "--all-features", "--test", "same_bytes"])
+            .args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")])
+            .env("ANTHRONET_LIBRARY", &library)
+            .env("ANTHRONET_REQUESTS", "4");
+        let name = format!("{watcher}: a program in Rust that opens the library, 4 requests");
+        tally.case(&name, tools::run(&mut watched));
+    }
     let list = tools::target().join("tmp/same_bytes");
     let expected = tools::read(&list.join("sha256.txt"))?;
     let programs = [
