@@ -5,13 +5,12 @@ use crate::tools::{self, Outcome};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A number of the table, the most that it may be, and its unit. The goal for sliding is 10 mm a stride: half of the clips
-/// keep to it, the others hold a heel about which the foot turns or jump where no leg reaches (docs/motion.md).
+/// A number of the table, the most that it may be, and its unit.
 const BARS: [(&str, f64, &str); 5] = [
     ("direction_worst_clip_mean_deg", 3.0, "°"),
     ("beyond_limits_deg", 5.0, "°"),
     ("under_floor_mm", 20.0, "mm"),
-    ("slide_mm", 30.0, "mm"),
+    ("slide_mm", 10.0, "mm"),
     ("not_finite", 0.0, "vertices"),
 ];
 

@@ -3,8 +3,8 @@
 //! Each foot has three points on its sole: heel, ball and tip of the toes. [`contacts`] finds when heels and balls
 //! stand still on the floor, [`measure`] says how far they slide meanwhile and how deep they sink, and [`plant`] holds
 //! them in place (Kovar, Schreiner, Gleicher, "Footskate cleanup for motion capture editing", SCA 2002): the sole is
-//! moved rigidly so that what touches stays where it is, the pelvis sinks a little where a leg is too short, and
-//! two-bone inverse kinematics bends the leg.
+//! moved rigidly so that what touches stays where it is and rolls without slipping, the pelvis sinks a little where a
+//! leg is too short, and two-bone inverse kinematics bends the leg.
 //!
 //! All of it is about clips of our rig. The floor is y = 0 in model space.
 
@@ -12,6 +12,7 @@ mod contacts;
 mod hold;
 mod leg;
 mod plant;
+mod roll;
 
 use crate::clip::Clip;
 use crate::pose::Pose;

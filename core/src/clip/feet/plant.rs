@@ -4,9 +4,10 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{Quat, Vec3};
 
-use super::contacts::{Contact, Contacts, FootPoint, contacts};
+use super::contacts::{Contact, Contacts, contacts};
 use super::hold::{Correction, bridged, corrections, ramped};
 use super::leg::{self, Leg};
+use super::roll::slips;
 use super::{FeetOptions, FeetReport, for_each_pose, measure};
 use crate::Result;
 use crate::clip::edit::{closed, cut, repeated};
@@ -25,7 +26,8 @@ const GIVE: f32 = 0.07;
 const TOES: f32 = 10.5;
 /// How much deeper than its middle an edge of the sole may be in the floor, metres: skin gives way.
 const EDGE: f32 = 0.006;
-/// How often what still slides is taken back: rolling over the ball changes how the toes bend, and that the rolling.
+/// How often what still slides is taken back: that moves feet by up to 2 cm, which changes how ankle and toes bend, and
+/// that by up to 1 mm more.
 const ROUNDS: usize = 2;
 
 /// Holds the feet of a clip of our rig: points in contact stay where they are, nothing sinks deeper than
@@ -117,30 +119,6 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
     });
     let middle = rises.len() / 2;
     if rises.is_empty() { 0.0 } else { *rises.select_nth_unstable_by(middle, f32::total_cmp).1 }
-}
-
-/// How far the skin under the ball is, over the floor, from where it is on average in the contact, in frames in which it
-/// touches; of the frames in which the heel does too, where there are any, as the foot lies still in those.
-fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<Vec3>> {
-    let mut skin = Vec::with_capacity(clip.frame_count());
-    let mut model = Vec::new();
-    for_each_pose(clip, |_, pose| {
-        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
-        skin.push(leg.points(model[leg.limb.end], model[leg.ball]).ball.with_y(0.0));
-    });
-    let of = |point: FootPoint| contacts.iter().filter(move |contact| contact.point == point);
-    let flat = |frame: &usize| of(FootPoint::Heel).any(|heel| (heel.start..heel.end).contains(frame));
-    let mut slips = vec![None; skin.len()];
-    for ball in of(FootPoint::Ball) {
-        let frames = ball.start..ball.end;
-        let lying: Vec<usize> = frames.clone().filter(flat).collect();
-        let still = if lying.is_empty() { frames.clone().collect() } else { lying };
-        let home = still.iter().map(|frame| skin[*frame]).sum::<Vec3>() / still.len().max(1) as f32;
-        for frame in frames {
-            slips[frame] = Some(if flat(&frame) { Vec3::ZERO } else { skin[frame] - home });
-        }
-    }
-    slips
 }
 
 struct Planter<'a> {

@@ -42,6 +42,12 @@ fn feet_are_held_and_lifted_out_of_the_floor() {
             assert!(report.before.worst_slide[foot] > 0.01, "{body}: nothing to mend: {report:?}");
             assert!(report.after.worst_slide[foot] < 0.005, "{body}: {report:?}");
             assert!(report.after.deepest[foot] < 0.01, "{body}: {report:?}");
+            let leg = &Leg::both(&rest).unwrap()[foot];
+            let [before, after] = [&clip, &planted].map(|clip| {
+                let slips = roll::slips(clip, leg, &report.contacts.feet[foot]);
+                slips.iter().flatten().map(|slip| slip.length()).fold(0.0, f32::max)
+            });
+            assert!(before > 0.005 && after < 0.001, "{body}: rolls with slips of {before}, then {after}");
         }
         // No pops: a frame's step of any joint stays near that of the clip before.
         let limits = JointLimits::of_rig(&rest);
