@@ -34,7 +34,8 @@ pub fn enclosed_volume(at: impl Fn(u32) -> DVec3, quads: &[[u32; 4]]) -> f64 {
     let mut six_times = 0.0;
     for quad in quads {
         let [a, b, c, d] = quad.map(&at);
-        six_times += a.dot(b.cross(c)) + a.dot(c.cross(d));
+        // a·(b×c) + a·(c×d), with one product less.
+        six_times += a.dot((b - d).cross(c));
     }
     six_times / 6.0
 }

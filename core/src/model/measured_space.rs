@@ -7,6 +7,7 @@
 //! know on which side of the plane they are.
 
 use glam::DVec3;
+use multiversion::multiversion;
 
 use super::shape_space::ShapeSpace;
 use crate::condition::MeasuredShape;
@@ -202,9 +203,7 @@ impl MeasuredShape for MeasuredSpace {
             row.fill(0.0);
             for &(place, g) in &gradient {
                 let [x, y, z] = [0, 1, 2].map(|axis| self.row(place, axis));
-                for (((sum, &x), &y), &z) in row.iter_mut().zip(x).zip(y).zip(z) {
-                    *sum += g.x * f64::from(x) + g.y * f64::from(y) + g.z * f64::from(z);
-                }
+                add(row, [x, y, z], g);
             }
         }
         out
@@ -215,7 +214,17 @@ fn norm(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Sum of products in eight lanes: fast without fused operations, and in one order on every machine.
+/// Adds rows along x, y and z, each times its weight.
+#[multiversion(targets("x86_64+avx2"))]
+fn add(sums: &mut [f64], [x, y, z]: [&[f32]; 3], weights: DVec3) {
+    for (((sum, &x), &y), &z) in sums.iter_mut().zip(x).zip(y).zip(z) {
+        *sum += weights.x * f64::from(x) + weights.y * f64::from(y) + weights.z * f64::from(z);
+    }
+}
+
+/// Sum of products in eight lanes: fast without fused operations, and in one order on every machine, however wide its
+/// registers are.
+#[multiversion(targets("x86_64+avx2"))]
 fn dot(row: &[f32], c: &[f64]) -> f64 {
     let mut lanes = [0.0_f64; 8];
     let (rows, row_rest) = row.as_chunks::<8>();
@@ -231,4 +240,32 @@ fn dot(row: &[f32], c: &[f64]) -> f64 {
         sum += f64::from(*r) * c;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_have_the_same_bits_however_wide_the_registers_are() {
+        let row: Vec<f32> = (0..301).map(|i| libm::sin(f64::from(i)) as f32).collect();
+        let c: Vec<f64> = (0..301).map(|i| libm::cos(f64::from(i * i))).collect();
+        let mut lanes = [0.0_f64; 8];
+        for (i, (r, c)) in row[..296].iter().zip(&c).enumerate() {
+            lanes[i % 8] += std::hint::black_box(f64::from(*r) * c);
+        }
+        let [a, b, d, e, f, g, h, i] = lanes;
+        let mut sum = ((a + f) + (b + g)) + ((d + h) + (e + i));
+        for (r, c) in row[296..].iter().zip(&c[296..]) {
+            sum += f64::from(*r) * c;
+        }
+        assert_eq!(dot(&row, &c).to_bits(), sum.to_bits());
+
+        let mut sums = c.clone();
+        add(&mut sums, [&row, &row[1..], &row[2..]], DVec3::new(0.1, -0.7, 1.3));
+        for (i, sum) in sums.iter().enumerate().take(299) {
+            let [x, y, z] = [0, 1, 2].map(|k| std::hint::black_box(f64::from(row[i + k])));
+            assert_eq!(sum.to_bits(), (c[i] + (0.1 * x + -0.7 * y + 1.3 * z)).to_bits(), "{i}");
+        }
+    }
 }
