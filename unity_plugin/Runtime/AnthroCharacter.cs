@@ -336,6 +336,15 @@ namespace Anthronet
             }
         }
 
+        /// <summary>Takes all blend shapes off, as Unity takes no single one.</summary>
+        public void ClearBlendShapes()
+        {
+            for (var i = 0; figure != null && i < figure.Levels.Count; i++)
+            {
+                figure.Levels[i].mesh.ClearBlendShapes();
+            }
+        }
+
         /// <summary>Sets how much of a blend shape is seen, 0 to 100, on all levels of detail. Makes no garbage.</summary>
         /// <exception cref="ArgumentException">It has none of that name.</exception>
         public void SetBlendShapeWeight(string shape, float weight)

@@ -94,6 +94,16 @@ namespace UnityEngine
         }
 
         public static float Dot(Quaternion a, Quaternion b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
+        public static Quaternion operator *(Quaternion lhs, Quaternion rhs)
+        {
+            Quaternion a = lhs, b = rhs;
+            return new Quaternion(
+                a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+                a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,
+                a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z);
+        }
+
         public static Quaternion identity { get { return new Quaternion(0, 0, 0, 1); } }
     }
 
@@ -215,5 +225,6 @@ namespace UnityEngine
         public static int Min(int a, int b) { return Math.Min(a, b); }
         public static int Max(int a, int b) { return Math.Max(a, b); }
         public static float Max(float a, float b) { return Math.Max(a, b); }
+        public static float Clamp01(float value) { return Math.Max(0f, Math.Min(1f, value)); }
     }
 }

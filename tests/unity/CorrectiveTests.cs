@@ -1,0 +1,103 @@
+using System;
+using System.Linq;
+using NUnit.Framework;
+using UnityEngine;
+
+namespace Anthronet.Tests
+{
+    /// Correctives: blend shapes whose weights follow the pose.
+    [TestFixture]
+    public static class CorrectiveTests
+    {
+        static float Weight(AnthroCharacter character, int lod, int shape)
+        {
+            return character.RendererOf(lod).GetBlendShapeWeight(shape);
+        }
+
+        static void Bend(AnthroCharacter character, string joint, float degrees)
+        {
+            var place = Scene.Joint(character, joint);
+            var half = degrees * Math.PI / 360.0;
+            var by = new Quaternion((float)Math.Sin(half), 0f, 0f, (float)Math.Cos(half));
+            character.Rig.Bones[place].localRotation = character.Rig.Joints[place].local.rotation * by;
+        }
+
+        [Test(Description = "weights of correctives follow the elbow on its side, on all levels, each frame")]
+        public static void Weights()
+        {
+            var character = Scene.Character(1, 2);
+            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
+            foreach (var lod in new[] { 1, 2 })
+            {
+                Expect.Equal(2, character.MeshOf(lod).blendShapeCount, "shapes of LOD" + lod);
+            }
+            foreach (var step in new[] { new[] { 0f, 0f }, new[] { 15f, 0f }, new[] { 67.5f, 50f }, new[] { 120f, 100f }, new[] { 150f, 100f } })
+            {
+                Bend(character, "lowerarm_l", step[0]);
+                MonoBehaviour.Tell(correctives, "LateUpdate");
+                foreach (var lod in new[] { 1, 2 })
+                {
+                    Expect.That(Math.Abs(Weight(character, lod, 0) - step[1]) < 0.01, step[0] + " degrees, LOD" + lod + ": " + Weight(character, lod, 0));
+                    Expect.Equal(0f, Weight(character, lod, 1), "the other arm");
+                }
+            }
+            character.Rig.ToBindPose();
+            correctives.Apply();
+            Expect.Equal(0f, Weight(character, 1, 0), "in the bind pose");
+            Scene.End(character);
+        }
+
+        [Test(Description = "a corrective moves what it measures, on its side, and next to nothing else")]
+        public static void Shapes()
+        {
+            var character = Scene.Character();
+            character.gameObject.AddComponent<AnthroCorrectives>();
+            var mesh = character.MeshOf(1);
+            var way = mesh.Shapes[mesh.Shapes.Keys.First()];
+            Func<string, Vector3> joint =
+                name => character.Rig.Joints[Scene.Joint(character, name)].modelFromJoint.MultiplyPoint3x4(Vector3.zero);
+            Vector3 shoulder = joint("upperarm_l"), elbow = joint("lowerarm_l"), knee = joint("calf_l");
+            float arm = 0f, other = 0f, legs = 0f;
+            for (var v = 0; v < mesh.vertexCount; v++)
+            {
+                var at = mesh.Position(v);
+                // A character's left is at -X in Unity.
+                var between = at.x < 0.7f * shoulder.x + 0.3f * elbow.x && at.x > 0.3f * shoulder.x + 0.7f * elbow.x;
+                arm = between ? Math.Max(arm, way[v].magnitude) : arm;
+                other = -at.x < 0.7f * shoulder.x + 0.3f * elbow.x ? Math.Max(other, way[v].magnitude) : other;
+                legs = at.y < knee.y ? Math.Max(legs, way[v].magnitude) : legs;
+            }
+            // 5 % of 0.3 m around are 2.4 mm of radius.
+            Expect.That(arm > 0.0015f && arm < 0.008f, "arm " + arm);
+            Expect.That(other < 0.35f * arm && legs < 0.35f * arm, "arm " + arm + ", other arm " + other + ", legs " + legs);
+            Scene.End(character);
+        }
+
+        [Test(Description = "correctives are made anew for another body, and their errors say what is wrong")]
+        public static void Anew()
+        {
+            var character = Scene.Character(3, 3);
+            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
+            character.Request = Scene.Request(1.6);
+            character.Generate();
+            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "shapes of the next body");
+            Bend(character, "lowerarm_r", 120f);
+            correctives.Apply();
+            Expect.That(Math.Abs(Weight(character, 3, 1) - 100f) < 0.01, "weight on the next body");
+
+            correctives.Correctives[0].joint = "elbow";
+            Expect.That(Expect.Throws<ArgumentException>(correctives.Rebuild, "joint").Message.Contains("\"elbow\""), "names the joint");
+            correctives.Correctives[0].joint = "lowerarm_l";
+            correctives.Correctives[0].measure = "biceps";
+            Expect.Code(AnthroError.Request, "biceps", correctives.Rebuild, "measure");
+            correctives.Correctives[0].measure = "arm_circumference";
+            correctives.Correctives[0].to = 10f;
+            Expect.That(Expect.Throws<ArgumentException>(correctives.Rebuild, "angles").Message.Contains("15 and 10"), "says the angles");
+            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after errors");
+            correctives.Correctives[0].to = 90f;
+            correctives.Rebuild();
+            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after a change");
+            Scene.End(character);
+        }
+    }
+}
