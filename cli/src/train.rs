@@ -67,6 +67,9 @@ pub(crate) struct TrainArguments {
 #[derive(Subcommand)]
 pub(crate) enum Network {
     Generator(GeneratorArguments),
+    /// Fit the middles of the sliders to the paper's mean measures: writes trainer/src/sampling_bias.json. The generator
+    /// must be trained after it.
+    Biases,
     /// Lay the measures on the mean body anew: writes model/measures.json. The generator must be trained after it.
     Measures,
     /// Score the committed generator again and write the scores into its file.
@@ -129,6 +132,7 @@ fn networks(_: &EvaluateArguments) -> Result<()> {
 pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
     Err(no_networks(match &arguments.network {
         Network::Generator(_) => "train generator",
+        Network::Biases => "train biases",
         Network::Measures => "train measures",
         Network::Scores => "train scores",
     }))
@@ -162,6 +166,10 @@ pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
             fourier: generator.fourier,
             sigma: generator.sigma,
         }),
+        Network::Biases => {
+            let table = commands::fit_biases(Path::new("trainer/src/sampling_bias.json"))?;
+            return crate::progress::print(&table);
+        }
         Network::Measures => commands::lay_measures(Path::new("model/measures.json")),
         Network::Scores => commands::rescore(),
     }?;

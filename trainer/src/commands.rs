@@ -9,6 +9,7 @@ use anthronet::model::{Model, ModelParts};
 use serde_json::json;
 
 use crate::basis::{COMPONENTS, laplacian};
+use crate::biases::fit;
 use crate::corpus::{CACHE, Corpus, Split};
 use crate::dataset::{Bodies, Dataset, first_of};
 use crate::evaluation::{GeneratorScores, Statistics, generator};
@@ -179,6 +180,19 @@ pub fn lay_measures(path: &Path) -> Result<()> {
         .collect::<Result<Vec<_>>>()?;
     write_atomic(path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())?;
     Ok(())
+}
+
+/// Fits the biases of the sliders anew and writes them; returns the statistics that they give.
+///
+/// # Errors
+/// When the source of bodies cannot be had, or the file cannot be written.
+pub fn fit_biases(path: &Path) -> Result<String> {
+    let mut corpus = Corpus::open(Path::new(CACHE))?;
+    let bar = Bar::new("mean measures", 1);
+    let fitted = fit(&mut corpus, &Definitions::embedded()?, &|what, done, of| bar.set(what, done, of))?;
+    bar.finish();
+    write_atomic(path, fitted.to_json().as_bytes())?;
+    Ok(fitted.statistics.to_string())
 }
 
 fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {

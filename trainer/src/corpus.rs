@@ -15,7 +15,7 @@ pub const CACHE: &str = "target/anthronet";
 /// The seed of the data set; part of its version.
 pub const SEED: u64 = 20_230_907;
 /// Raised whenever the same number would give another body or other measures.
-pub const DATA_VERSION: u32 = 3;
+pub const DATA_VERSION: u32 = 4;
 
 /// The endless list of bodies.
 pub struct Corpus {
@@ -23,7 +23,7 @@ pub struct Corpus {
     pub assets: Assets,
     /// The surface that measures are defined on.
     pub subdivision: Subdivision,
-    sampler: Sampler,
+    pub(crate) sampler: Sampler,
     tpose: TPose,
 }
 

@@ -1,12 +1,14 @@
 //! Makes the model of `anthronet`: source bodies (CC0), sampling, data set, basis, networks, evaluation.
 //!
-//! The tour, in the order in which data flows: [`assets`] reads the MakeHuman data, [`sampling`] draws people,
+//! The tour, in the order in which data flows: [`assets`] reads the MakeHuman data, [`sampling`] draws people around the
+//! middles that [`biases`] fits,
 //! [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] lays the measures on their mean,
 //! [`dataset`] measures two hundred thousand of them in the coefficients of [`basis`], [`generator`] trains the
 //! network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it; [`commands`] ties them together.
 
 pub mod assets;
 pub mod basis;
+pub mod biases;
 mod checkpoint;
 pub mod commands;
 pub mod corpus;

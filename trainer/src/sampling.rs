@@ -2,7 +2,7 @@
 //!
 //! Sex, age, muscle, weight, proportions and ethnicity are drawn over their whole range; stature is drawn
 //! uniformly and the height slider solved for it; local sliders vary around small biases that bring the means
-//! of the measures to the paper's.
+//! of the measures to the paper's ([`crate::biases`]); heads grow with stature as people's do, not as bodies.
 
 use std::collections::BTreeMap;
 
@@ -52,6 +52,19 @@ const ASYMMETRY: f64 = 0.03;
 const TOE_LENGTH: &str = "toe-length";
 const TOE_ASYMMETRY: f64 = 0.12;
 
+/// How much the three scales of the head fall with stature, slider per metre. MakeHuman's height slider enlarges the
+/// head with the body, by a fifth from the shortest to the tallest; heads of people hardly grow with stature (their
+/// circumference by 9 cm a metre in ANSUR II).
+const HEAD_WITH_STATURE: f64 = 1.0;
+
+/// The committed biases: the middle of each local slider, by MakeHuman's name. [`crate::biases`] fits them.
+///
+/// # Errors
+/// [`Error::Invalid`] when the file is not what it should be.
+pub fn committed_biases() -> Result<BTreeMap<String, f64>> {
+    serde_json::from_str(BIASES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))
+}
+
 impl Sampler {
     /// Prepares the sliders; adds our own toe length to the targets, which MakeHuman has no slider for.
     ///
@@ -60,21 +73,24 @@ impl Sampler {
     pub fn new(assets: &mut Assets) -> Result<Self> {
         let toes = toe_length(assets)?;
         assets.targets.add_procedural(TOE_LENGTH, "feet", toes);
-        let mut biases: BTreeMap<String, f64> =
-            serde_json::from_str(BIASES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))?;
-        let mut locals = Vec::new();
-        for modifier in &assets.targets.modifiers {
-            let bias = biases.remove(&modifier.name);
-            if let Some(spread) = spread(modifier) {
-                locals.push((modifier.clone(), bias.unwrap_or(0.0), spread));
-            } else if bias.is_some() {
-                return Err(Error::Invalid(format!("sampling_bias.json: {} is not sampled", modifier.name)));
-            }
+        let sampled = |m: &Modifier| spread(m).map(|spread| (m.clone(), 0.0, spread));
+        let mut sampler = Self { locals: assets.targets.modifiers.iter().filter_map(sampled).collect() };
+        sampler.set_biases(&committed_biases()?)?;
+        Ok(sampler)
+    }
+
+    /// Replaces the biases of the sliders that are named; the others keep theirs.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a slider that is unknown or not sampled.
+    pub fn set_biases(&mut self, biases: &BTreeMap<String, f64>) -> Result<()> {
+        for (name, value) in biases {
+            let local = self.locals.iter_mut().find(|local| local.0.name == *name);
+            let unknown =
+                || Error::Invalid(format!("sampling_bias.json: {name} is no slider that is sampled"));
+            local.ok_or_else(unknown)?.1 = *value;
         }
-        if let Some(name) = biases.keys().next() {
-            return Err(Error::Invalid(format!("sampling_bias.json: unknown slider {name}")));
-        }
-        Ok(Self { locals })
+        Ok(())
     }
 
     /// Draws the person with this number of this seed; the same pair gives the same person everywhere.
@@ -126,6 +142,7 @@ impl Sampler {
         }
         for (modifier, bias, spread) in &self.locals {
             let value = bias
+                + with_stature(&modifier.name, stature)
                 + match *spread {
                     Spread::Uniform(half) => half * (2.0 * rng.uniform() - 1.0),
                     Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.0, 2.0),
@@ -190,6 +207,12 @@ fn spread(modifier: &Modifier) -> Option<Spread> {
         _ if name.starts_with("measure-") => Spread::Uniform(0.35),
         _ => Spread::Uniform(0.245),
     })
+}
+
+/// What a slider owes to the stature.
+fn with_stature(name: &str, stature: f64) -> f64 {
+    let middle = 0.5 * (STATURE[0] + STATURE[1]);
+    if name.starts_with("head-scale-") { -HEAD_WITH_STATURE * (stature - middle) } else { 0.0 }
 }
 
 /// Weights of three stops of a slider from 0 to 1.
@@ -280,6 +303,24 @@ mod tests {
         }
         // Five standard errors of a mean of uniform Dirichlet shares are 0.0083.
         assert!(sums.iter().all(|s| (s - 1.0 / 3.0).abs() < 0.0083), "{sums:?}");
+    }
+
+    #[test]
+    fn only_the_scales_of_the_head_know_the_stature() {
+        let scales = [
+            "head-scale-depth-decr-incr|head",
+            "head-scale-horiz-decr-incr|head",
+            "head-scale-vert-decr-incr|head",
+        ];
+        for name in scales {
+            let [shortest, tallest] = STATURE.map(|stature| with_stature(name, stature));
+            assert!(shortest > 0.2 && (shortest + tallest).abs() < 1e-12, "{name}: {shortest} {tallest}");
+        }
+        for name in
+            ["head-back-scale-depth-decr-incr|head", "neck-scale-vert-decr-incr|neck", "hand-scale|hands"]
+        {
+            assert_eq!(with_stature(name, STATURE[0]), 0.0, "{name}");
+        }
     }
 
     #[test]

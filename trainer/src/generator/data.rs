@@ -4,6 +4,8 @@ use anthronet::condition::fourier::Fourier;
 use anthronet::measure::MEASURE_COUNT;
 use anthronet::model::config::{CONDITION_COUNT, GeneratorConfig};
 use candle_core::{Device, Tensor};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
 use rayon::prelude::*;
 
 use super::TrainingSet;
@@ -165,7 +167,7 @@ impl Frame {
     fn fit_skip(&mut self, set: &TrainingSet) -> Result<()> {
         const N: usize = CONDITION_COUNT;
         let k = self.k;
-        let mut gram = vec![0.0; N * N];
+        let mut gram = Mat::<f64>::zeros(N, N);
         let mut right = vec![0.0; N * k];
         let mut mean = [0.0; N];
         for i in 0..set.count {
@@ -179,7 +181,7 @@ impl Frame {
             for a in 0..N {
                 let xa = x[a] - mean[a];
                 for b in 0..N {
-                    gram[a * N + b] += xa * (x[b] - mean[b]);
+                    gram[(a, b)] += xa * (x[b] - mean[b]);
                 }
                 for (r, &c) in right[a * k..(a + 1) * k].iter_mut().zip(c) {
                     *r += xa * f64::from(c);
@@ -189,15 +191,18 @@ impl Frame {
         // Keeps a constant measure (or a single sex) from making the system singular; far below the noise.
         let ridge = 1e-10 * set.count as f64;
         for a in 0..N {
-            gram[a * N + a] += ridge;
+            gram[(a, a)] += ridge;
         }
-        solve_symmetric(&mut gram, &mut right, N, k)?;
-        for (row, m) in right.chunks_exact(k).zip(mean) {
+        let weight = gram
+            .llt(Side::Lower)
+            .map_err(|e| Error::Invalid(format!("linear skip: normal equations: {e:?}")))?
+            .solve(Mat::from_fn(N, k, |a, j| right[a * k + j]));
+        self.skip_weight = (0..N).flat_map(|a| (0..k).map(move |j| (a, j))).map(|at| weight[at]).collect();
+        for (row, m) in self.skip_weight.chunks_exact(k).zip(mean) {
             for (bias, w) in self.skip_bias.iter_mut().zip(row) {
                 *bias -= m * w;
             }
         }
-        self.skip_weight = right;
         Ok(())
     }
 
@@ -307,58 +312,10 @@ fn column_means(values: &[f32], columns: usize) -> Vec<f64> {
     mean
 }
 
-/// Solves `A X = B` in place for a symmetric positive definite A `(n, n)` and B `(n, m)`, by Cholesky.
-fn solve_symmetric(a: &mut [f64], b: &mut [f64], n: usize, m: usize) -> Result<()> {
-    for j in 0..n {
-        for i in j..n {
-            let dot: f64 = (0..j).map(|l| a[i * n + l] * a[j * n + l]).sum();
-            let value = a[i * n + j] - dot;
-            a[i * n + j] = if i > j {
-                value / a[j * n + j]
-            } else if value > 0.0 {
-                value.sqrt()
-            } else {
-                return Err(Error::Invalid(format!("condition {j} depends on the ones before it")));
-            };
-        }
-    }
-    for i in 0..n {
-        for l in 0..i {
-            let factor = a[i * n + l];
-            let (before, row) = b.split_at_mut(i * m);
-            row[..m].iter_mut().zip(&before[l * m..(l + 1) * m]).for_each(|(x, y)| *x -= factor * y);
-        }
-        b[i * m..(i + 1) * m].iter_mut().for_each(|x| *x /= a[i * n + i]);
-    }
-    for i in (0..n).rev() {
-        for l in i + 1..n {
-            let factor = a[l * n + i];
-            let (row, after) = b.split_at_mut(l * m);
-            row[i * m..(i + 1) * m].iter_mut().zip(&after[..m]).for_each(|(x, y)| *x -= factor * y);
-        }
-        b[i * m..(i + 1) * m].iter_mut().for_each(|x| *x /= a[i * n + i]);
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::generator::synthetic::synthetic_set;
-
-    #[test]
-    fn cholesky_solves() {
-        let mut a = [4.0, 2.0, 0.6, 2.0, 5.0, 1.0, 0.6, 1.0, 3.0];
-        let x = [1.0, -2.0, 0.5, 3.0, -1.5, 2.0];
-        let mut b = [0.0; 6];
-        for i in 0..3 {
-            for c in 0..2 {
-                b[i * 2 + c] = (0..3).map(|j| a[i * 3 + j] * x[j * 2 + c]).sum();
-            }
-        }
-        solve_symmetric(&mut a, &mut b, 3, 2).unwrap();
-        assert!(b.iter().zip(&x).all(|(p, q)| (p - q).abs() < 1e-12), "{b:?}");
-    }
 
     #[test]
     fn the_skip_leaves_nothing_that_is_linear() {

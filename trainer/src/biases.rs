@@ -1,0 +1,157 @@
+//! Fits the biases of the local sliders (`sampling_bias.json`), so that the mean of every measure is the paper's.
+//!
+//! The mean of a measure over many bodies is nearly linear in the sliders' middles, so a few Gauss-Newton steps with one
+//! Jacobian do it. There are more sliders than measures: of all biases that fit, those nearest to the present ones are
+//! taken, which keeps proportions that were looked at and found natural.
+
+use std::collections::BTreeMap;
+
+use anthronet::measure::{Definitions, MEASURE_COUNT};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use rayon::prelude::*;
+
+use crate::corpus::{Corpus, Gauge, plausible};
+use crate::dataset::Bodies;
+use crate::evaluation::{NOT_MATCHED, Statistics, paper_row};
+use crate::sampling::committed_biases;
+use crate::{Error, Result};
+
+/// Mean of [`NOT_MATCHED`] that is fitted instead of the paper's, metres.
+const NATURAL_HEAD_HEIGHT: f64 = 0.231;
+/// Bodies that a slider's effect is measured on.
+const JACOBIAN_BODIES: u64 = 400;
+/// Bodies whose means are fitted; their standard errors are below 0.03 of the paper's deviations.
+const FITTED_BODIES: u64 = 16_000;
+const STEPS: usize = 3;
+/// How far a slider is moved to see its effect.
+const NUDGE: f64 = 0.1;
+/// Weight of a squared change of a slider against a squared z.
+const RELUCTANCE: f64 = 0.02;
+
+/// Fitted biases, and what they give.
+pub struct Fitted {
+    /// Middle of each slider by MakeHuman's name.
+    pub biases: BTreeMap<String, f64>,
+    /// Statistics of the bodies that they were fitted on.
+    pub statistics: Statistics,
+}
+
+impl Fitted {
+    /// The text of `sampling_bias.json`.
+    pub fn to_json(&self) -> String {
+        let lines: Vec<String> =
+            self.biases.iter().map(|(name, bias)| format!(" {name:?}: {bias}")).collect();
+        format!("{{\n{}\n}}\n", lines.join(",\n"))
+    }
+}
+
+/// Fits all committed biases, beginning at their values.
+///
+/// # Errors
+/// When a slider is unknown or the equations cannot be solved.
+pub fn fit(
+    corpus: &mut Corpus,
+    definitions: &Definitions,
+    progress: &(dyn Fn(&str, u64, u64) + Sync),
+) -> Result<Fitted> {
+    let gauge = Gauge::new(definitions, &corpus.subdivision);
+    let start = committed_biases()?;
+    let total = JACOBIAN_BODIES * (start.len() as u64 + 1) + FITTED_BODIES * (STEPS as u64 + 1);
+    let mut done = 0;
+    let mut measure = |corpus: &mut Corpus, biases: &BTreeMap<String, f64>, bodies, people| {
+        corpus.sampler.set_biases(biases)?;
+        let statistics = statistics(corpus, &gauge, bodies, people);
+        done += bodies;
+        progress("mean measures", done, total);
+        Ok::<Statistics, Error>(statistics)
+    };
+
+    let before = misses(&measure(corpus, &start, JACOBIAN_BODIES, false)?);
+    let mut jacobian = Mat::zeros(MEASURE_COUNT, start.len());
+    for (j, name) in start.keys().enumerate() {
+        let nudged = start.iter().map(|(n, b)| (n.clone(), if n == name { b + NUDGE } else { *b })).collect();
+        let after = misses(&measure(corpus, &nudged, JACOBIAN_BODIES, false)?);
+        for i in 0..MEASURE_COUNT {
+            jacobian[(i, j)] = (after[(i, 0)] - before[(i, 0)]) / NUDGE;
+        }
+    }
+
+    let mut biases = start.clone();
+    let mut statistics = measure(corpus, &biases, FITTED_BODIES, true)?;
+    let mut change = Mat::zeros(start.len(), 1);
+    for _ in 0..STEPS {
+        change = better(&jacobian, &misses(&statistics), &change)?;
+        for ((bias, from), j) in biases.values_mut().zip(start.values()).zip(0..) {
+            *bias = ((from + change[(j, 0)]) * 1e4).round() / 1e4;
+        }
+        statistics = measure(corpus, &biases, FITTED_BODIES, true)?;
+    }
+    Ok(Fitted { biases, statistics })
+}
+
+/// The change x of all sliders with the least |m + J (x - x₀)|² + reluctance |x|², for misses m at the change x₀.
+fn better(jacobian: &Mat<f64>, misses: &Mat<f64>, so_far: &Mat<f64>) -> Result<Mat<f64>> {
+    let mut gram = jacobian * jacobian.transpose();
+    for i in 0..gram.nrows() {
+        gram[(i, i)] += RELUCTANCE;
+    }
+    let factor = gram.llt(Side::Lower).map_err(|e| Error::Invalid(format!("biases: {e:?}")))?;
+    Ok(jacobian.transpose() * factor.solve(jacobian * so_far - misses))
+}
+
+/// How far each mean is from where it is wanted, in the paper's deviations.
+fn misses(statistics: &Statistics) -> Mat<f64> {
+    Mat::from_fn(MEASURE_COUNT, 1, |i, _| {
+        let row = &statistics.measures[i];
+        let [mean, deviation, ..] = paper_row(i);
+        if row.name == NOT_MATCHED { row.z - (NATURAL_HEAD_HEIGHT - mean) / deviation } else { row.z }
+    })
+}
+
+/// Statistics of the first bodies of the corpus; of the plausible ones when only people count. A slider's effect is
+/// measured on everybody, so that nobody comes or goes with it.
+fn statistics(corpus: &Corpus, gauge: &Gauge<'_>, count: u64, people: bool) -> Statistics {
+    let drawn: Vec<_> =
+        (0..count).into_par_iter().map(|n| (n, gauge.read(&corpus.specimen(n).points))).collect();
+    let mut bodies = Bodies::default();
+    for (n, measures) in drawn.iter().filter(|(_, measures)| !people || plausible(measures)) {
+        bodies.numbers.push(*n);
+        bodies.measures.extend(measures.map(|m| m as f32));
+    }
+    Statistics::of(&[&bodies], drawn.len() - bodies.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use anthronet::measure::MeasureId;
+
+    use super::*;
+
+    #[test]
+    fn steps_end_where_means_fit_with_the_least_change() {
+        // Two means of three sliders; the third does the same as the first, half as well, and the effect bends.
+        let effect = |x: &Mat<f64>| {
+            let a = x[(0, 0)] + 0.5 * x[(2, 0)];
+            Mat::from_fn(2, 1, |i, _| if i == 0 { 8.0 * a + a * a - 4.0 } else { 5.0 * x[(1, 0)] + 1.0 })
+        };
+        let jacobian = Mat::from_fn(2, 3, |i, j| [[8.0, 0.0, 4.0], [0.0, 5.0, 0.0]][i][j]);
+        let mut x = Mat::zeros(3, 1);
+        for _ in 0..STEPS {
+            x = better(&jacobian, &effect(&x), &x).unwrap();
+        }
+        let left = effect(&x);
+        assert!((0..2).all(|i| left[(i, 0)].abs() < 0.01), "{left:?}");
+        assert!((x[(2, 0)] - 0.5 * x[(0, 0)]).abs() < 1e-9, "{x:?}");
+    }
+
+    #[test]
+    fn the_file_holds_what_was_fitted() {
+        let biases = committed_biases().unwrap();
+        let fitted = Fitted { biases: biases.clone(), statistics: Statistics::of(&[], 0) };
+        let read: BTreeMap<String, f64> = serde_json::from_str(&fitted.to_json()).unwrap();
+        assert_eq!(read, biases);
+        let id = MeasureId::from_name(NOT_MATCHED).unwrap();
+        assert!((NATURAL_HEAD_HEIGHT - paper_row(id.index())[0]).abs() < 0.02);
+    }
+}
