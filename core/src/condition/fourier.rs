@@ -32,7 +32,7 @@ pub struct FourierConfig {
 
 impl Default for FourierConfig {
     fn default() -> Self {
-        // None: a prototype saw no gain beside the linear skip (MODEL_CARD.md).
+        // None: they only cost beside the linear skip (MODEL_CARD.md has the numbers).
         Self { components: 0, sigma: 0.03, seed: 1 }
     }
 }
