@@ -53,7 +53,7 @@ const GLIBC: (u32, u32) = (2, 34);
 pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tally) -> Outcome {
     let folder = folder.join("c");
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
-    tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))?;
+    library()?;
     tally.case("every function has a test in C", every_function_is_called());
     if let Err(reason) = programs {
         for name in [
@@ -221,14 +221,26 @@ fn leaks(bench: &Bench, tally: &mut Tally) {
     tally.case("valgrind finds nothing lost in 12 cycles of generate and free", lost);
 }
 
-/// The same requests through the crate, the library opened by a Rust program, C and C++.
-fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
-    let library = bench.library.join("libanthronet.so");
+/// Builds the library as it is released.
+fn library() -> Outcome {
+    tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))
+}
+
+/// The same requests through the crate and through the library opened by a Rust program. It leaves the lists of requests and
+/// of what they must give to the tests of the other languages, in `tmp/same_bytes`.
+pub(super) fn byte_lists() -> Outcome {
+    library()?;
     // With the packages, features and profile of the unit tests, which have built it by now: that the profile differs
     // from the library's makes the test the harder.
     let mut test = cargo("test");
-    test.args(["--workspace", "--all-features", "--test", "same_bytes"]).env("ANTHRONET_LIBRARY", &library);
-    tally.case("same bytes: 200 requests through the crate and through the library", tools::run(&mut test));
+    test.args(["--workspace", "--all-features", "--test", "same_bytes"]);
+    tools::run(test.env("ANTHRONET_LIBRARY", tools::target().join("release/libanthronet.so")))
+}
+
+/// The same requests through the crate, the library opened by a Rust program, C and C++.
+fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
+    let library = bench.library.join("libanthronet.so");
+    tally.case("same bytes: 200 requests through the crate and through the library", byte_lists());
     // The sanitizer's allocator, which sees freed memory used by libc and freed twice, and what is lost: the code is not
     // instrumented.
     let sanitizer = tools::output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;

@@ -59,6 +59,7 @@ pub(crate) fn run_c() -> Outcome {
 /// The package for C++ alone.
 pub(crate) fn run_cpp() -> Outcome {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
+    c::byte_lists()?;
     let mut tally = Tally::default();
     cpp::run(&anthronet, &environment, &tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
@@ -67,6 +68,7 @@ pub(crate) fn run_cpp() -> Outcome {
 /// The Python package alone.
 pub(crate) fn run_python() -> Outcome {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
+    c::byte_lists()?;
     let mut tally = Tally::default();
     python::run(&anthronet, &environment, &tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
@@ -74,6 +76,7 @@ pub(crate) fn run_python() -> Outcome {
 
 /// The Unity package alone.
 pub(crate) fn run_unity() -> Outcome {
+    c::byte_lists()?;
     let mut tally = Tally::default();
     unity::run(&tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
