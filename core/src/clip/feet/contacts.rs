@@ -39,17 +39,6 @@ pub struct Contact {
     pub end: usize,
 }
 
-impl Contact {
-    /// The path that the point travels along the floor.
-    pub(super) fn slide(&self, track: &[Sole]) -> f32 {
-        let frames = track.get(self.start..self.end).unwrap_or(&[]);
-        frames
-            .windows(2)
-            .map(|w| self.point.of(&w[1]).with_y(0.0).distance(self.point.of(&w[0]).with_y(0.0)))
-            .sum()
-    }
-}
-
 /// The contacts of a clip.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contacts {

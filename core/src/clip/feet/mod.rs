@@ -83,7 +83,8 @@ impl FeetOptions {
 pub struct FeetMeasure {
     /// Number of contacts of heels and balls.
     pub contacts: [usize; 2],
-    /// The longest path that a touching point travels along the floor within one contact, metres.
+    /// The longest path over the floor of the place of the sole that touches, within one contact, metres; a sole that rolls
+    /// without slipping has none.
     pub worst_slide: [f32; 2],
     /// That path, mean over the contacts.
     pub mean_slide: [f32; 2],
@@ -121,7 +122,8 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
     let mut out = FeetMeasure::default();
     let tracks = leg::tracks(clip, &legs, contacts.floor);
     for (foot, track) in tracks.iter().enumerate() {
-        let slides: Vec<f32> = contacts.feet[foot].iter().map(|c| c.slide(track)).collect();
+        let steps = roll::steps(clip, &legs[foot], &contacts.feet[foot]);
+        let slides: Vec<f32> = steps.iter().map(|of| of.iter().map(|step| step.length()).sum()).collect();
         out.contacts[foot] = slides.len();
         out.worst_slide[foot] = slides.iter().copied().fold(0.0, f32::max);
         out.mean_slide[foot] = slides.iter().fold(0.0, |sum, s| sum + s) / slides.len().max(1) as f32;

@@ -118,9 +118,8 @@ fn at(joint: Local, point: Vec3) -> Vec3 {
     joint.translation + joint.rotation * point
 }
 
-/// How far a foot has slid over the floor, frame by frame, counted from the middle of its way in contacts that follow each
-/// other; none in frames in which neither heel nor ball touches.
-pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<Vec3>> {
+/// How far what touches goes over the floor, contact by contact, from each of its frames to the next.
+pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Vec<Vec3>> {
     let sole = RoundSole::of(leg, &clip.rest().model_from_joints());
     let mut joints = Vec::with_capacity(clip.frame_count());
     let mut model = Vec::new();
@@ -128,20 +127,30 @@ pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<
         model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
         joints.push([model[leg.limb.end], model[leg.ball]]);
     });
-    let mut touches = vec![false; joints.len()];
+    let of_contact = |contact: &Contact| {
+        let frames = joints.get(contact.start..contact.end).unwrap_or_default();
+        frames.windows(2).map(|pair| sole.step(contact.point, &pair[0], &pair[1])).collect()
+    };
+    contacts.iter().map(of_contact).collect()
+}
+
+/// How far a foot has slid over the floor, frame by frame, counted from the middle of its way in contacts that follow each
+/// other; none in frames in which neither heel nor ball touches.
+pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<Vec3>> {
+    let count = clip.frame_count();
+    let mut touches = vec![false; count];
     // Sums and numbers of the steps that lead to each frame.
-    let mut steps = vec![(Vec3::ZERO, 0.0); joints.len()];
-    for contact in contacts {
+    let mut sums = vec![(Vec3::ZERO, 0.0); count];
+    for (contact, steps) in contacts.iter().zip(steps(clip, leg, contacts)) {
         touches[contact.start..contact.end].fill(true);
-        for frame in contact.start + 1..contact.end {
-            let (sum, count) = &mut steps[frame];
-            *sum += sole.step(contact.point, &joints[frame - 1], &joints[frame]);
+        for ((sum, count), step) in sums[contact.start..].iter_mut().skip(1).zip(steps) {
+            *sum += step;
             *count += 1.0;
         }
     }
-    let mut slips = vec![None; joints.len()];
+    let mut slips = vec![None; count];
     for (start, end) in runs(&touches) {
-        let ways = steps[start..end].iter().scan(Vec3::ZERO, |way, (sum, count)| {
+        let ways = sums[start..end].iter().scan(Vec3::ZERO, |way, (sum, count)| {
             *way += *sum / f32::max(*count, 1.0);
             Some(*way)
         });
