@@ -14,6 +14,8 @@ namespace Anthronet.Tests
     {
         const string Manual = "https://docs.unity3d.com/2021.3/Documentation/ScriptReference/";
         const string Burst = "https://docs.unity3d.com/Packages/com.unity.burst@1.8/api/";
+        /// Unity's own source, for what its manual has no page of.
+        const string Source = "https://github.com/Unity-Technologies/UnityCsReference/blob/2021.3/";
         const BindingFlags Own = BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static | BindingFlags.DeclaredOnly;
 
         static IEnumerable<Type> Types()
@@ -67,12 +69,37 @@ namespace Anthronet.Tests
             return Manual + name;
         }
 
+        /// The file of Unity's source that has a member without a page; null of one that has a page.
+        static string Undocumented(Type type, string member)
+        {
+            switch (type.Name)
+            {
+                case "AnimationClipSettings":
+                    return "Editor/Mono/Animation/AnimationClipSettings.bindings.cs";
+                case "AnimationUtility":
+                    return member.EndsWith("AnimationClipSettings") ? "Editor/Mono/Animation/AnimationUtility.bindings.cs" : null;
+                case "Matrix4x4":
+                    return member.Length == 3 && member[0] == 'm' ? "Runtime/Export/Math/Matrix4x4.cs" : null;
+                case "SkinnedMeshRenderer":
+                    return member == "rootBone" ? "Runtime/Export/Graphics/GraphicsRenderers.bindings.cs" : null;
+                default:
+                    return null;
+            }
+        }
+
+        /// A line of the list: what a type or a member of it is, and where it is documented.
+        static string Line(string what, Type type, string member, string page)
+        {
+            var file = Undocumented(type, member);
+            return what + " | " + (file == null ? page : Source + file);
+        }
+
         static IEnumerable<string> Members(Type type)
         {
             var page = Page(type);
             var kind = type.IsEnum ? "enum" : type.IsInterface ? "interface" : typeof(Delegate).IsAssignableFrom(type) ? "delegate"
                 : type.IsValueType ? "struct" : "class";
-            yield return kind + " " + Name(type) + " | " + (page.EndsWith(".html") ? page : page + ".html");
+            yield return Line(kind + " " + Name(type), type, "", page.EndsWith(".html") ? page : page + ".html");
             if (kind == "delegate" || page.StartsWith(Burst))
             {
                 yield break;
@@ -80,7 +107,9 @@ namespace Anthronet.Tests
             foreach (var field in type.GetFields(Own).Where(field => !field.IsSpecialName))
             {
                 var value = type.IsEnum ? " = " + Convert.ToInt64(field.GetRawConstantValue()) : "";
-                yield return "  " + Name(field.FieldType) + " " + field.Name + value + " | " + page + (type.IsEnum ? "." : "-") + field.Name + ".html";
+                var still = field.IsStatic && !type.IsEnum ? "static " : "";
+                yield return Line("  " + still + Name(field.FieldType) + " " + field.Name + value, type, field.Name,
+                    page + (type.IsEnum ? "." : "-") + field.Name + ".html");
             }
             foreach (var made in type.GetConstructors(Own).Where(made => made.GetParameters().Length > 0))
             {
@@ -94,8 +123,11 @@ namespace Anthronet.Tests
                     continue;
                 }
                 var access = (property.GetGetMethod() == null ? "" : " get;") + (property.GetSetMethod() == null ? "" : " set;");
-                var place = property.GetIndexParameters().Length > 0 ? ".Index_operator" : "-" + property.Name;
-                yield return "  " + Name(property.PropertyType) + " " + property.Name + " {" + access + " } | " + page + place + ".html";
+                var index = property.GetIndexParameters();
+                var place = index.Length > 0 ? ".Index_operator" : "-" + property.Name;
+                var name = index.Length > 0 ? "this[" + string.Join(", ", index.Select(p => Name(p.ParameterType) + " " + p.Name)) + "]" : property.Name;
+                yield return Line("  " + (reader.IsStatic ? "static " : "") + Name(property.PropertyType) + " " + name + " {" + access + " }",
+                    type, property.Name, page + place + ".html");
             }
             foreach (var told in type.GetEvents(Own))
             {
@@ -107,8 +139,8 @@ namespace Anthronet.Tests
                 {
                     continue;
                 }
-                yield return "  " + (method.IsStatic ? "static " : "") + Name(method.ReturnType) + " " + method.Name
-                    + Parameters(method) + " | " + page + Operator(method.Name) + ".html";
+                yield return Line("  " + (method.IsStatic ? "static " : "") + Name(method.ReturnType) + " " + method.Name
+                    + Parameters(method), type, method.Name, page + Operator(method.Name) + ".html");
             }
         }
 
@@ -145,7 +177,7 @@ namespace Anthronet.Tests
             Expect.That(there.Length > 300, "only " + there.Length + " members");
             Expect.Equal("", string.Join("\n", there.Where(line => !listed.Contains(line))), "not listed");
             Expect.Equal("", string.Join("\n", listed.Except(there)), "listed, but not there");
-            Expect.That(there.All(line => line.Contains(" | https://docs.unity3d.com/")), "without a page");
+            Expect.That(there.All(line => line.Contains(" | https://docs.unity3d.com/") || line.Contains(" | " + Source)), "without a page");
         }
     }
 }

@@ -15,6 +15,7 @@ namespace UnityEngine
             get { return (Material[])worn.Clone(); }
             set { worn = (Material[])value.Clone(); }
         }
+        public Bounds localBounds { get; set; }
     }
 
     public class SkinnedMeshRenderer : Renderer
@@ -22,7 +23,6 @@ namespace UnityEngine
         public Mesh sharedMesh { get; set; }
         public Transform[] bones { get; set; }
         public Transform rootBone { get; set; }
-        public Bounds localBounds { get; set; }
         readonly Dictionary<int, float> weights = new Dictionary<int, float>();
         public void SetBlendShapeWeight(int index, float value) { weights[index] = value; }
         public float GetBlendShapeWeight(int index) { float value; weights.TryGetValue(index, out value); return value; }

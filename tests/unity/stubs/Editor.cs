@@ -57,7 +57,7 @@ namespace UnityEditor
 
     public sealed class MenuCommand
     {
-        public MenuCommand(Object context) { this.context = context; }
+        public MenuCommand(Object inContext) { context = inContext; }
         public Object context;
     }
 

@@ -167,10 +167,10 @@ namespace UnityEngine.Rendering
             this.stream = stream;
         }
 
-        public VertexAttribute attribute;
-        public VertexAttributeFormat format;
-        public int dimension;
-        public int stream;
+        public VertexAttribute attribute { get; set; }
+        public VertexAttributeFormat format { get; set; }
+        public int dimension { get; set; }
+        public int stream { get; set; }
     }
 
     public struct SubMeshDescriptor
