@@ -132,15 +132,16 @@ def _lay(bones, joints, size):
 
 
 def _axis(name, side, joint):
-    """The axis that a bone bends about: the joint's own X, in the direction that Rigify expects."""
+    """The axis that a bone bends about: of the joint's own X and Z the one that lies as Rigify expects, which of arms and legs is
+    X, of fingers Z."""
     expected = _BENDS.get(name)
     if expected is None:
         return None
     if side == "R":
         # Mirrored, an axis keeps its part across and changes the rest.
         expected = Vector((expected.x, -expected.y, -expected.z))
-    axis = joint.matrix_local.to_3x3().col[0]
-    return axis if axis.dot(expected) > 0 else -axis
+    axes = joint.matrix_local.to_3x3().col
+    return max((sign * axes[i] for i in (0, 2) for sign in (1, -1)), key=expected.dot)
 
 
 def _put(bone, head, tail, x_axis=None):

@@ -299,10 +299,11 @@ def rigging():
         max(offs.values()) < 1e-5 and bent < 0.01,
         f"{1000 * max(offs.values()):.3f} mm, {1000 * bent:.1f} mm",
     )
-    for meta in ("forearm", "shin", "f_middle.02"):
+    for meta, axis in (("forearm", (0, 0, -1)), ("shin", (1, 0, 0)), ("f_middle.02", (0, 1, 0))):
         left, right = (metarig.data.bones[f"{meta}.{side}"].matrix_local.to_3x3().col[0] for side in "LR")
         check(f"{meta}: rolled alike on both sides", abs(left.x - right.x) < 0.02 and abs(left.y + right.y) < 0.02
               and abs(left.z + right.z) < 0.02, f"{left} {right}")
+        check(f"{meta}: bends about the axis of Rigify's own metarig", left.dot(axis) > 0.9, f"{left}")
     before = set(bpy.data.objects)
     bpy.ops.pose.rigify_generate()
     rig = next(ob for ob in set(bpy.data.objects) - before if ob.type == "ARMATURE")
