@@ -143,6 +143,7 @@ namespace Anthronet
                 throw new ArgumentException("corrective " + place + ": expected degrees with 0 <= from < to, got "
                     + corrective.from + " and " + corrective.to, "from");
             }
+            // Says which measure there is not before any shape is taken off.
             int first, second;
             AnthroMeasures.Sides(corrective.measure, out first, out second);
             return new Driver
@@ -161,20 +162,14 @@ namespace Anthronet
             body.Latent(latent);
             var request = new AnthroRequest { Sex = body.Sex, Seed = body.Seed, Latent = latent, Nearest = true };
             var measures = body.Measures();
-            for (var i = 0; i < measures.Length; i++)
-            {
-                request.Set(AnthroMeasures.Names[i], measures[i].obtained);
-            }
             int first, second;
             AnthroMeasures.Sides(corrective.measure, out first, out second);
-            for (var side = first; ; side = second)
+            for (var i = 0; i < measures.Length; i++)
             {
-                request.Set(AnthroMeasures.Names[side], measures[side].obtained * (1.0 + corrective.change));
-                if (side == second)
-                {
-                    return AnthroModel.Default.Generate(request);
-                }
+                var grown = i == first || i == second ? 1.0 + corrective.change : 1.0;
+                request.Set(AnthroMeasures.Names[i], grown * measures[i].obtained);
             }
+            return AnthroModel.Default.Generate(request);
         }
 
         void LateUpdate()

@@ -96,8 +96,8 @@ impl ShapeSpace {
         for start in (0..n).step_by(BLOCK) {
             let range = start..(start + BLOCK).min(n);
             let sums = &mut out[range.clone()];
-            add_halves(sums, &fine, &self.fine, n, start);
-            add_bytes(sums, &coarse, &self.coarse, n, start);
+            add_fine(sums, &fine, &self.fine, n, start);
+            add_coarse(sums, &coarse, &self.coarse, n, start);
         }
         out.chunks_exact(3).map(Vec3::from_slice).collect()
     }
@@ -148,12 +148,12 @@ impl ShapeSpace {
 // Decoding a body spends its time here. Wider registers give the same bits: every sum is on its own.
 
 #[multiversion(targets("x86_64+avx2"))]
-fn add_halves(sums: &mut [f32], weights: &[f32], rows: &[f32], stride: usize, start: usize) {
+fn add_fine(sums: &mut [f32], weights: &[f32], rows: &[f32], stride: usize, start: usize) {
     add_rows(sums, weights, |k| &rows[k * stride + start..], |x| x);
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn add_bytes(sums: &mut [f32], weights: &[f32], rows: &[i8], stride: usize, start: usize) {
+fn add_coarse(sums: &mut [f32], weights: &[f32], rows: &[i8], stride: usize, start: usize) {
     add_rows(sums, weights, |k| &rows[k * stride + start..], f32::from);
 }
 
