@@ -5,9 +5,9 @@ mod common;
 use std::fs;
 
 use anthronet::clip::Clip;
-use anthronet::export::Scene;
-use anthronet::import::scene::open_scene;
-use anthronet::rig::humanoid::{JointNames, renamed};
+use anthronet::format::open_scene;
+use anthronet::scene::Scene;
+use anthronet::skeleton::humanoid::{JointNames, renamed};
 use common::{anthronet, files_in, folder, write};
 use serde_json::Value;
 use tempfile::TempDir;

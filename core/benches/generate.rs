@@ -2,10 +2,10 @@
 
 use anthronet::Body;
 use anthronet::condition::{Fill, Request};
-use anthronet::export::gltf::to_glb;
-use anthronet::export::{Scene, SceneOptions};
+use anthronet::format::gltf::to_glb;
 use anthronet::measure::Sex;
 use anthronet::model::Model;
+use anthronet::scene::{Scene, SceneOptions};
 use divan::{Bencher, black_box};
 
 fn main() {

@@ -2,12 +2,13 @@
 
 use anthronet::Result;
 use anthronet::condition::Request;
-use anthronet::export::{Scene, SceneOptions};
+use anthronet::math::RigidTransform;
 use anthronet::measure::Sex;
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
-use anthronet::pose::{Local, RestPose};
-use anthronet::rig::Influences;
+use anthronet::scene::{Scene, SceneOptions};
+use anthronet::skeleton::Influences;
+use anthronet::skeleton::RestPose;
 use anthronet::skin::{SkinJob, SkinMethod, Skinner, SurfaceMut, skin_many};
 use divan::Bencher;
 use glam::{Quat, Vec3};
@@ -17,7 +18,7 @@ fn main() {
 }
 
 /// A surface with a pose that turns every joint.
-fn posed(lod: Lod, influences: usize) -> Result<(Skinner, Vec<Local>)> {
+fn posed(lod: Lod, influences: usize) -> Result<(Skinner, Vec<RigidTransform>)> {
     let body = Model::embedded()?.generate(&Request { sex: Some(Sex::Female), ..Request::default() })?;
     let scene = Scene::from_body(&body, &SceneOptions { lod, influences, ..SceneOptions::default() })?;
     let mesh = &scene.meshes[0];

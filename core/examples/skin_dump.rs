@@ -11,12 +11,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use anthronet::condition::Request;
-use anthronet::export::{Scene, SceneOptions};
+use anthronet::math::RigidTransform;
 use anthronet::measure::Sex;
 use anthronet::model::Model;
-use anthronet::pose::{Local, Pose, RestPose};
 use anthronet::random::Random;
-use anthronet::rig::Influences;
+use anthronet::scene::{Scene, SceneOptions};
+use anthronet::skeleton::Influences;
+use anthronet::skeleton::{Pose, RestPose};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::{Quat, Vec3};
 
@@ -40,7 +41,7 @@ fn main() -> Outcome {
     let body = Model::embedded()?.generate(&Request { sex: Some(Sex::Female), ..Request::default() })?;
     let rest = RestPose::of_joints(body.joints())?;
     let bind = rest.model_from_joints();
-    let poses: Vec<Vec<Local>> =
+    let poses: Vec<Vec<RigidTransform>> =
         (0..POSES).map(|seed| random_pose(&rest, seed).model_from_joints(rest.parents())).collect();
     write_locals(&folder.join("bind"), &bind)?;
     for (p, pose) in poses.iter().enumerate() {
@@ -100,7 +101,7 @@ fn random_pose(rest: &RestPose, seed: u64) -> Pose {
 }
 
 /// Quaternions x, y, z, w and translations, seven numbers a joint.
-fn write_locals(stem: &Path, locals: &[Local]) -> Outcome {
+fn write_locals(stem: &Path, locals: &[RigidTransform]) -> Outcome {
     let numbers: Vec<f32> = locals
         .iter()
         .flat_map(|l| [&l.rotation.to_array()[..], &l.translation.to_array()].concat())
@@ -115,7 +116,7 @@ fn write<T: Copy, const N: usize>(file: &Path, numbers: &[T], bytes: impl Fn(T) 
 /// Answers each line with the times, in nanoseconds, of one linear skinning and of one copy that moves as many bytes.
 ///
 /// Both take the next of many characters each time, so that neither finds its memory in a cache.
-fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[Local]) -> Outcome {
+fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[RigidTransform]) -> Outcome {
     const CROWD: usize = 64;
     let skinners = vec![skinner.clone(); CROWD];
     let mut vectors =

@@ -9,7 +9,7 @@ use crate::condition::{Prepared, Report, Request, SolveOutcome};
 use crate::measure::{MEASURE_COUNT, Mass, MeasureId, Measurements, Sex, enclosed_volume};
 use crate::mesh::vertex_normals;
 use crate::model::{Character, Model, Solved};
-use crate::rig::{Joint, Skeleton};
+use crate::skeleton::{Joint, Skeleton};
 
 /// A person in the bind pose: T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres.
 #[derive(Clone)]

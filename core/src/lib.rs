@@ -57,17 +57,21 @@ mod body;
 pub mod clip;
 pub mod condition;
 mod error;
-pub mod export;
-pub mod import;
-mod input;
+pub mod format;
+pub mod math;
 pub mod measure;
 pub mod mesh;
 pub mod model;
+pub mod network;
 pub mod pose;
 pub mod random;
-pub mod rig;
+pub mod retarget;
+pub mod scene;
+pub mod skeleton;
 pub mod skin;
 pub mod space;
+#[cfg(test)]
+mod testing;
 
 pub use body::Body;
 pub use error::{Error, Infeasible, Result};

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use anthronet::clip::feet::{self, FeetOptions};
 use anthronet::clip::{BUILTIN, Clip, builtin};
 use anthronet::condition::Request;
 use anthronet::measure::{MeasureId, Sex};
 use anthronet::model::Model;
-use anthronet::pose::RestPose;
 use anthronet::pose::limits::JointLimits;
+use anthronet::retarget::feet;
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::skeleton::RestPose;
 
 /// A small woman and a tall man.
 fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {

@@ -2,19 +2,21 @@
 
 mod common;
 
-use anthronet::clip::{self, ReadOptions};
+use anthronet::clip;
+use anthronet::format::{self, ReadOptions};
 
 #[test]
 fn every_clip_is_a_person_on_a_floor() {
     for path in common::clips("clips of people on a floor") {
-        let motion = clip::read(&path, &ReadOptions::default()).unwrap();
+        let motion = format::motion::read(&path, &ReadOptions::default()).unwrap();
         let report = &motion.report;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         for clip in &motion.clips {
             let joints = clip.rest().model_from_joints();
-            let height = |y: &dyn Fn(f32, f32) -> f32, start: f32, joints: &[anthronet::pose::Local]| {
-                joints.iter().map(|j| j.translation.y).fold(start, y)
-            };
+            let height =
+                |y: &dyn Fn(f32, f32) -> f32, start: f32, joints: &[anthronet::math::RigidTransform]| {
+                    joints.iter().map(|j| j.translation.y).fold(start, y)
+                };
             let rest = height(&f32::max, f32::MIN, &joints) - height(&f32::min, f32::MAX, &joints);
             let parents = clip.rest().parents();
             let mut lows: Vec<f32> = (0..clip.frame_count())
@@ -52,12 +54,15 @@ fn damaged_clips_do_no_harm() {
         let bytes = std::fs::read(path).unwrap();
         for i in 0..40 {
             let at = i * bytes.len() / 40;
-            assert!(clip::from_bytes(&bytes[..at], path, &ReadOptions::default()).is_err(), "cut at {at}");
+            assert!(
+                format::motion::from_bytes(&bytes[..at], path, &ReadOptions::default()).is_err(),
+                "cut at {at}"
+            );
             for value in [0, 0x7f, 0xff] {
                 let mut damaged = bytes.clone();
                 damaged[at] = value;
                 // Whether it is a motion is the file's luck; that this returns is what counts.
-                if let Ok(motion) = clip::from_bytes(&damaged, path, &ReadOptions::default()) {
+                if let Ok(motion) = format::motion::from_bytes(&damaged, path, &ReadOptions::default()) {
                     assert!(!motion.clips.is_empty());
                 }
             }

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use anthronet::condition::{Fill, Filled, LATENT_LIMIT, MeasuredShape, Request};
-use anthronet::export::gltf::to_glb;
-use anthronet::export::{Scene, SceneOptions};
+use anthronet::format::gltf::to_glb;
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::random::Random;
-use anthronet::rig::humanoid;
+use anthronet::scene::{Scene, SceneOptions};
+use anthronet::skeleton::humanoid;
 use anthronet::{Body, Error};
 
 fn model() -> &'static Model {

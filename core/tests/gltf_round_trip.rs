@@ -4,12 +4,12 @@ use std::{path::Path, sync::Arc};
 
 use anthronet::clip::Clip;
 use anthronet::condition::Request;
-use anthronet::export::gltf::to_glb;
-use anthronet::export::{Scene, SceneOptions};
-use anthronet::import::scene::scene_from_bytes;
+use anthronet::format::gltf::to_glb;
+use anthronet::format::scene_from_bytes;
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
-use anthronet::pose::RestPose;
+use anthronet::scene::{Scene, SceneOptions};
+use anthronet::skeleton::RestPose;
 use glam::Quat;
 
 #[test]

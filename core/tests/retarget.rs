@@ -4,11 +4,13 @@ mod common;
 
 use std::sync::Arc;
 
-use anthronet::clip::{JointMap, ReadOptions, RetargetOptions, Retargeter, direction_error, read};
 use anthronet::condition::Request;
+use anthronet::format::ReadOptions;
+use anthronet::format::motion::read;
 use anthronet::measure::Sex;
 use anthronet::model::Model;
-use anthronet::pose::RestPose;
+use anthronet::retarget::{JointMap, Retargeter, TransferOptions, direction_error};
+use anthronet::skeleton::RestPose;
 
 #[test]
 fn limbs_of_real_clips_point_where_the_sources_point() {
@@ -25,7 +27,7 @@ fn limbs_of_real_clips_point_where_the_sources_point() {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         for clip in read(&path, &ReadOptions::default()).unwrap().clips {
             let map = JointMap::find(clip.rest(), &Default::default()).unwrap();
-            let options = RetargetOptions::default();
+            let options = TransferOptions::default();
             let retargeter = Retargeter::new(clip.rest(), rest.clone(), &map, &options).unwrap();
             let found = retargeter.retarget(&clip).unwrap();
             let error = direction_error(&clip, &found, &map);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use anthronet::measure::Sex;
-use anthronet::pose::RestPose;
-use anthronet::rig::humanoid::renamed;
+use anthronet::skeleton::RestPose;
+use anthronet::skeleton::humanoid::renamed;
 
 use crate::Result;
 use crate::bridge::ffi;
@@ -103,8 +103,8 @@ impl Body {
     }
 
     pub(crate) fn save(&self, path: &str) -> Result<()> {
-        anthronet::export::write_scene(
-            &anthronet::export::Scene::from_body(&self.body, &Default::default())?,
+        anthronet::format::write_scene(
+            &anthronet::scene::Scene::from_body(&self.body, &Default::default())?,
             path,
         )
     }

@@ -3,8 +3,12 @@
 use std::path::Path;
 
 use anthronet::Error;
-use anthronet::clip::{self, BUILTIN, JointMask, OntoOptions, OntoSwitches, ReadOptions, Sampler};
-use anthronet::pose::{Local, Pose};
+use anthronet::clip;
+use anthronet::clip::{BUILTIN, JointMask, Sampler};
+use anthronet::format::{self, ReadOptions};
+use anthronet::math::RigidTransform;
+use anthronet::retarget::{self, RetargetOptions, RetargetSwitches};
+use anthronet::skeleton::Pose;
 use anthronet::space::Space;
 
 use crate::Result;
@@ -17,7 +21,7 @@ pub(crate) struct Clip {
     report: String,
 }
 
-pub(crate) struct Motion(clip::Motion);
+pub(crate) struct Motion(format::Motion);
 
 pub(crate) fn builtin_clips() -> Vec<String> {
     BUILTIN.iter().map(|name| (*name).to_owned()).collect()
@@ -143,14 +147,14 @@ impl Clip {
     fn write(
         &self,
         pose: &Pose,
-        model: &mut Vec<Local>,
+        model: &mut Vec<RigidTransform>,
         to_model: bool,
         space: Space,
         out: &mut [ffi::Transform],
     ) {
         let parents = self.clip.rest().parents();
         if to_model {
-            anthronet::pose::model_from_joints(parents, &pose.locals, model);
+            anthronet::skeleton::model_from_joints(parents, &pose.locals, model);
             for (out, joint) in out.iter_mut().zip(model) {
                 *out = joint.model_from_joint_in(space).into();
             }
@@ -171,11 +175,11 @@ fn room(joints: &[ffi::Transform], expected: usize) -> Result<()> {
 
 impl Motion {
     pub(crate) fn open(path: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
-        Ok(Box::new(Self(clip::read(path, &read_options(options)?)?)))
+        Ok(Box::new(Self(format::motion::read(path, &read_options(options)?)?)))
     }
 
     pub(crate) fn from_bytes(bytes: &[u8], name: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
-        Ok(Box::new(Self(clip::from_bytes(bytes, Path::new(name), &read_options(options)?)?)))
+        Ok(Box::new(Self(format::motion::from_bytes(bytes, Path::new(name), &read_options(options)?)?)))
     }
 
     pub(crate) fn clip_count(&self) -> usize {
@@ -196,9 +200,9 @@ impl Motion {
         body: &Body,
         options: &ffi::RetargetOptions,
     ) -> Result<Box<Clip>> {
-        let options = onto_options(options)?;
+        let options = retarget_options(options)?;
         let source = at(&self.0.clips, clip, "clip")?;
-        let (clip, report) = clip::onto_one(source, &body.rest, &options)?;
+        let (clip, report) = retarget::retarget_clip(source, &body.rest, &options)?;
         let report = json("retarget report", &report)?;
         Ok(Box::new(Clip { clip, report }))
     }
@@ -208,8 +212,8 @@ fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
     ReadOptions::of_numbers(asked.metres_per_unit, asked.up.meaning()?, asked.frames_per_second)
 }
 
-fn onto_options(asked: &ffi::RetargetOptions) -> Result<OntoOptions> {
-    let switches = OntoSwitches {
+fn retarget_options(asked: &ffi::RetargetOptions) -> Result<RetargetOptions> {
+    let switches = RetargetSwitches {
         fingers: asked.fingers.meaning()?,
         no_limits: asked.no_limits,
         no_feet: asked.no_feet,

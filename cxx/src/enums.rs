@@ -1,11 +1,12 @@
 //! Enumerations: from the caller's numbers to the library's types, values that none of them has refused.
 
-use anthronet::clip::{FingerMode, Wrap};
+use anthronet::clip::Wrap;
 use anthronet::condition::Fill;
-use anthronet::export::Layout;
 use anthronet::measure::Sex;
 use anthronet::mesh::Lod;
-use anthronet::rig::humanoid::JointNames;
+use anthronet::retarget::FingerMode;
+use anthronet::scene::Layout;
+use anthronet::skeleton::humanoid::JointNames;
 use anthronet::skin::SkinMethod;
 use anthronet::space::{Axis, Space};
 use anthronet::{Error, Result};

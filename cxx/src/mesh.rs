@@ -1,7 +1,7 @@
 //! Meshes of a body, as graphics hardware or as editors want them.
 
-use anthronet::export::{MeshBuffers, Scene};
-use anthronet::pose::Local;
+use anthronet::math::RigidTransform;
+use anthronet::scene::{MeshBuffers, Scene};
 use bytemuck::cast_slice;
 use glam::Vec3;
 
@@ -14,7 +14,7 @@ use crate::skin::Skinner;
 
 pub(crate) struct Mesh {
     parts: Vec<MeshPart>,
-    bind: Vec<Local>,
+    bind: Vec<RigidTransform>,
 }
 
 pub(crate) struct MeshPart(MeshBuffers);

@@ -2,7 +2,7 @@
 
 use anthronet::measure::MeasureId;
 use anthronet::model::MeasuredMesh;
-use anthronet::{Error, rig};
+use anthronet::{Error, skeleton as rig};
 use glam::Vec3;
 
 use crate::Result;
@@ -64,7 +64,7 @@ impl Model {
     }
 
     pub(crate) fn measure_file(&self, path: &str) -> Result<ffi::Measured> {
-        Ok(anthronet::import::measure_file(&self.0, path)?.into())
+        Ok(anthronet::format::measure_file(&self.0, path)?.into())
     }
 }
 

@@ -1,9 +1,8 @@
 //! Characters with their clips, as files on the disk or in memory.
 
 use anthronet::Error;
-use anthronet::export::{
-    GltfOptions, SceneOptions, SkinTone, WriteOptions, scene_to_bytes, write_scene_with,
-};
+use anthronet::format::{GltfOptions, WriteOptions, scene_to_bytes, write_scene_with};
+use anthronet::scene::{SceneOptions, SkinTone};
 
 use crate::Result;
 use crate::body::Body;
@@ -12,7 +11,7 @@ use crate::clip::Clip;
 use crate::enums::{Meaning, lod};
 
 pub(crate) struct Scene {
-    scene: anthronet::export::Scene,
+    scene: anthronet::scene::Scene,
     options: WriteOptions,
 }
 
@@ -21,7 +20,7 @@ impl Scene {
         let ffi::SceneOptions { lod, influences, joint_names, body_only, skin_tone, compress } = *options;
         let looks = looks(lod, influences, joint_names, body_only, skin_tone)?;
         Ok(Box::new(Self {
-            scene: anthronet::export::Scene::from_body(&body.body, &looks)?,
+            scene: anthronet::scene::Scene::from_body(&body.body, &looks)?,
             options: WriteOptions { gltf: GltfOptions { compress }, ..WriteOptions::default() },
         }))
     }

@@ -1,7 +1,7 @@
 //! Posed surfaces, into the caller's buffers.
 
 use anthronet::Error;
-use anthronet::pose::Local;
+use anthronet::math::RigidTransform;
 use anthronet::skin::{BytesMut, SkinJob, StridedMut, SurfaceMut};
 use bytemuck::cast_slice_mut;
 use glam::{Quat, Vec3};
@@ -130,16 +130,16 @@ fn surface<'a>(positions: &'a mut [f32], normals: &'a mut [f32]) -> SurfaceMut<'
     }
 }
 
-fn locals(pose: &[ffi::Transform]) -> Vec<Local> {
-    let local = |joint: &ffi::Transform| Local {
+fn locals(pose: &[ffi::Transform]) -> Vec<RigidTransform> {
+    let local = |joint: &ffi::Transform| RigidTransform {
         rotation: Quat::from_array(joint.rotation),
         translation: Vec3::from_array(joint.translation),
     };
     pose.iter().map(local).collect()
 }
 
-impl From<Local> for ffi::Transform {
-    fn from(local: Local) -> Self {
+impl From<RigidTransform> for ffi::Transform {
+    fn from(local: RigidTransform) -> Self {
         Self { rotation: local.rotation.to_array(), translation: local.translation.to_array() }
     }
 }

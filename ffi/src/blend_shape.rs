@@ -2,7 +2,7 @@
 
 use std::ffi::{c_char, c_void};
 
-use anthronet::export::BlendShape;
+use anthronet::scene::BlendShape;
 
 use crate::body::anthronet_body;
 use crate::mesh::{

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anthronet::Body;
 use anthronet::condition::Filled;
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::pose::RestPose;
+use anthronet::skeleton::RestPose;
 
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;

@@ -2,8 +2,10 @@
 
 use std::ffi::c_char;
 
-use anthronet::clip::{self, BUILTIN, Clip, JointMask, MAX_FRAMES, MAX_ROTATIONS, Sampler, Wrap};
-use anthronet::pose::{Local, Pose};
+use anthronet::clip;
+use anthronet::clip::{BUILTIN, Clip, JointMask, MAX_FRAMES, MAX_ROTATIONS, Sampler, Wrap};
+use anthronet::math::RigidTransform;
+use anthronet::skeleton::Pose;
 use anthronet::space::Space;
 
 use crate::body::anthronet_body;
@@ -375,25 +377,25 @@ fn finite(what: &str, value: f64) -> Outcome {
 }
 
 /// Room for a pose that stays from call to call, so that sampling allocates nothing.
-fn scratch(work: impl FnOnce(&mut Pose, &mut Vec<Local>)) {
+fn scratch(work: impl FnOnce(&mut Pose, &mut Vec<RigidTransform>)) {
     use std::cell::RefCell;
     thread_local! {
-        static ROOM: RefCell<(Pose, Vec<Local>)> = RefCell::default();
+        static ROOM: RefCell<(Pose, Vec<RigidTransform>)> = RefCell::default();
     }
     ROOM.with_borrow_mut(|(pose, model)| work(pose, model));
 }
 
 fn write(
     clip: &Clip,
-    locals: &[Local],
-    model: &mut Vec<Local>,
+    locals: &[RigidTransform],
+    model: &mut Vec<RigidTransform>,
     to_model: bool,
     space: Space,
     out: &mut OutSlice<anthronet_transform>,
 ) {
     let parents = clip.rest().parents();
     if to_model {
-        anthronet::pose::model_from_joints(parents, locals, model);
+        anthronet::skeleton::model_from_joints(parents, locals, model);
         out.write(model.iter().map(|joint| joint.model_from_joint_in(space).into()));
     } else {
         let joints = locals.iter().zip(parents);

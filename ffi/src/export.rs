@@ -3,7 +3,8 @@
 use std::ffi::c_char;
 use std::path::Path;
 
-use anthronet::export::{GltfOptions, Scene, WriteOptions, scene_to_bytes, write_scene_with};
+use anthronet::format::{GltfOptions, WriteOptions, scene_to_bytes, write_scene_with};
+use anthronet::scene::Scene;
 
 use crate::body::anthronet_body;
 use crate::bytes::anthronet_bytes;

@@ -116,7 +116,7 @@ pub unsafe extern "C" fn anthronet_measure_file(
         let out = Results::new(out_metres, count, out_measured)?;
         let model = read(model, "model")?;
         let measured =
-            anthronet::import::measure_file(&model.0, Path::new(text(path, path_length, "path")?))?;
+            anthronet::format::measure_file(&model.0, Path::new(text(path, path_length, "path")?))?;
         out.write(&measured);
         Ok(())
     })

@@ -2,8 +2,8 @@
 
 use std::ffi::c_void;
 
-use anthronet::export::{BlendShape, Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
-use anthronet::pose::Local;
+use anthronet::math::RigidTransform;
+use anthronet::scene::{BlendShape, Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, choice, described, flag, joint_names, lod, space};
@@ -113,7 +113,7 @@ pub struct anthronet_view {
 /// The surfaces of a body in a space and layout.
 pub struct anthronet_mesh {
     pub(crate) parts: Vec<MeshBuffers>,
-    pub(crate) bind: Vec<Local>,
+    pub(crate) bind: Vec<RigidTransform>,
     /// By shape, then by part.
     pub(crate) blend_shapes: Vec<Vec<BlendShape>>,
     pub(crate) options: anthronet_mesh_options,

@@ -4,10 +4,12 @@ use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
 
-use anthronet::clip::{
-    self, Clip, FingerMode, MAX_FRAMES, MAX_ROTATIONS, Motion, OntoOptions, OntoSwitches, ReadOptions,
-};
-use anthronet::pose::{Local, MAX_JOINTS, RestPose};
+use anthronet::clip;
+use anthronet::clip::{Clip, MAX_FRAMES, MAX_ROTATIONS};
+use anthronet::format::{self, Motion, ReadOptions};
+use anthronet::math::RigidTransform;
+use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetSwitches};
+use anthronet::skeleton::{MAX_JOINTS, RestPose};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
@@ -105,7 +107,7 @@ pub unsafe extern "C" fn anthronet_motion_open_path(
     guard(error, || {
         let out = Out::new(out_motion, "out_motion")?;
         let path = Path::new(text(path, path_length, "path")?);
-        give(out, clip::read(path, &options(read_options)?)?);
+        give(out, format::motion::read(path, &options(read_options)?)?);
         Ok(())
     })
 }
@@ -126,7 +128,7 @@ pub unsafe extern "C" fn anthronet_motion_open_memory(
         let out = Out::new(out_motion, "out_motion")?;
         let bytes = file(data, length, "data")?;
         let name = Path::new(text(name, name_length, "name")?);
-        give(out, clip::from_bytes(bytes, name, &options(read_options)?)?);
+        give(out, format::motion::from_bytes(bytes, name, &options(read_options)?)?);
         Ok(())
     })
 }
@@ -206,9 +208,11 @@ pub(crate) fn locals(
     transforms: &[anthronet_transform],
     parents: &[Option<u32>],
     space: Space,
-) -> Vec<Local> {
+) -> Vec<RigidTransform> {
     let joints = transforms.iter().zip(parents.iter().cycle());
-    joints.map(|(joint, parent)| Local::from(joint).parent_from_joint_out_of(space, *parent)).collect()
+    joints
+        .map(|(joint, parent)| RigidTransform::from(joint).parent_from_joint_out_of(space, *parent))
+        .collect()
 }
 
 /// Frees a motion; NULL is nothing.
@@ -277,8 +281,8 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
         let out_report = Out::optional(out_report, "out_report")?;
         let motion = &read(motion, "motion")?.0;
         let body = read(body, "body")?;
-        let options = onto_options(&described(retarget_options, "options")?)?;
-        let (clip, report) = clip::onto_one(at(&motion.clips, clip, "clip")?, &body.rest, &options)?;
+        let options = options_of(&described(retarget_options, "options")?)?;
+        let (clip, report) = retarget::retarget_clip(at(&motion.clips, clip, "clip")?, &body.rest, &options)?;
         let report_json = json(&report)?;
         if !report.joints.unmatched.is_empty() {
             crate::log::info(&format!("joints that drive nothing: {}", report.joints.unmatched.join(", ")));
@@ -291,8 +295,8 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
     })
 }
 
-fn onto_options(asked: &anthronet_retarget_options) -> Outcome<OntoOptions> {
-    let switches = OntoSwitches {
+fn options_of(asked: &anthronet_retarget_options) -> Outcome<RetargetOptions> {
+    let switches = RetargetSwitches {
         fingers: choice(
             &[FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest],
             asked.fingers,

@@ -4,7 +4,7 @@
 //! in every field, so that older callers meet newer libraries and the other way round.
 
 use anthronet::mesh::Lod;
-use anthronet::rig::humanoid::JointNames;
+use anthronet::skeleton::humanoid::JointNames;
 use anthronet::skin::SkinMethod;
 use anthronet::space::Space;
 

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use anthronet::condition::{Fill, Request};
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::model::config::MAX_LATENT;
+use anthronet::network::config::MAX_LATENT;
 
 use crate::bytes::anthronet_bytes;
 use crate::options::{choice, flag};

@@ -1,6 +1,6 @@
 //! The joints of a body, their names in other programs, and where they rest.
 
-use anthronet::rig::humanoid::{humanoid_bones, renamed};
+use anthronet::skeleton::humanoid::{humanoid_bones, renamed};
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, joint_names, space};
@@ -135,20 +135,20 @@ pub unsafe extern "C" fn anthronet_humanoid_bone_at(
 }
 
 /// The name of a joint of the rig: borrowed from the table of names, or the joint's own.
-fn renamed_in_place(native: &str, names: anthronet::rig::humanoid::JointNames) -> &str {
+fn renamed_in_place(native: &str, names: anthronet::skeleton::humanoid::JointNames) -> &str {
     match renamed(native, names) {
         std::borrow::Cow::Borrowed(name) => name,
         std::borrow::Cow::Owned(_) => native,
     }
 }
 
-impl From<anthronet::pose::Local> for anthronet_transform {
-    fn from(local: anthronet::pose::Local) -> Self {
+impl From<anthronet::math::RigidTransform> for anthronet_transform {
+    fn from(local: anthronet::math::RigidTransform) -> Self {
         Self { rotation: local.rotation.to_array(), translation: local.translation.to_array() }
     }
 }
 
-impl From<&anthronet_transform> for anthronet::pose::Local {
+impl From<&anthronet_transform> for anthronet::math::RigidTransform {
     fn from(transform: &anthronet_transform) -> Self {
         Self {
             rotation: glam::Quat::from_array(transform.rotation),

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use anthronet::pose::Local;
+use anthronet::math::RigidTransform;
 use anthronet::skin::{SkinJob, SkinMethod, Skinner, StridedMut, SurfaceMut, skin_many};
 use glam::Vec3;
 
@@ -123,7 +123,7 @@ struct Prepared<'a> {
     asked: &'a anthronet_skin_job,
     skinner: &'a Skinner,
     method: SkinMethod,
-    pose: Vec<Local>,
+    pose: Vec<RigidTransform>,
     offsets: Vec<Vec3>,
     positions: Rows,
     normals: Option<Rows>,
@@ -144,7 +144,7 @@ impl<'a> Prepared<'a> {
             asked: job,
             skinner,
             method: skin_method(job.method)?,
-            pose: joints.iter().map(Local::from).collect(),
+            pose: joints.iter().map(RigidTransform::from).collect(),
             offsets: offsets.iter().map(|offset| Vec3::from_array(*offset)).collect(),
             positions: rows(job.positions, job.position_bytes, job.position_stride, "positions")?,
             normals: match job.normals.is_null() {

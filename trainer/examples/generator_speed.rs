@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use anthronet::model::config::GeneratorConfig;
+use anthronet::network::config::GeneratorConfig;
 use anthronet_trainer::generator::{ShapeStatistics, TrainingOptions, TrainingSet, synthetic_set, train};
 use safetensors::SafeTensors;
 

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use anthronet::export::write_atomic;
+use anthronet::format::write_atomic;
 use anthronet::measure::Definitions;
-use anthronet::model::config::GeneratorConfig;
 use anthronet::model::{Model, ModelParts};
+use anthronet::network::config::GeneratorConfig;
 use serde_json::json;
 
 use crate::basis::{COMPONENTS, laplacian};

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anthronet::condition::Request;
-use anthronet::export::{Scene, SceneOptions, gltf::to_glb};
+use anthronet::format::gltf::to_glb;
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Measurements};
 use anthronet::model::Model;
 use anthronet::random::Random;
+use anthronet::scene::{Scene, SceneOptions};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -166,7 +167,7 @@ fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
         Err(e) => return Err(e.into()),
     };
     let glb = to_glb(&Scene::from_body(&body, &SceneOptions::default())?)?;
-    let file = anthronet::import::gltf::from_bytes(&glb, Path::new("body.glb"))?;
+    let file = anthronet::format::gltf::read::from_bytes(&glb, Path::new("body.glb"))?;
     let mesh = file.meshes.first().ok_or_else(|| Error::Invalid("the written .glb has no mesh".into()))?;
     let again = model.definitions().read_all(|v| mesh.positions[v as usize].as_dvec3());
     let worst =

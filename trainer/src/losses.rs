@@ -8,7 +8,7 @@
 //! - Divergence: `KL(N(μ, σ²) ‖ N(0, 1))`, nats, summed over z and averaged over samples.
 //! - Laplacian: `cᵀ G c + g·c + constant` of the generated body, averaged over samples, mm² where G is in m² per m².
 
-use anthronet::model::config::GeneratorConfig;
+use anthronet::network::config::GeneratorConfig;
 use candle_core::{Device, Result, Tensor};
 
 use crate::generator::QuadraticForm;

@@ -2,8 +2,8 @@
 
 use anthronet::condition::QUANTILE_COUNT;
 use anthronet::measure::{Definitions, MEASURE_COUNT};
-use anthronet::model::config::GeneratorConfig;
 use anthronet::model::{Accessory, ModelParts, Provenance};
+use anthronet::network::config::GeneratorConfig;
 use glam::Vec3;
 use half::f16;
 

@@ -13,22 +13,27 @@ const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
     ("space", &[]),
+    ("math", &["space"]),
     ("mesh", &[]),
     ("measure", &["mesh"]),
-    ("rig", &["mesh"]),
-    ("condition", &["measure", "mesh"]),
-    ("model", &["condition", "measure", "mesh", "rig"]),
-    ("body", &["model", "condition", "measure", "mesh", "rig"]),
-    ("input", &[]),
-    ("pose", &["rig", "space"]),
-    ("clip", &["pose", "rig", "space", "input"]),
-    ("skin", &["pose", "rig", "mesh"]),
-    ("export", &["body", "model", "condition", "measure", "mesh", "rig", "pose", "clip", "space"]),
-    ("import", &["export", "model", "measure", "mesh", "rig", "pose", "clip", "space", "input"]),
+    ("skeleton", &["math", "mesh", "space"]),
+    ("pose", &["math", "skeleton", "space"]),
+    ("network", &["measure"]),
+    ("condition", &["math", "measure", "mesh"]),
+    ("model", &["condition", "math", "measure", "mesh", "network", "skeleton"]),
+    ("body", &["condition", "measure", "mesh", "model", "skeleton"]),
+    ("skin", &["math", "mesh", "pose", "skeleton"]),
+    ("clip", &["math", "pose", "skeleton"]),
+    ("retarget", &["clip", "math", "pose", "skeleton"]),
+    ("scene", &["body", "clip", "math", "measure", "mesh", "model", "skeleton", "space"]),
+    (
+        "format",
+        &["clip", "math", "measure", "mesh", "model", "pose", "retarget", "scene", "skeleton", "space"],
+    ),
 ];
 
 /// Rooms without a view of bodies, open to everybody.
-const OPEN: &[&str] = &["error", "random"];
+const OPEN: &[&str] = &["error", "random", "testing"];
 
 /// One line per use of a room that the table does not grant: `path:line: …`.
 pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {

@@ -8,11 +8,12 @@ use std::path::Path;
 
 use anthronet::Error;
 use anthronet::condition::{Fill, Request, refusal_json};
-use anthronet::export::{GltfOptions, Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone, WriteOptions};
+use anthronet::format::{GltfOptions, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
 pub(crate) use anthronet::random::Random;
-use anthronet::rig::humanoid::JointNames;
+use anthronet::scene::{Scene, SceneMaterial, SceneMesh, SceneOptions, SkinTone};
+use anthronet::skeleton::humanoid::JointNames;
 use glam::Vec3;
 
 use crate::failure::{Failure, Result};
@@ -143,7 +144,7 @@ impl Person {
 
 /// All measures of a file's body: its first mesh, at any level of detail.
 pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
-    let measured = anthronet::import::measure_file(&model.0, path)?;
+    let measured = anthronet::format::measure_file(&model.0, path)?;
     let Mass { volume_m3, mass_kg, bmi } = measured.mass;
     let named = MeasureId::all().zip(measured.measurements);
     let named = named.map(|(id, value)| NamedValue { name: id.name(), value });
@@ -152,7 +153,7 @@ pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
 
 /// A character file as the renderer takes it, moved so that its lowest point stands on the ground.
 pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
-    let scene = anthronet::import::open(path)?;
+    let scene = anthronet::format::meshes::open(path)?;
     let lowest =
         scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
     let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
@@ -179,7 +180,7 @@ pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<
         return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
     }
     let options = WriteOptions { gltf: GltfOptions { compress }, ..Default::default() };
-    Ok(anthronet::export::write_scene_with(scene, path, &options)?)
+    Ok(anthronet::format::write_scene_with(scene, path, &options)?)
 }
 
 /// Writes text to a file, or with `-` to standard output.
@@ -189,7 +190,7 @@ pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<()> {
 
 /// Writes a file whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    Ok(anthronet::export::write_atomic(path, bytes)?)
+    Ok(anthronet::format::write_atomic(path, bytes)?)
 }
 
 /// Refuses options that no file can have, before any work is done.

@@ -3,12 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use anthronet::clip;
 pub(crate) use anthronet::clip::BUILTIN;
-use anthronet::clip::feet::FeetOptions;
-use anthronet::clip::{self, Clip, FingerMode, OntoOptions, ReadOptions};
-use anthronet::export::Scene;
-use anthronet::pose::RestPose;
-use anthronet::rig::humanoid::{native_name, renamed};
+use anthronet::clip::Clip;
+use anthronet::format::{self, ReadOptions};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::scene::Scene;
+use anthronet::skeleton::RestPose;
+use anthronet::skeleton::humanoid::{native_name, renamed};
 use anthronet::space::{Axis, Unit};
 use serde_json::json;
 
@@ -20,7 +23,7 @@ use crate::request::read_text;
 
 /// A character file, whole: skin, joints, materials, motions.
 pub(crate) fn open(path: &Path) -> Result<Scene> {
-    Ok(anthronet::import::scene::open_scene(path)?)
+    Ok(anthronet::format::open_scene(path)?)
 }
 
 /// Names the joints in another vocabulary.
@@ -76,12 +79,13 @@ fn load(
         let known = BUILTIN.join(", ");
         return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
     }
-    let motion = clip::read(path, &read_options(arguments))?;
+    let motion = format::motion::read(path, &read_options(arguments))?;
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }
     let in_file = |error| Failure::failed(format!("{source}: {error}"));
-    let (clips, report) = clip::onto(&motion, rest, &onto_options(arguments)?).map_err(in_file)?;
+    let (clips, report) =
+        retarget::retarget(&motion.clips, rest, &retarget_options(arguments)?).map_err(in_file)?;
     if !report.joints.unmatched.is_empty() {
         let joints = report.joints.unmatched.join(", ");
         eprintln!("note: {source}: joints that drive nothing: {joints}");
@@ -105,19 +109,19 @@ fn read_options(arguments: &MotionArguments) -> ReadOptions {
     }
 }
 
-fn onto_options(arguments: &MotionArguments) -> Result<OntoOptions> {
-    let mut options = OntoOptions {
+fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
+    let mut options = RetargetOptions {
         limits: !arguments.no_limits,
         feet: (!arguments.no_feet).then(FeetOptions::default),
         frames_per_second: arguments.fps,
         in_place: arguments.in_place,
         looped: arguments.looped,
-        ..OntoOptions::default()
+        ..RetargetOptions::default()
     };
     if let Some(path) = &arguments.mapping {
-        options.mapping = clip::read_overrides(&read_text(path)?, path)?;
+        options.mapping = retarget::read_overrides(&read_text(path)?, path)?;
     }
-    options.retarget.fingers = match arguments.fingers.unwrap_or(FingersChoice::Source) {
+    options.transfer.fingers = match arguments.fingers.unwrap_or(FingersChoice::Source) {
         FingersChoice::Source => FingerMode::Source,
         FingersChoice::Relaxed => FingerMode::Relaxed,
         FingersChoice::Rest => FingerMode::Rest,

@@ -6,11 +6,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anthronet::clip::{self, BUILTIN, Motion, OntoOptions, ReadOptions, feet};
+use anthronet::clip;
+use anthronet::clip::BUILTIN;
 use anthronet::condition::Request;
+use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::model::Model;
-use anthronet::pose::RestPose;
 use anthronet::pose::limits::JointLimits;
+use anthronet::retarget::{self, RetargetOptions, feet};
+use anthronet::skeleton::RestPose;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -72,7 +75,7 @@ pub(crate) fn motion_table(folder: &Path, bodies: usize) -> Result<MotionTable> 
     let mut rows = files
         .par_iter()
         .map(|path| {
-            let motion = clip::read(path, &ReadOptions::default())?;
+            let motion = format::motion::read(path, &ReadOptions::default())?;
             let row = row(path, &motion, &bodies)?;
             bar.inc(1);
             Ok(row)
@@ -140,12 +143,12 @@ fn row(path: &Path, motion: &Motion, bodies: &[OnBody]) -> Result<Row> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let mut row = Row::new(name);
     for body in bodies {
-        let onto = |options: &OntoOptions| {
-            let done = clip::onto(motion, &body.rest, options);
+        let onto = |options: &RetargetOptions| {
+            let done = retarget::retarget(&motion.clips, &body.rest, options);
             done.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
         };
-        let (clips, report) = onto(&OntoOptions::default())?;
-        let (as_they_came, _) = onto(&OntoOptions { feet: None, ..OntoOptions::default() })?;
+        let (clips, report) = onto(&RetargetOptions::default())?;
+        let (as_they_came, _) = onto(&RetargetOptions { feet: None, ..RetargetOptions::default() })?;
         row.unmatched = report.joints.unmatched.len();
         let share = 1.0 / (bodies.len() * report.clips.len()) as f64;
         for ((clip, came), quality) in clips.iter().zip(&as_they_came).zip(&report.clips) {
@@ -176,7 +179,7 @@ fn builtin_row(name: &str, bodies: &[OnBody]) -> Result<Row> {
         let found = feet::contacts(&clip, &options)?;
         let measured = soles.measure(&clip, &found)?;
         row.feet(&found, &measured, &measured, 1.0 / bodies.len() as f64);
-        let (excess, joint) = clip::worst_excess(&JointLimits::of_rig(rest), &clip);
+        let (excess, joint) = retarget::worst_limit_excess(&JointLimits::of_rig(rest), &clip);
         let name = joint.and_then(|j| rest.names().get(j)).map(String::as_str);
         row.beyond(f64::from(excess).to_degrees(), name);
     }

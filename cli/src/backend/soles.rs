@@ -2,11 +2,11 @@
 
 use anthronet::Body;
 use anthronet::clip::Clip;
-use anthronet::clip::feet::{Contact, Contacts, FootPoint};
-use anthronet::export::{Scene, SceneOptions};
 use anthronet::mesh::Lod;
-use anthronet::pose::{Pose, RestPose};
-use anthronet::rig::Influences;
+use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
+use anthronet::scene::{Scene, SceneOptions};
+use anthronet::skeleton::Influences;
+use anthronet::skeleton::{Pose, RestPose};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::Vec3;
 

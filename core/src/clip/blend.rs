@@ -7,7 +7,8 @@ use glam::Quat;
 use super::Clip;
 use super::edit::clip_of_poses;
 use super::sample::{Sampler, Wrap, mix};
-use crate::pose::{Local, Pose, RestPose};
+use crate::math::RigidTransform;
+use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 
 /// How much each joint takes part: 0 not at all, 1 fully.
@@ -77,7 +78,7 @@ pub fn add_pose(base: &mut Pose, layer: &Pose, reference: &Pose, weight: f32, ma
         let weight = weight * mask.weight(joint);
         let by = reference.rotation.conjugate() * layer.rotation;
         let by = if by.w < 0.0 { -by } else { by };
-        *base = Local {
+        *base = RigidTransform {
             rotation: (base.rotation * Quat::IDENTITY.slerp(by, weight)).normalize(),
             translation: base.translation + (layer.translation - reference.translation) * weight,
         };
@@ -194,7 +195,7 @@ fn in_unit(field: &str, value: f32) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::test_clips::swing;
+    use crate::testing::clips::swing;
 
     #[test]
     fn half_a_blend_is_half_way() {

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use crate::pose::{Local, Pose, RestPose, unit};
+use crate::math::{RigidTransform, unit};
+use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 
 /// The most frames that a clip may have.
@@ -97,7 +98,7 @@ impl Clip {
         name: String,
         rest: Arc<RestPose>,
         frames_per_second: f64,
-        locals: &[Local],
+        locals: &[RigidTransform],
     ) -> Result<Self> {
         let joints = rest.len();
         let moving = |joint: &usize| {
@@ -162,7 +163,9 @@ impl Clip {
         let rest = &self.rest.pose().locals;
         let rotations = self.rotations(frame);
         pose.locals.extend(
-            rest.iter().zip(rotations).map(|(r, q)| Local { rotation: *q, translation: r.translation }),
+            rest.iter()
+                .zip(rotations)
+                .map(|(r, q)| RigidTransform { rotation: *q, translation: r.translation }),
         );
         for track in &self.translations {
             pose.locals[track.joint as usize].translation = track.values[frame];
@@ -183,7 +186,7 @@ mod tests {
 
     fn rest() -> Arc<RestPose> {
         let names = ["hips", "leg"].map(String::from).to_vec();
-        let step = Local { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y };
+        let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y };
         Arc::new(RestPose::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap())
     }
 
@@ -205,8 +208,8 @@ mod tests {
     fn poses_become_rotations_and_the_tracks_that_move() {
         let turn = Quat::from_rotation_x(1.0);
         let frame = |at: Vec3| {
-            let hips = Local { rotation: turn, translation: at };
-            [hips, Local { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y }]
+            let hips = RigidTransform { rotation: turn, translation: at };
+            [hips, RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y }]
         };
         let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();
         let clip = Clip::of_poses("step".into(), rest(), 30.0, &poses).unwrap();

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::sample::{Sampler, Wrap, mix};
 use super::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::pose::{Pose, RestPose};
+use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 
 impl Clip {
@@ -117,7 +117,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
 ///
 /// # Errors
 /// As [`Clip::new`].
-pub(super) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
+pub(crate) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
     let cycle = clip.frame_count() - 1;
     let travel = travel(clip, 0, cycle);
     let poses = (0..=times * cycle).map(|frame| {
@@ -135,7 +135,7 @@ pub(super) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
 ///
 /// # Errors
 /// As [`Clip::new`].
-pub(super) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
+pub(crate) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
     let travel = travel(clip, 0, start);
     let poses = (start..start + count).map(|frame| {
         let mut pose = clip.pose(frame);
@@ -151,7 +151,7 @@ pub(super) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
 ///
 /// # Errors
 /// As [`Clip::new`].
-pub(super) fn closed(clip: &Clip) -> Result<Clip> {
+pub(crate) fn closed(clip: &Clip) -> Result<Clip> {
     let last = clip.frame_count() - 1;
     let travel = travel(clip, 0, last);
     let poses = (0..=last).map(|frame| {
@@ -190,7 +190,7 @@ pub fn in_place(clip: &Clip) -> Result<Clip> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::test_clips::swing;
+    use crate::testing::clips::swing;
 
     #[test]
     fn resampling_keeps_the_motion() {

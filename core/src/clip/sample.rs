@@ -1,7 +1,8 @@
 //! A clip at any time.
 
 use super::Clip;
-use crate::pose::{Local, Pose};
+use crate::math::RigidTransform;
+use crate::skeleton::Pose;
 
 /// What a clip does outside its duration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,11 +88,11 @@ impl<'a> Sampler<'a> {
 }
 
 /// Mixes two local transforms: `a` at 0, `b` at 1.
-pub(super) fn mix(a: Local, b: Local, share: f32) -> Local {
+pub(super) fn mix(a: RigidTransform, b: RigidTransform, share: f32) -> RigidTransform {
     if share == 0.0 {
         return a;
     }
-    Local {
+    RigidTransform {
         rotation: a.rotation.slerp(b.rotation, share),
         translation: a.translation.lerp(b.translation, share),
     }
@@ -105,11 +106,12 @@ mod tests {
 
     use super::*;
     use crate::clip::TranslationTrack;
-    use crate::pose::RestPose;
+    use crate::skeleton::RestPose;
 
     /// One joint that turns from 0 to 1 radian about X and moves a metre ahead and up, in two frames at 10 a second.
     fn clip() -> Clip {
-        let rest = RestPose::new(vec!["root".into()], vec![None], vec![Local::IDENTITY], vec![None]).unwrap();
+        let rest = RestPose::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
+            .unwrap();
         let turn = |angle| Quat::from_rotation_x(angle);
         let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];
         let tracks = vec![TranslationTrack { joint: 0, values }];

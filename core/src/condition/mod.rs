@@ -4,9 +4,7 @@
 //! [`solve()`] on the given measures → [`Report`].
 
 mod chi_squared;
-pub(crate) mod cholesky;
 mod feasibility;
-pub mod fourier;
 mod prepare;
 mod prior;
 mod report;

@@ -5,7 +5,7 @@
 //! is pulled towards the plausible ([`SexPrior::project`]) before the network sees it; and a sex that was not given is
 //! judged by which Gaussian explains the measures better.
 
-use super::cholesky::Cholesky;
+use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
 use crate::random::Random;
 use crate::{Error, Result};

@@ -4,8 +4,8 @@
 //! the shape basis, c₀ what the decoder said and Σ how uncertain each coefficient is. The paper has no such step: its
 //! tables leave errors of centimetres, a tailor does not.
 
-use super::cholesky::Cholesky;
 use super::prior::GivenMeasures;
+use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements};
 use crate::{Error, Result};
 

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::Vec3;
 
 use crate::mesh::{Lod, Subdivision, Topology, VertexFaces};
-use crate::rig::{Skeleton, SkinWeights};
+use crate::skeleton::{Skeleton, SkinWeights};
 use crate::{Error, Result};
 
 /// A submesh that moves with the body: eyes, teeth, tongue or lashes.

@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::character::{Accessory, Character, ReducedMesh};
-use super::config::GeneratorConfig;
-use super::network::{Tensor, Tensors};
 use super::shape_space::ShapeSpace;
 use crate::condition::{MeasureRange, Prior};
 use crate::measure::MEASURE_COUNT;
 use crate::mesh::Topology;
-use crate::rig::{Skeleton, SkinWeights};
+use crate::network::config::GeneratorConfig;
+use crate::network::{Tensor, Tensors};
+use crate::skeleton::{Skeleton, SkinWeights};
 use crate::{Error, Result};
 
 /// Version of the file's layout; a file of another version is refused.
@@ -67,7 +67,7 @@ pub struct ModelParts {
     pub joint_mean: Vec<f32>,
     /// How the coefficients move them, `(2 * 3 * joints, components)`, metre per metre.
     pub joint_rows: Vec<f32>,
-    /// Skin weights of cage and accessories as [`crate::rig::SkinWeights::new`] takes them: offsets of the rows, joints,
+    /// Skin weights of cage and accessories as [`crate::skeleton::SkinWeights::new`] takes them: offsets of the rows, joints,
     /// weights.
     pub skin: (Vec<u32>, Vec<u16>, Vec<f32>),
     /// Per sex, female first: means `(2, 36)` in m, covariances `(2, 36, 36)` in m², quantiles `(2, 36, 101)` in m.

@@ -8,13 +8,13 @@ use glam::Vec3;
 use super::character::Character;
 use super::file::{ModelParts, Provenance};
 use super::measured_space::MeasuredSpace;
-use super::network::{Decoder, Encoder};
 use super::shape_space::ShapeSpace;
 use crate::condition::{
     Limits, MeasureRange, MeasuredShape, Prepared, Prior, Request, SolveOptions, SolveOutcome, solve,
 };
 use crate::measure::{Definitions, MEASURE_COUNT, Measurements, Sex};
-use crate::rig::SkeletonShape;
+use crate::network::{Decoder, Encoder};
+use crate::skeleton::SkeletonShape;
 use crate::{Error, Result};
 
 /// Environment variable that names a model file to use instead of the embedded one.

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 use super::generator::Model;
 use super::shape_space::ShapeSpace;
-use crate::condition::cholesky::Cholesky;
+use crate::math::cholesky::Cholesky;
 use crate::measure::{Mass, MeasureId, Measurements, enclosed_volume};
 use crate::mesh::{Lod, Subdivision};
 use crate::{Error, Result};

@@ -1,15 +1,11 @@
 //! The trained model: its file, its networks, its shape space, and the path from a request to coefficients.
 
 mod character;
-pub mod config;
 mod file;
 mod generator;
 mod info;
 mod measured_mesh;
 mod measured_space;
-pub mod network;
-#[cfg(test)]
-mod network_tests;
 mod shape_space;
 
 pub use character::{Accessory, Character, ReducedMesh};

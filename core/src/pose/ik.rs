@@ -6,7 +6,8 @@
 
 use glam::{Quat, Vec3};
 
-use super::{Local, Pose, RestPose};
+use crate::math::RigidTransform;
+use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 
 /// Which way the middle joint of a limb points when the limb bends.
@@ -35,7 +36,7 @@ pub struct Limb {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// The end joint's place and rotation, `model_from_end`.
-    pub target: Local,
+    pub target: RigidTransform,
     /// The stretch, as a share of the limb's length, over which it slows down before it is straight; a target within
     /// it is missed by up to that. 0 to 0.5.
     pub softness: f32,
@@ -60,7 +61,7 @@ impl Limb {
     }
 
     /// The joints' `model_from_joint`: upper, lower, end. `parent` is `model_from_parent` of the upper joint.
-    pub fn model_from_joints(&self, pose: &Pose, parent: Local) -> [Local; 3] {
+    pub fn model_from_joints(&self, pose: &Pose, parent: RigidTransform) -> [RigidTransform; 3] {
         let upper = parent.then(pose.locals[self.upper]);
         let lower = upper.then(pose.locals[self.lower]);
         [upper, lower, lower.then(pose.locals[self.end])]
@@ -74,7 +75,7 @@ impl Limb {
     /// Turns the three joints so that the end stands at its target with the rotation asked for. A target out of reach
     /// is pointed at. `parent` is `model_from_parent` of the upper joint; nothing changes when a bone has no length or
     /// a number is not finite.
-    pub fn reach(&self, pose: &mut Pose, parent: Local, reach: &Reach) {
+    pub fn reach(&self, pose: &mut Pose, parent: RigidTransform, reach: &Reach) {
         let [upper, lower, end] = self.model_from_joints(pose, parent);
         let (first, second) = (lower.translation - upper.translation, end.translation - lower.translation);
         let (a, b) = (first.length(), second.length());
@@ -151,7 +152,7 @@ mod tests {
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
     fn leg() -> (RestPose, Limb) {
         let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
-        let local = |rotation, translation| Local { rotation, translation };
+        let local = |rotation, translation| RigidTransform { rotation, translation };
         let locals = vec![
             local(down, Vec3::ZERO),
             local(Quat::IDENTITY, Vec3::Y * 0.5),
@@ -164,12 +165,12 @@ mod tests {
         (rest, limb)
     }
 
-    fn reached(target: Vec3, softness: f32) -> [Local; 3] {
+    fn reached(target: Vec3, softness: f32) -> [RigidTransform; 3] {
         let (rest, limb) = leg();
         let mut pose = rest.pose().clone();
-        let target = Local { rotation: Quat::from_rotation_y(0.3), translation: target };
-        limb.reach(&mut pose, Local::IDENTITY, &Reach { target, softness });
-        limb.model_from_joints(&pose, Local::IDENTITY)
+        let target = RigidTransform { rotation: Quat::from_rotation_y(0.3), translation: target };
+        limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
+        limb.model_from_joints(&pose, RigidTransform::IDENTITY)
     }
 
     #[test]
@@ -212,9 +213,9 @@ mod tests {
             let mut pose = rest.pose().clone();
             pose.locals[0].rotation *= Quat::from_rotation_z(turn);
             pose.locals[1].rotation *= Quat::from_rotation_x(bend);
-            let parent = Local { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
+            let parent = RigidTransform { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
             let translation = parent.translation + Vec3::new(x, y, z);
-            let target = Local { rotation: Quat::from_rotation_x(turn), translation };
+            let target = RigidTransform { rotation: Quat::from_rotation_x(turn), translation };
             limb.reach(&mut pose, parent, &Reach { target, softness: 0.0 });
             let [upper, _, end] = limb.model_from_joints(&pose, parent);
             let asked = Vec3::new(x, y, z).length();

@@ -7,7 +7,7 @@
 //! are widened to passive range, for two reasons: athletes and dancers reach it, and one joint often has to do what
 //! several share in the body, such as the whole bend of a back that a motion file gives to one joint.
 //!
-//! Angles are about the joint's own axes in its rest frame (see [`Skeleton::bind`](crate::rig::Skeleton::bind)): +Y
+//! Angles are about the joint's own axes in its rest frame (see [`Skeleton::bind`](crate::skeleton::Skeleton::bind)): +Y
 //! along the bone, +Z to the front, and count from the T-pose. For every joint +X carries the bone to where Z leans: a
 //! head nods, an elbow flexes, a hip flexes, a foot is lifted; a knee flexes about −X. For left limbs +Z carries an
 //! arm up and a leg outwards; right limbs are mirror images.
@@ -16,8 +16,9 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::{Pose, RestPose, SwingTwist};
-use crate::rig::humanoid::finger;
+use super::SwingTwist;
+use crate::skeleton::humanoid::finger;
+use crate::skeleton::{Pose, RestPose};
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.

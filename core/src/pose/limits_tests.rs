@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::pose::Local;
+use crate::math::RigidTransform;
 
 const NAMES: [&str; 8] = [
     "pelvis",
@@ -15,7 +15,7 @@ const NAMES: [&str; 8] = [
 ];
 
 fn rest() -> RestPose {
-    let turned = Local { rotation: Quat::from_rotation_x(0.4), translation: Vec3::Y };
+    let turned = RigidTransform { rotation: Quat::from_rotation_x(0.4), translation: Vec3::Y };
     let names = NAMES.map(String::from).to_vec();
     let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
     RestPose::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()

@@ -1,16 +1,10 @@
-//! Poses: where the joints of a skeleton are, on top of the room [`rig`](crate::rig).
-//!
-//! A [`RestPose`] is a hierarchy with the local transforms it rests in, of our rig or of any other; a [`Pose`] gives
-//! every joint a local transform. Rotations are quaternions x, y, z, w, `parent_from_joint`; metres; joints stand
-//! after their parents.
+//! What joints do: inverse kinematics, joint limits, swing and twist, the leg and its sole; on poses of a
+//! [`RestPose`](crate::skeleton::RestPose).
 
 pub mod ik;
-mod kinematics;
+mod leg;
 pub mod limits;
-mod rest;
 mod swing_twist;
 
-pub(crate) use kinematics::unit;
-pub use kinematics::{Local, Pose, model_from_joints};
-pub use rest::{MAX_JOINTS, RestPose};
+pub(crate) use leg::{Leg, Sole};
 pub use swing_twist::SwingTwist;

@@ -6,7 +6,7 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use super::buffers::Target;
-use crate::rig::Influences;
+use crate::skeleton::Influences;
 use crate::{Error, Result};
 
 /// x, y and z of the four vertices of a block.

@@ -10,8 +10,8 @@ use super::buffers::{SurfaceMut, Target};
 use super::dual_quaternion::{self, DualQuaternion};
 use super::joint_translation;
 use super::linear::{self, Rows};
-use crate::pose::Local;
-use crate::rig::Influences;
+use crate::math::RigidTransform;
+use crate::skeleton::Influences;
 use crate::{Error, Result};
 
 /// The most influences that a vertex may have; files carry 4 or 8.
@@ -46,8 +46,8 @@ pub struct SkinJob<'a> {
     pub skinner: &'a Skinner,
     /// The formula.
     pub method: SkinMethod,
-    /// The pose: posed `model_from_joint` of every joint, see [`Pose::model_from_joints`](crate::pose::Pose).
-    pub model_from_joints: &'a [Local],
+    /// The pose: posed `model_from_joint` of every joint, see [`Pose::model_from_joints`](crate::skeleton::Pose).
+    pub model_from_joints: &'a [RigidTransform],
     /// Added to the bind positions before they are posed: correctives. One per vertex, metres.
     pub offsets: Option<&'a [Vec3]>,
     /// What is written.
@@ -65,7 +65,7 @@ impl Skinner {
         positions: &[Vec3],
         normals: &[Vec3],
         influences: &Influences,
-        model_from_joints: &[Local],
+        model_from_joints: &[RigidTransform],
     ) -> Result<Self> {
         let count = positions.len();
         let expect = |what, expected: usize, got: usize| match expected == got {
@@ -106,14 +106,19 @@ impl Skinner {
     ///
     /// # Errors
     /// As [`skin_many`].
-    pub fn skin(&self, method: SkinMethod, model_from_joints: &[Local], out: SurfaceMut<'_>) -> Result<()> {
+    pub fn skin(
+        &self,
+        method: SkinMethod,
+        model_from_joints: &[RigidTransform],
+        out: SurfaceMut<'_>,
+    ) -> Result<()> {
         let job = SkinJob { skinner: self, method, model_from_joints, offsets: None, out };
         run(vec![Prepared::new(job)?]);
         Ok(())
     }
 
     /// How each joint moves what follows it: posed `model_from_joint` · bind `joint_from_model`.
-    fn palette(&self, method: SkinMethod, model_from_joints: &[Local]) -> Result<Palette> {
+    fn palette(&self, method: SkinMethod, model_from_joints: &[RigidTransform]) -> Result<Palette> {
         let (expected, got) = (self.joint_count(), model_from_joints.len());
         if expected != got {
             return Err(Error::invalid("pose", format!("expected {expected} joints, got {got}")));
@@ -251,8 +256,8 @@ impl Motion {
 }
 
 /// Checked and normalised.
-fn motions(what: &'static str, locals: &[Local]) -> Result<Vec<Motion>> {
-    let motion = |(j, local): (usize, &Local)| {
+fn motions(what: &'static str, locals: &[RigidTransform]) -> Result<Vec<Motion>> {
+    let motion = |(j, local): (usize, &RigidTransform)| {
         let (rotation, translation) = (local.rotation.as_dquat(), local.translation.as_dvec3());
         // False for what is not a number, too.
         let unit = (rotation.length() - 1.0).abs() <= 1e-3;

@@ -4,26 +4,26 @@ use glam::{DMat4, DQuat, DVec3, Quat, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::pose::Local;
+use crate::math::RigidTransform;
 use crate::random::Random;
-use crate::rig::Influences;
+use crate::skeleton::Influences;
 
 /// A seeded surface of any size on a chain of joints, bound and posed at random.
 struct Case {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     influences: Influences,
-    bind: Vec<Local>,
-    posed: Vec<Local>,
+    bind: Vec<RigidTransform>,
+    posed: Vec<RigidTransform>,
 }
 
 fn vector(random: &mut Random) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| random.normal()))
 }
 
-fn local(random: &mut Random) -> Local {
+fn local(random: &mut Random) -> RigidTransform {
     let turn = DQuat::from_vec4(vector(random).extend(random.normal())).normalize();
-    Local { rotation: turn.as_quat(), translation: (vector(random) * 0.5).as_vec3() }
+    RigidTransform { rotation: turn.as_quat(), translation: (vector(random) * 0.5).as_vec3() }
 }
 
 impl Case {
@@ -55,7 +55,7 @@ impl Case {
         Skinner::new(&self.positions, &self.normals, &self.influences, &self.bind).unwrap()
     }
 
-    fn skin(&self, method: SkinMethod, pose: &[Local]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+    fn skin(&self, method: SkinMethod, pose: &[RigidTransform]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
         let mut out = (vec![[f32::NAN; 3]; self.positions.len()], vec![[f32::NAN; 3]; self.positions.len()]);
         self.skinner().skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1)).unwrap();
         out
@@ -171,7 +171,7 @@ fn what_follows_one_joint_moves_rigidly() {
 /// A ring of vertices half way between two joints, one of them twisted.
 fn twisted_ring(degrees: f32) -> Case {
     let around = |i: usize| Quat::from_rotation_y(i as f32) * Vec3::X;
-    let joint = |turn| Local { rotation: Quat::from_rotation_y(turn), translation: Vec3::ZERO };
+    let joint = |turn| RigidTransform { rotation: Quat::from_rotation_y(turn), translation: Vec3::ZERO };
     Case {
         positions: (0..8).map(|i| around(i) * 0.1).collect(),
         normals: (0..8).map(around).collect(),
@@ -339,7 +339,7 @@ fn a_pose_or_offsets_that_do_not_fit_are_refused_and_nothing_is_written() {
     let mut long = case.posed.clone();
     long[2].rotation *= 2.0;
     let five = [Vec3::ZERO; 5];
-    type Wrong<'a> = (&'a str, &'a [Local], Option<&'a [Vec3]>);
+    type Wrong<'a> = (&'a str, &'a [RigidTransform], Option<&'a [Vec3]>);
     let cases: [Wrong<'_>; 5] = [
         ("pose: character 1: expected 3 joints, got 2", &case.posed[..2], None),
         ("pose: character 1: joint 1: expected a unit quaternion and finite", &nan, None),

@@ -160,8 +160,8 @@ impl Network {
 
 #[cfg(test)]
 mod tests {
-    use anthronet::condition::fourier::FourierConfig;
-    use anthronet::model::config::GeneratorConfig;
+    use anthronet::network::config::GeneratorConfig;
+    use anthronet::network::fourier::FourierConfig;
 
     use super::*;
     use crate::generator::data::Frame;

@@ -1,8 +1,8 @@
 //! From bodies to what the network sees: standardised and encoded conditions, the linear skip, scaled residuals.
 
-use anthronet::condition::fourier::Fourier;
 use anthronet::measure::MEASURE_COUNT;
-use anthronet::model::config::{CONDITION_COUNT, GeneratorConfig};
+use anthronet::network::config::{CONDITION_COUNT, GeneratorConfig};
+use anthronet::network::fourier::Fourier;
 use candle_core::{Device, Tensor};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};

@@ -1,7 +1,7 @@
-//! From a trained network to the arrays of `anthronet::model::network`: batch norm and units folded in.
+//! From a trained network to the arrays of `anthronet::network`: batch norm and units folded in.
 
-use anthronet::model::config::{CONDITION_COUNT, GeneratorConfig};
-use anthronet::model::network::{Decoder, Encoder, Tensor, Tensors};
+use anthronet::network::config::{CONDITION_COUNT, GeneratorConfig};
+use anthronet::network::{Decoder, Encoder, Tensor, Tensors};
 
 use super::data::Frame;
 use super::network::{Block, Network};

@@ -2,7 +2,7 @@
 //! (paper sections 5.2, 5.3 and 9.1).
 //!
 //! [`train`] fits the linear skip in closed form, trains the network on what it leaves over, and returns the
-//! arrays that `anthronet::model::network` runs.
+//! arrays that `anthronet::network` runs.
 
 mod backward;
 pub(crate) mod data;
@@ -18,8 +18,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anthronet::measure::MEASURE_COUNT;
-use anthronet::model::config::GeneratorConfig;
-use anthronet::model::network::Tensors;
+use anthronet::network::Tensors;
+use anthronet::network::config::GeneratorConfig;
 use serde::{Deserialize, Serialize};
 
 pub use run::train;
@@ -183,7 +183,7 @@ pub struct Metrics {
 /// What [`train`] returns.
 #[derive(Clone, Debug)]
 pub struct TrainedGenerator {
-    /// Decoder and encoder for `anthronet::model::network`.
+    /// Decoder and encoder for `anthronet::network`.
     pub tensors: Tensors,
     /// As trained.
     pub config: GeneratorConfig,

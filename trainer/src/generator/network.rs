@@ -1,12 +1,12 @@
 //! The conditional variational autoencoder of the paper (sections 5.3 and 9.1) for training.
 //!
-//! Tensors are named as in `anthronet::model::network`, which runs what [`super::export`] makes of them; weights
+//! Tensors are named as in `anthronet::network`, which runs what [`super::export`] makes of them; weights
 //! have shape `(inputs, outputs)`. Here a block is a linear layer without bias, batch norm (`norm_scale`,
 //! `norm_shift`, running statistics) and a parametric ReLU (`slope`).
 
 use std::sync::PoisonError;
 
-use anthronet::model::config::GeneratorConfig;
+use anthronet::network::config::GeneratorConfig;
 use anthronet::random::Random;
 use candle_core::{Device, Result, Tensor, Var};
 
@@ -127,7 +127,7 @@ impl Dense {
     }
 }
 
-/// The whole network: see the drawing in `anthronet::model::network`.
+/// The whole network: see the drawing in `anthronet::network`.
 #[derive(Debug)]
 pub(crate) struct Network {
     pub(crate) condition: Block,

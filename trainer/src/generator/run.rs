@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use anthronet::model::config::GeneratorConfig;
+use anthronet::network::config::GeneratorConfig;
 use candle_core::{Device, Tensor};
 
 use super::data::{Frame, Prepared};

@@ -1,8 +1,8 @@
 //! Tests of the whole training on small synthetic data.
 
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::model::config::{CONDITION_COUNT, GeneratorConfig};
-use anthronet::model::network::{Decoder, Encoder};
+use anthronet::network::config::{CONDITION_COUNT, GeneratorConfig};
+use anthronet::network::{Decoder, Encoder};
 
 use super::data::Frame;
 use super::export::export;

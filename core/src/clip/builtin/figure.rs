@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 
-use crate::clip::feet::Leg;
+use crate::math::RigidTransform;
+use crate::pose::Leg;
 use crate::pose::ik::Reach;
-use crate::pose::{Local, Pose, RestPose, model_from_joints};
-use crate::rig::humanoid::finger;
+use crate::skeleton::humanoid::finger;
+use crate::skeleton::{Pose, RestPose, model_from_joints};
 use crate::{Error, Result};
 
 /// What of a leg may be used, so that a knee never locks.
@@ -88,7 +89,7 @@ struct ArmJoints {
 /// A skeleton at rest with its joints found and its proportions.
 pub(super) struct Figure {
     pub(super) rest: Arc<RestPose>,
-    model: Vec<Local>,
+    model: Vec<RigidTransform>,
     root: usize,
     pelvis: usize,
     spine: [usize; 3],
@@ -239,7 +240,7 @@ impl Figure {
     }
 
     /// `model_from_foot`, without the root's way.
-    fn foot_goal(&self, f: usize, foot: &Foot) -> Local {
+    fn foot_goal(&self, f: usize, foot: &Foot) -> RigidTransform {
         let leg = &self.legs[f];
         let (ankle, ball) = (self.model[leg.limb.end], self.model[leg.ball]);
         let heel = ankle.translation + ankle.rotation * leg.heel;
@@ -249,7 +250,7 @@ impl Figure {
         // Turned about the middle of the foot, rolled about its pivot.
         let middle = (0.5 * (heel + ball.translation)).with_y(0.0);
         let rolled = pivot + Quat::from_rotation_x(foot.roll.to_radians()) * (ankle.translation - pivot);
-        Local {
+        RigidTransform {
             rotation: turn * ankle.rotation,
             translation: middle + toe_out * (rolled - middle) + foot.shift,
         }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::RATE;
 use super::figure::{Arm, Figure, Stance};
-use crate::pose::Pose;
+use crate::skeleton::Pose;
 
 const SECONDS: f32 = 8.0;
 const BREATHS: f32 = 2.0;

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::Clip;
 use super::edit::clip_of_poses;
-use crate::pose::{Pose, RestPose};
+use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 use figure::Figure;
 

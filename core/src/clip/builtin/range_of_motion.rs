@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::{RATE, smooth};
-use crate::pose::Pose;
+use crate::skeleton::Pose;
 
 /// Seconds from one key to the next.
 const STEP: f32 = 0.7;

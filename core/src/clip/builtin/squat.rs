@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::figure::{Arm, Figure, Stance};
 use super::{RATE, keyed};
-use crate::pose::Pose;
+use crate::skeleton::Pose;
 
 const SECONDS: f32 = 3.6;
 /// How far shins lean forward at the bottom, degrees.

@@ -1,7 +1,8 @@
 use super::*;
-use crate::clip::feet::{self, FeetOptions};
-use crate::clip::test_bodies::bodies;
 use crate::pose::limits::JointLimits;
+use crate::retarget::feet;
+use crate::retarget::feet::FeetOptions;
+use crate::testing::bodies::bodies;
 
 #[test]
 fn joints_stay_within_their_limits_and_feet_on_the_floor() {
@@ -74,7 +75,7 @@ fn names_what_is_wrong() {
     let (_, rest) = bodies().remove(0);
     let error = builtin("dance", &rest).unwrap_err().to_string();
     assert!(error.contains("idle, walk") && error.contains("`dance`"), "{error}");
-    let root = crate::pose::Local::IDENTITY;
+    let root = crate::math::RigidTransform::IDENTITY;
     let rest = RestPose::new(vec!["Root".into()], vec![None], vec![root], vec![None]).unwrap();
     let error = builtin("idle", &Arc::new(rest)).unwrap_err().to_string();
     assert!(error.contains("`thigh_l`"), "{error}");

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::figure::{Arm, Figure, Foot, Stance};
 use super::{RATE, keyed, smooth};
-use crate::pose::Pose;
+use crate::skeleton::Pose;
 
 /// Stride over leg length.
 const STRIDE: f32 = 1.38;

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::figure::{Arm, Figure};
 use super::{RATE, idle, keyed};
-use crate::pose::Pose;
+use crate::skeleton::Pose;
 
 const SECONDS: f32 = 4.0;
 /// When the arm is up, and when it comes down.

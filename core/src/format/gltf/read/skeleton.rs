@@ -1,0 +1,291 @@
+//! The joint tree of a document: the joints of all its skins, each with the nodes between it and the joint above.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
+use gltf_json::{Index, Node, Skin, Value};
+
+use crate::error::Outcome;
+use crate::format::gltf::document::{Document, Tree};
+use crate::math::RigidTransform;
+use crate::scene::SceneJoint;
+use crate::scene::titles::Titles;
+use crate::skeleton::written::{ParentFromJoint, rounded};
+
+/// How far scale may be from 1, and axes from a right angle.
+const RIGID_TOLERANCE: f64 = 1e-4;
+/// How far the rest pose may be from the bind pose, as a number of a matrix, to be taken for it.
+const BIND_TOLERANCE: f32 = 1e-4;
+
+/// Most nodes between joints that are followed, one shared by several joints counted for each.
+const MAX_LINKS: usize = 1 << 20;
+
+/// The joints, parents first, with one root.
+pub(super) struct Skeleton {
+    pub(super) joints: Vec<SceneJoint>,
+    /// Where each rests in its parent, which is in the bind pose.
+    pub(super) locals: Vec<RigidTransform>,
+    /// For each joint, the nodes from below its parent (from the top of the scene for the root) down to its own.
+    pub(super) chains: Vec<Vec<usize>>,
+    /// Node of a joint to its place in `joints`.
+    pub(super) places: BTreeMap<usize, u16>,
+}
+
+impl Skeleton {
+    /// `None` for a document in which no mesh has a skin.
+    pub(super) fn read(document: &Document, tree: &Tree) -> Outcome<Option<Self>> {
+        let root = &document.root;
+        let mut used: Vec<usize> = root.nodes.iter().filter_map(|n| n.skin).map(|s| s.value()).collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut nodes: Vec<usize> = Vec::new();
+        let mut binds: BTreeMap<usize, DAffine3> = BTreeMap::new();
+        for skin in used {
+            for (node, bind) in skin_joints(document, skin).map_err(|m| format!("skins[{skin}]: {m}"))? {
+                match binds.insert(node, bind) {
+                    None => nodes.push(node),
+                    Some(other) if close(&other, &bind) => {}
+                    Some(_) => return Err(format!("{} has two bind poses", named(document, node))),
+                }
+            }
+        }
+        if nodes.is_empty() {
+            return Ok(None);
+        }
+        if nodes.len() > usize::from(u16::MAX) {
+            return Err(format!("expected at most {} joints, got {}", u16::MAX, nodes.len()));
+        }
+        let mut above: Vec<Option<usize>> = vec![None; root.nodes.len()];
+        for &node in &tree.order {
+            let parent = tree.parents[node];
+            above[node] = parent.filter(|p| binds.contains_key(p)).or(parent.and_then(|p| above[p]));
+        }
+        // The order of the skin, if parents come first in it; else that of the tree.
+        let mut seen = BTreeSet::new();
+        if !nodes.iter().all(|n| above[*n].is_none_or(|a| seen.contains(&a)) && seen.insert(*n)) {
+            nodes = tree.order.iter().copied().filter(|n| binds.contains_key(n)).collect();
+        }
+        let mut roots = nodes.iter().filter(|n| above[**n].is_none());
+        if let (Some(a), Some(b)) = (roots.next(), roots.next()) {
+            let [a, b] = [a, b].map(|n| named(document, *n));
+            return Err(format!(
+                "the skeleton has several roots, {a} and {b}; expected one above all joints"
+            ));
+        }
+        let places: BTreeMap<usize, u16> = (0u16..).zip(&nodes).map(|(i, n)| (*n, i)).collect();
+        let parent = |node: &usize| above[*node].and_then(|a| places.get(&a)).map(|p| u32::from(*p));
+        let parents: Vec<Option<u32>> = nodes.iter().map(parent).collect();
+        let mut chains = Vec::with_capacity(nodes.len());
+        let mut links = 0;
+        for &node in &nodes {
+            let mut chain: Vec<usize> =
+                std::iter::successors(Some(node), |n| tree.parents[*n].filter(|p| !binds.contains_key(p)))
+                    .take(MAX_LINKS)
+                    .collect();
+            chain.reverse();
+            links += chain.len();
+            if links > MAX_LINKS {
+                return Err(format!("more than {MAX_LINKS} nodes between the joints"));
+            }
+            chains.push(chain);
+        }
+
+        let mut names = Titles::default();
+        let mut rest: Vec<DAffine3> = Vec::with_capacity(nodes.len());
+        let mut locals = Vec::with_capacity(nodes.len());
+        let mut joints = Vec::with_capacity(nodes.len());
+        for ((node, parent), chain) in nodes.iter().zip(&parents).zip(&chains) {
+            let local = chain_transform(document, chain)?;
+            locals.push(local_of(document, chain, &local));
+            let above = parent.and_then(|p| rest.get(p as usize)).copied().unwrap_or(DAffine3::IDENTITY);
+            let model_from_joint = above * local;
+            rest.push(model_from_joint);
+            let name = root.nodes[*node].name.clone().unwrap_or_else(|| format!("node {node}"));
+            let model_from_joint = rounded(&model_from_joint);
+            joints.push(SceneJoint {
+                name: names.unique(&name),
+                parent: *parent,
+                model_from_joint,
+                bone_length: bone_length(&root.nodes[*node])
+                    .map_err(|message| format!("{}: {message}", named(document, *node)))?,
+            });
+        }
+        let mut skeleton = Self { joints, locals, chains, places };
+        skeleton.bind(document, &nodes, &binds)?;
+        Ok(Some(skeleton))
+    }
+
+    /// Where the rest pose is not the bind pose, the bind pose is what a scene starts from.
+    fn bind(
+        &mut self,
+        document: &Document,
+        nodes: &[usize],
+        binds: &BTreeMap<usize, DAffine3>,
+    ) -> Outcome<()> {
+        let bind: Vec<DAffine3> = nodes.iter().filter_map(|n| binds.get(n)).copied().collect();
+        let same = |(bind, joint): (&DAffine3, &SceneJoint)| {
+            rounded(bind).abs_diff_eq(joint.model_from_joint, BIND_TOLERANCE)
+        };
+        if bind.iter().zip(&self.joints).all(same) {
+            return Ok(());
+        }
+        for (i, node) in nodes.iter().enumerate() {
+            let rigid = rigid(&bind[i]).ok_or_else(|| {
+                format!("{}: its inverse bind matrix is no rigid motion", named(document, *node))
+            })?;
+            let parent = self.joints[i].parent.map_or(DAffine3::IDENTITY, |p| bind[p as usize]);
+            self.locals[i] = to_local(&(parent.inverse() * rigid));
+            self.joints[i].model_from_joint = rounded(&rigid);
+        }
+        Ok(())
+    }
+}
+
+/// What our own files say of the length of a joint's bone.
+fn bone_length(node: &Node) -> Outcome<Option<f32>> {
+    let extras = node.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
+    let Some(length) = extras.as_ref().and_then(|e| e.pointer("/anthronet/bone_length")) else {
+        return Ok(None);
+    };
+    match length.as_f64().map(|length| length as f32) {
+        Some(length) if (0.0..f32::INFINITY).contains(&length) => Ok(Some(length)),
+        _ => Err(format!("extras.anthronet.bone_length: expected metres, got {length}")),
+    }
+}
+
+/// The joints of a skin: nodes and `model_from_joint` of the bind pose.
+fn skin_joints(document: &Document, skin: usize) -> Outcome<Vec<(usize, DAffine3)>> {
+    let nodes = document.root.nodes.len();
+    let found = document.root.skins.get(skin);
+    let skin: &Skin = found.ok_or_else(|| format!("of {}", document.root.skins.len()))?;
+    if skin.joints.is_empty() {
+        return Err("joints: is empty".into());
+    }
+    let matrices = match skin.inverse_bind_matrices {
+        Some(matrices) => {
+            document.numbers::<16>(matrices).map_err(|m| format!("inverseBindMatrices: {m}"))?
+        }
+        None => vec![glam::Mat4::IDENTITY.to_cols_array(); skin.joints.len()],
+    };
+    if matrices.len() < skin.joints.len() {
+        return Err(format!("{} inverseBindMatrices for {} joints", matrices.len(), skin.joints.len()));
+    }
+    let joint = |(joint, matrix): (&Index<Node>, &[f32; 16])| {
+        let node = joint.value();
+        if node >= nodes {
+            return Err(format!("joints: {node} of {nodes}"));
+        }
+        let inverse = DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))).inverse();
+        if inverse.is_finite() {
+            Ok((node, inverse))
+        } else {
+            Err(format!("inverse bind matrix of nodes[{node}] has no inverse"))
+        }
+    };
+    skin.joints.iter().zip(&matrices).map(joint).collect()
+}
+
+/// Product of the transforms of a chain of nodes, from its top down; they have to be rigid.
+pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Outcome<DAffine3> {
+    chain.iter().try_fold(DAffine3::IDENTITY, |above, &i| {
+        let node = &document.root.nodes[i];
+        let local = match (node.matrix, written(node)) {
+            (None, Some(written)) => written.to_affine(),
+            _ => transform_f64(node),
+        };
+        let fault = || {
+            let scale = local.matrix3.x_axis.length() as f32;
+            let node = named(document, i);
+            let expected = "expected a rotation and a translation, got scale";
+            format!("{node}: {expected} ({scale}) or shear; apply it to the mesh first")
+        };
+        rigid(&local).map(|_| above * local).ok_or_else(fault)
+    })
+}
+
+/// Translation and rotation of a node that has no matrix and no scale.
+pub(super) fn written(node: &Node) -> Option<ParentFromJoint> {
+    (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| ParentFromJoint {
+        translation: node.translation.unwrap_or_default(),
+        rotation: node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |r| r.0),
+    })
+}
+
+fn transform_f64(node: &Node) -> DAffine3 {
+    if let Some(matrix) = node.matrix {
+        return DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from)));
+    }
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |r| DQuat::from_array(r.0.map(f64::from)));
+    DAffine3::from_scale_rotation_translation(
+        node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from))),
+        rotation,
+        node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from))),
+    )
+}
+
+/// The nearest rotation and translation, if that is what the transform is but for rounding.
+fn rigid(transform: &DAffine3) -> Option<DAffine3> {
+    let m = transform.matrix3;
+    let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
+    let good = transform.is_finite()
+        && off.iter().all(|v| v.abs() <= 2.0 * RIGID_TOLERANCE)
+        && m.determinant() > 0.0;
+    good.then(|| DAffine3 {
+        matrix3: DMat3::from_quat(DQuat::from_mat3(&m).normalize()),
+        translation: transform.translation,
+    })
+}
+
+fn close(a: &DAffine3, b: &DAffine3) -> bool {
+    rounded(a).abs_diff_eq(rounded(b), BIND_TOLERANCE)
+}
+
+/// A joint's local transform: the node's own numbers where there is only one node.
+fn local_of(document: &Document, chain: &[usize], product: &DAffine3) -> RigidTransform {
+    let single = match chain {
+        [node] => document.root.nodes.get(*node).and_then(written),
+        _ => None,
+    };
+    single.map_or_else(
+        || to_local(product),
+        |node| RigidTransform {
+            rotation: Quat::from_array(node.rotation),
+            translation: Vec3::from(node.translation),
+        },
+    )
+}
+
+pub(super) fn to_local(transform: &DAffine3) -> RigidTransform {
+    RigidTransform {
+        rotation: DQuat::from_mat3(&transform.matrix3).normalize().as_quat(),
+        translation: transform.translation.as_vec3(),
+    }
+}
+
+/// A node for a message.
+pub(super) fn named(document: &Document, node: usize) -> String {
+    match document.root.nodes.get(node).and_then(|n| n.name.as_deref()) {
+        Some(name) => format!("nodes[{node}] `{name}`"),
+        None => format!("nodes[{node}]"),
+    }
+}
+
+/// From a node below the skeleton to model space in the bind pose, and the joint that it hangs on.
+pub(super) fn hung_on(
+    document: &Document,
+    tree: &Tree,
+    skeleton: &Skeleton,
+    node: usize,
+) -> Outcome<(u16, Affine3A)> {
+    let mut joint_from_node = DAffine3::IDENTITY;
+    let mut at = Some(node);
+    while let Some(n) = at {
+        if let Some(place) = skeleton.places.get(&n) {
+            let model_from_joint = skeleton.joints[usize::from(*place)].model_from_joint;
+            return Ok((*place, model_from_joint * rounded(&joint_from_node)));
+        }
+        joint_from_node = transform_f64(&document.root.nodes[n]) * joint_from_node;
+        at = tree.parents[n];
+    }
+    Err(format!("{}: its mesh has no skin and hangs on no joint", named(document, node)))
+}

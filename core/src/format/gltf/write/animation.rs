@@ -1,0 +1,132 @@
+//! Clips as animations (glTF 2.0, section 3.11).
+//!
+//! Keys lie on frames: key `f` at `f / frames per second`, rounded once to `f32`. One accessor of times serves all
+//! channels of a clip. Where a joint keeps still, it has one key, and none where it stays at rest. Interpolation is
+//! LINEAR, quaternions are of unit length and keep to one sign. `animation.extras.anthronet` holds
+//! `frames_per_second` and `frames`.
+
+use glam::{Quat, Vec3};
+use gltf_json::{
+    Accessor, Animation, Index, Value,
+    animation::{Channel, Interpolation, Property, Sampler, Target},
+    validation::Checked,
+};
+use serde_json::json;
+
+use super::accessor::{DocumentBuilder, Usage};
+use super::raw;
+use crate::Result;
+use crate::clip::Clip;
+use crate::skeleton::written::{ParentFromJoint, WrittenJoint};
+
+/// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
+/// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
+const REST_TOLERANCE: f32 = 5e-7;
+
+/// Appends a clip whose joints are nodes `0..joints`.
+pub(super) fn push(builder: &mut DocumentBuilder, clip: &Clip, transforms: &[WrittenJoint]) -> Result<()> {
+    let (frames, rate) = (clip.frame_count(), clip.frames_per_second());
+    let rests: Vec<ParentFromJoint> = transforms.iter().map(|t| t.parent_from_joint).collect();
+    let mut rotations: Vec<Vec<[f32; 4]>> = (0..rests.len()).map(|j| joint_rotations(clip, j)).collect();
+    let mut translations: Vec<Vec<[f32; 3]>> =
+        (0..rests.len()).map(|j| joint_translations(clip, j)).collect();
+    for (rest, track) in rests.iter().zip(&mut rotations) {
+        let opposite = rest.rotation.map(|c| -c);
+        if track.iter().all(|q| near(q, &rest.rotation) || near(q, &opposite)) {
+            track.clear();
+        }
+        drop_repetition(track);
+    }
+    for (rest, track) in rests.iter().zip(&mut translations) {
+        if track.iter().all(|t| near(t, &rest.translation)) {
+            track.clear();
+        }
+        drop_repetition(track);
+    }
+    // A clip lasts as long as its longest track, so one has to have all keys even if nothing moves.
+    let lasts = rotations.iter().any(|t| t.len() == frames) || translations.iter().any(|t| t.len() == frames);
+    if let (false, Some(root)) = (lasts, rotations.first_mut()) {
+        *root = joint_rotations(clip, 0);
+    }
+
+    let mut tracks = Tracks { builder, rate, times: [None; 2], samplers: vec![], channels: vec![] };
+    for (joint, (rotations, translations)) in (0u32..).zip(rotations.iter().zip(&translations)) {
+        tracks.push(joint, Property::Rotation, rotations);
+        tracks.push(joint, Property::Translation, translations);
+    }
+    let (samplers, channels) = (tracks.samplers, tracks.channels);
+    builder.root.push(Animation {
+        extensions: None,
+        extras: raw(&json!({"anthronet": {"frames_per_second": rate, "frames": frames}}))?,
+        channels,
+        name: Some(clip.name().to_owned()),
+        samplers,
+    });
+    Ok(())
+}
+
+/// One rotation per frame.
+fn joint_rotations(clip: &Clip, joint: usize) -> Vec<[f32; 4]> {
+    (0..clip.frame_count()).filter_map(|f| clip.rotations(f).get(joint)).map(Quat::to_array).collect()
+}
+
+/// One translation per frame; only the one at rest for a joint that keeps still.
+fn joint_translations(clip: &Clip, joint: usize) -> Vec<[f32; 3]> {
+    match clip.translations().iter().find(|track| track.joint as usize == joint) {
+        Some(track) => track.values.iter().map(Vec3::to_array).collect(),
+        None => clip.rest().pose().locals.get(joint).map(|l| l.translation.to_array()).into_iter().collect(),
+    }
+}
+
+/// Leaves one key of a track that is the same in all frames.
+fn drop_repetition<const N: usize>(track: &mut Vec<[f32; N]>) {
+    if track.windows(2).all(|w| w[0] == w[1]) {
+        track.truncate(1);
+    }
+}
+
+fn near<const N: usize>(a: &[f32; N], b: &[f32; N]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= REST_TOLERANCE)
+}
+
+/// An animation under construction.
+struct Tracks<'a> {
+    builder: &'a mut DocumentBuilder,
+    rate: f64,
+    /// Times of a single key, and of all frames.
+    times: [Option<Index<Accessor>>; 2],
+    samplers: Vec<Sampler>,
+    channels: Vec<Channel>,
+}
+
+impl Tracks<'_> {
+    /// A track of one value per frame, of one for all, or of none, which is left out.
+    fn push<const N: usize>(&mut self, joint: u32, path: Property, keys: &[[f32; N]]) {
+        if keys.is_empty() {
+            return;
+        }
+        let input = self.times(keys.len());
+        let output = self.builder.push_accessor(keys.iter().copied(), Usage::Other);
+        let sampler = Index::new(self.samplers.len() as u32);
+        let interpolation = Checked::Valid(Interpolation::Linear);
+        self.samplers.push(Sampler { extensions: None, extras: None, input, interpolation, output });
+        let (node, path) = (Index::new(joint), Checked::Valid(path));
+        let target = Target { extensions: None, extras: None, node, path };
+        self.channels.push(Channel { sampler, target, extensions: None, extras: None });
+    }
+
+    /// The accessor of the times of the first `keys` frames: one, or all.
+    fn times(&mut self, keys: usize) -> Index<Accessor> {
+        let (builder, rate) = (&mut *self.builder, self.rate);
+        *self.times[usize::from(keys > 1)].get_or_insert_with(|| {
+            let at = |frame: usize| (frame as f64 / rate) as f32;
+            let index = builder.push_accessor((0..keys).map(|f| [at(f)]), Usage::Other);
+            if let Some(accessor) = builder.root.accessors.get_mut(index.value()) {
+                // As f64, so that the decimal number in the JSON is the stored one exactly.
+                let bound = |frame| Some(Value::from(vec![f64::from(at(frame))]));
+                (accessor.min, accessor.max) = (bound(0), bound(keys - 1));
+            }
+            index
+        })
+    }
+}

@@ -1,0 +1,200 @@
+//! glTF 2.0: `.glb`, and `.gltf` with its `.bin` beside it.
+//!
+//! What the files promise beyond the standard:
+//! - **Vertex order.** The first `positions.len()` vertices of a mesh are the scene's vertices, in order, each with the
+//!   texture coordinate of its first corner. Duplicates that texture seams need follow after them. The number is in
+//!   `mesh.extras.anthronet.vertices`, and for the body also in the document's `extras.anthronet.vertices`.
+//! - **Faces.** Quads become two triangles along the diagonal from corner 0 to corner 2, in order.
+//! - **Skeleton.** Nodes `0..joints` are the joint tree, in the scene's order; then one node per mesh at the root of
+//!   the scene, without a transform, the body first. All meshes share one skin whose `skeleton` is the root joint.
+//!   The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
+//! - **Weights** are `f32`, exact, their sum made 1 to the last bit that `f32` has; unused slots hold joint 0, weight 0.
+//! - **Clips** are animations of the joint nodes, with all keys on frames; see `animation.rs`.
+//! - The same scene gives the same bytes, and so does the scene that [`open_scene`](crate::format::open_scene)
+//!   reads from a file that is not compressed.
+
+mod accessor;
+mod animation;
+mod compress;
+mod material;
+mod mesh;
+pub(crate) mod skeleton;
+
+use gltf_json::{
+    Asset, Buffer, Extras, Index, Node, Scene as GltfScene, Value, extras::RawValue, validation::USize64,
+};
+use serde_json::json;
+
+use crate::scene::Scene;
+use crate::skeleton::written::written_joints;
+use crate::{Error, Result};
+use accessor::DocumentBuilder;
+
+/// How a scene is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GltfOptions {
+    /// Whether to use EXT_meshopt_compression, which a reader must know to open the file. It rounds: positions and
+    /// translations by less than a micrometre, components of rotations and weights by less than a millionth, of
+    /// normals by less than a ten-thousandth, texture coordinates by less than a sixty-thousandth of the picture. The
+    /// corners of a triangle may start at another one, so that the diagonals of quads are not marked any more.
+    pub compress: bool,
+}
+
+/// A `.gltf` document and the buffer that lies beside it.
+#[derive(Clone, Debug)]
+pub struct GltfFiles {
+    /// The document, UTF-8 JSON.
+    pub json: Vec<u8>,
+    /// The buffer, under the name that was asked for.
+    pub bin: Vec<u8>,
+}
+
+/// The scene as one binary glTF file.
+///
+/// # Errors
+/// [`Error::Invalid`] if the scene does not [validate](Scene::validate) or needs more than the 4 GiB of a `.glb`.
+pub fn to_glb(scene: &Scene) -> Result<Vec<u8>> {
+    to_glb_with(scene, &GltfOptions::default())
+}
+
+/// The scene as one binary glTF file, written in this way.
+///
+/// # Errors
+/// As [`to_glb`].
+pub fn to_glb_with(scene: &Scene, options: &GltfOptions) -> Result<Vec<u8>> {
+    glb(finished(document(scene)?, options, None)?)
+}
+
+/// The binary container (glTF 2.0, section 4.4).
+pub(crate) fn glb(builder: DocumentBuilder) -> Result<Vec<u8>> {
+    let DocumentBuilder { root, bin } = builder;
+    let mut json = gltf_json::serialize::to_vec(&root).map_err(json_fault)?;
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = 12 + 8 + json.len() + 8 + bin.len();
+    let too_long =
+        |_| Error::invalid("scene", format!("a .glb holds at most 4 GiB, this needs {length} bytes"));
+    let length = u32::try_from(length).map_err(too_long)?;
+
+    let mut glb = Vec::with_capacity(length as usize);
+    for word in [u32::from_le_bytes(*b"glTF"), 2, length] {
+        glb.extend_from_slice(&word.to_le_bytes());
+    }
+    for (kind, chunk) in [(b"JSON", &json), (b"BIN\0", &bin)] {
+        // Shorter than the whole, which fits.
+        glb.extend_from_slice(&(chunk.len() as u32).to_le_bytes());
+        glb.extend_from_slice(kind);
+        glb.extend_from_slice(chunk);
+    }
+    Ok(glb)
+}
+
+/// The scene as a JSON document that refers to `bin_name`, a plain file name, and the content of that file.
+///
+/// # Errors
+/// [`Error::Invalid`] if the scene does not [validate](Scene::validate).
+pub fn to_gltf(scene: &Scene, bin_name: &str) -> Result<GltfFiles> {
+    to_gltf_with(scene, bin_name, &GltfOptions::default())
+}
+
+/// The scene as a JSON document and its buffer, written in this way.
+///
+/// # Errors
+/// As [`to_gltf`].
+pub fn to_gltf_with(scene: &Scene, bin_name: &str, options: &GltfOptions) -> Result<GltfFiles> {
+    let builder = finished(document(scene)?, options, Some(percent_encoded(bin_name)))?;
+    let DocumentBuilder { root, bin } = builder;
+    let mut json = gltf_json::serialize::to_vec_pretty(&root).map_err(json_fault)?;
+    json.push(b'\n');
+    Ok(GltfFiles { json, bin })
+}
+
+/// Everything but the buffer.
+pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
+    scene.validate()?;
+    let mut builder = DocumentBuilder::default();
+    builder.root.asset = Asset {
+        generator: Some(concat!("anthronet ", env!("CARGO_PKG_VERSION")).into()),
+        ..Asset::default()
+    };
+    let transforms = written_joints(scene.joints.iter().map(|joint| (joint.parent, joint.model_from_joint)));
+    let skin = match scene.joints.is_empty() {
+        true => None,
+        false => Some(skeleton::push(&mut builder, scene, &transforms)?),
+    };
+    let joints = builder.root.nodes.len() as u32;
+    for mesh in &scene.meshes {
+        let mesh = mesh::push(&mut builder, mesh, scene.joints.len())?;
+        let name = builder.root.meshes.get(mesh.value()).and_then(|m| m.name.clone());
+        builder.root.push(Node { name, mesh: Some(mesh), skin, ..Node::default() });
+    }
+    for clip in &scene.clips {
+        animation::push(&mut builder, clip, &transforms)?;
+    }
+    builder.root.materials = scene.materials.iter().map(material::material).collect();
+    builder.root.extensions_used = material::extensions_used(&scene.materials);
+
+    let nodes = (0..u32::from(joints > 0)).chain(joints..builder.root.nodes.len() as u32);
+    let nodes = nodes.map(Index::new).collect();
+    let name = (!scene.name.is_empty()).then(|| scene.name.clone());
+    builder.root.scene = Some(builder.root.push(GltfScene { extensions: None, extras: None, name, nodes }));
+    builder.root.extras = document_extras(scene)?;
+    Ok(builder)
+}
+
+/// The document with its buffer, compressed if wanted.
+pub(crate) fn finished(
+    mut builder: DocumentBuilder,
+    options: &GltfOptions,
+    uri: Option<String>,
+) -> Result<DocumentBuilder> {
+    let raw_bytes = builder.bin.len();
+    if options.compress {
+        compress::compress(&mut builder)?;
+    }
+    let byte_length = USize64::from(builder.bin.len());
+    builder.root.push(Buffer { byte_length, name: None, uri, extensions: None, extras: None });
+    if options.compress {
+        builder.root.push(compress::placeholder(raw_bytes));
+    }
+    Ok(builder)
+}
+
+/// The scene's extras with `anthronet.version` and `anthronet.vertices` (of the body) added.
+fn document_extras(scene: &Scene) -> Result<Extras> {
+    let mut extras = scene.extras.as_object().cloned().unwrap_or_default();
+    let ours = extras.entry("anthronet").or_insert_with(|| json!({}));
+    let Value::Object(ours) = ours else {
+        return Err(Error::invalid("scene", "extras.anthronet must be an object"));
+    };
+    ours.insert("version".into(), env!("CARGO_PKG_VERSION").into());
+    ours.insert("vertices".into(), scene.meshes.first().map_or(0, |m| m.positions.len()).into());
+    raw(&Value::Object(extras))
+}
+
+fn raw(value: &Value) -> Result<Extras> {
+    RawValue::from_string(value.to_string()).map(Some).map_err(json_fault)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
+fn json_fault(error: gltf_json::Error) -> Error {
+    Error::invalid("scene", format!("cannot be written as JSON: {error}"))
+}
+
+/// A file name as a relative URI (RFC 3986): everything but unreserved characters as `%XX`.
+fn percent_encoded(name: &str) -> String {
+    use std::fmt::Write;
+    name.bytes().fold(String::new(), |mut uri, byte| {
+        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
+            uri.push(char::from(byte));
+        } else {
+            // Writing to a string cannot fail.
+            let _ = write!(uri, "%{byte:02X}");
+        }
+        uri
+    })
+}
+
+#[cfg(test)]
+mod motion_tests;
+#[cfg(test)]
+mod tests;

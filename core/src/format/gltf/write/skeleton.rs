@@ -1,0 +1,61 @@
+//! The joint tree as nodes, and the skin over them (glTF 2.0, sections 3.5 and 3.7.3).
+
+use gltf_json::{Index, Node, Skin, scene::UnitQuaternion};
+use serde_json::json;
+
+use super::accessor::{DocumentBuilder, Usage};
+use super::raw;
+use crate::Result;
+use crate::scene::Scene;
+use crate::skeleton::written::{ParentFromJoint, WrittenJoint, plain};
+
+/// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` says how
+/// long the joint's bone is, which glTF has no word for.
+pub(super) fn push(
+    builder: &mut DocumentBuilder,
+    scene: &Scene,
+    transforms: &[WrittenJoint],
+) -> Result<Index<Skin>> {
+    let mut children = vec![Vec::new(); scene.joints.len()];
+    for (i, joint) in (0u32..).zip(&scene.joints) {
+        if let Some(siblings) = joint.parent.and_then(|parent| children.get_mut(parent as usize)) {
+            siblings.push(Index::new(i));
+        }
+    }
+    for ((joint, written), children) in scene.joints.iter().zip(transforms).zip(children) {
+        let ParentFromJoint { translation, rotation } = written.parent_from_joint;
+        let length = |metres: f32| json!({"anthronet": {"bone_length": f64::from(metres)}});
+        builder.root.push(Node {
+            name: Some(joint.name.clone()),
+            children: (!children.is_empty()).then_some(children),
+            translation: Some(translation),
+            rotation: (rotation != [0.0, 0.0, 0.0, 1.0]).then_some(UnitQuaternion(rotation)),
+            extras: joint.bone_length.map_or(Ok(None), |metres| raw(&length(metres)))?,
+            ..Node::default()
+        });
+    }
+    let inverse_bind = transforms.iter().map(|written| {
+        let inverse = written.model_from_joint.inverse();
+        let mut matrix = [0.0f32; 16];
+        for (column, values) in [inverse.matrix3.x_axis, inverse.matrix3.y_axis, inverse.matrix3.z_axis]
+            .into_iter()
+            .chain([inverse.translation])
+            .enumerate()
+        {
+            for (row, value) in values.to_array().into_iter().enumerate() {
+                matrix[4 * column + row] = plain(value);
+            }
+        }
+        matrix[15] = 1.0;
+        matrix
+    });
+    let inverse_bind_matrices = Some(builder.push_accessor(inverse_bind, Usage::Other));
+    Ok(builder.root.push(Skin {
+        extensions: None,
+        extras: None,
+        inverse_bind_matrices,
+        joints: (0..scene.joints.len() as u32).map(Index::new).collect(),
+        name: (!scene.name.is_empty()).then(|| scene.name.clone()),
+        skeleton: Some(Index::new(0)),
+    }))
+}

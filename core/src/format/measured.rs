@@ -1,0 +1,19 @@
+//! Measuring the body of a file.
+
+use std::path::Path;
+
+use crate::model::{MeasuredMesh, Model};
+use crate::{Error, Result};
+
+/// Measures the body of a file: its first mesh, at any level of detail, in any format that [`open`](super::meshes::open) reads.
+///
+/// # Errors
+/// As [`open`](super::meshes::open); [`Error::File`] for a file without a mesh, or whose first mesh is no body of the model's
+/// vertex order.
+pub fn measure_file(model: &Model, path: impl AsRef<Path>) -> Result<MeasuredMesh> {
+    let path = path.as_ref();
+    let scene = super::meshes::open(path)?;
+    let mesh = scene.meshes.first().ok_or_else(|| Error::file(path, "has no mesh"))?;
+    let vertices = mesh.positions.get(..mesh.model_vertices).unwrap_or(&mesh.positions);
+    model.measure_mesh(vertices).map_err(|error| Error::file(path, error.to_string()))
+}

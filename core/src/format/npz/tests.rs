@@ -1,0 +1,249 @@
+use std::f64::consts::FRAC_PI_2;
+use std::io::Cursor;
+use std::path::Path;
+
+use glam::Vec3;
+use npyz::WriterBuilder;
+use npyz::npz::NpzWriter;
+
+use super::array::decode;
+use crate::format::motion::from_bytes;
+use crate::format::{Found, Motion, ReadOptions};
+use crate::space::Axis;
+
+/// An array: name, shape, numbers.
+type Named<'a> = (&'a str, &'a [u64], Vec<f64>);
+
+fn archive(arrays: &[Named]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut zip = NpzWriter::new(&mut bytes);
+    for (name, shape, values) in arrays {
+        let mut array =
+            zip.array(name, Default::default()).unwrap().default_dtype().shape(shape).begin_nd().unwrap();
+        array.extend(values.iter().copied()).unwrap();
+        array.finish().unwrap();
+    }
+    drop(zip);
+    bytes.into_inner()
+}
+
+fn read(bytes: &[u8]) -> Result<Motion, String> {
+    from_bytes(bytes, Path::new("walk.npz"), &ReadOptions::default()).map_err(|e| e.to_string())
+}
+
+/// Two frames of somebody standing with +Z up, the left knee bent in the second.
+fn standing(joints: usize) -> [Named<'static>; 3] {
+    let mut poses = vec![0.0; 2 * 3 * joints];
+    for frame in 0..2 {
+        poses[frame * 3 * joints] = FRAC_PI_2;
+    }
+    poses[3 * joints + 3 * 4] = 1.0;
+    let shape: &[u64] = match joints {
+        22 => &[2, 66],
+        24 => &[2, 72],
+        52 => &[2, 156],
+        _ => &[2, 165],
+    };
+    [
+        ("poses", shape, poses),
+        ("trans", &[2, 3], vec![0.0, 0.0, 0.95, 0.1, 0.2, 0.95]),
+        ("mocap_framerate", &[], vec![120.0]),
+    ]
+}
+
+#[test]
+fn every_model_of_the_family_stands_on_its_feet() {
+    for (joints, format) in [(22, "AMASS (body)"), (24, "SMPL"), (52, "SMPL-H"), (55, "SMPL-X")] {
+        let motion = read(&archive(&standing(joints))).unwrap();
+        let clip = &motion.clips[0];
+        assert_eq!(
+            (motion.report.format, motion.report.up, motion.report.up_found),
+            (format, Axis::Z, Found::File)
+        );
+        assert_eq!((clip.name(), clip.frame_count(), clip.frames_per_second()), ("walk", 2, 120.0));
+        assert_eq!(clip.rest().len(), joints);
+        let place = |frame: usize, name: &str| {
+            let pose = clip.pose(frame).model_from_joints(clip.rest().parents());
+            pose[clip.rest().find(name).unwrap()].translation
+        };
+        // The rest pose, which the root's turn and the file's axis leave as it is.
+        for (joint, rest) in clip.rest().names().iter().zip(clip.rest().model_from_joints()) {
+            assert!(place(0, joint).distance(rest.translation) < 1e-5, "{joint}");
+        }
+        assert!(place(1, "pelvis").distance(Vec3::new(0.1, 0.95, -0.2)) < 1e-6);
+        let shin = place(1, "left_ankle") - place(1, "left_knee");
+        assert!(shin.z < -0.2, "bent about its +X, a knee puts the foot behind: {shin}");
+        assert!(place(0, "left_wrist").x > 0.6 && place(0, "left_foot").z > 0.05);
+    }
+}
+
+#[test]
+fn rest_poses_are_of_a_person_and_mirror_images() {
+    for joints in [22, 24, 52, 55] {
+        let skeleton = super::smpl::skeleton(joints).unwrap();
+        assert_eq!(skeleton.names.len(), joints);
+        for (joint, name) in skeleton.names.iter().enumerate() {
+            assert!(joint == 0 || skeleton.parents[joint].is_some_and(|p| (p as usize) < joint), "{name}");
+            let Some(right) = name.strip_prefix("left_") else { continue };
+            let right = skeleton.names.iter().position(|n| n.strip_prefix("right_") == Some(right)).unwrap();
+            let mirror = skeleton.rest[right].translation * Vec3::new(-1.0, 1.0, 1.0);
+            assert!(mirror.distance(skeleton.rest[joint].translation) < 1e-6, "{name}");
+        }
+    }
+    let stature = read(&archive(&standing(55))).unwrap().report.stature;
+    assert!((stature - 1.7).abs() < 0.1, "{stature}");
+}
+
+#[test]
+fn parts_make_the_whole() {
+    let [poses, trans, _] = standing(55);
+    let part = |from: usize, to: usize| [0, 165].map(|f| &poses.2[f + from..f + to]).concat();
+    let parts = archive(&[
+        ("pose_hand", &[2, 90], part(75, 165)),
+        ("pose_jaw", &[2, 3], part(66, 69)),
+        ("pose_eye", &[2, 6], part(69, 75)),
+        ("pose_body", &[2, 21, 3], part(3, 66)),
+        ("root_orient", &[2, 3], part(0, 3)),
+        trans,
+        ("mocap_frame_rate", &[1], vec![120.0]),
+    ]);
+    assert_eq!(read(&parts).unwrap().clips, read(&archive(&standing(55))).unwrap().clips);
+}
+
+#[test]
+fn a_body_that_stands_along_y_is_taken_so() {
+    let [(name, shape, mut poses), _, rate] = standing(24);
+    (poses[0], poses[72]) = (0.0, 0.0);
+    let trans: Named = ("trans", &[2, 3], vec![0.0, 0.95, 0.0, 0.0, 0.95, 0.0]);
+    let motion = read(&archive(&[(name, shape, poses), trans, rate])).unwrap();
+    assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::Detected));
+    assert_eq!(motion.clips[0].pose(0).locals[0].translation, Vec3::Y * 0.95);
+}
+
+#[test]
+fn names_what_lacks_or_does_not_fit() {
+    let cases: [(&str, Vec<Named>); 11] = [
+        (
+            "poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got 3000000",
+            vec![("poses", &[1, 3_000_000], vec![0.0; 3_000_000])],
+        ),
+        ("poses: expected 1 to 1048576 frames by joints, got a shape of [2000000, 1]", {
+            vec![("poses", &[2_000_000, 1], vec![0.0; 2_000_000])]
+        }),
+        ("mocap_framerate: expected one number of 0.1 to 1000, got [NaN]", {
+            let [poses, trans, _] = standing(24);
+            vec![poses, trans, ("mocap_framerate", &[], vec![f64::NAN])]
+        }),
+        ("pose_body: expected 2 frames, got a shape of [3, 63]", {
+            let [_, trans, rate] = standing(24);
+            vec![("root_orient", &[2, 3], vec![0.0; 6]), ("pose_body", &[3, 63], vec![0.0; 189]), trans, rate]
+        }),
+        (
+            "expected an array poses, or root_orient and pose_body; the file has betas",
+            vec![("betas", &[1], vec![0.0])],
+        ),
+        ("expected an array trans; the file has poses", standing(24)[..1].to_vec()),
+        ("expected an array mocap_framerate; the file has poses, trans", standing(24)[..2].to_vec()),
+        (
+            "poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got 70",
+            vec![("poses", &[1, 70], vec![0.0; 70])],
+        ),
+        (
+            "poses: expected 1 to 1048576 frames by joints, got a shape of [0, 72]",
+            vec![("poses", &[0, 72], vec![])],
+        ),
+        ("trans: expected a shape of (2, 3), got [1, 3]", {
+            let [poses, _, rate] = standing(24);
+            vec![poses, ("trans", &[1, 3], vec![0.0; 3]), rate]
+        }),
+        ("mocap_framerate: expected one number of 0.1 to 1000, got [0.0]", {
+            let [poses, trans, _] = standing(24);
+            vec![poses, trans, ("mocap_framerate", &[], vec![0.0])]
+        }),
+    ];
+    for (expected, arrays) in cases {
+        let error = read(&archive(&arrays)).unwrap_err();
+        assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
+    }
+    let [(name, shape, mut poses), trans, rate] = standing(24);
+    poses[75] = f64::NAN;
+    let error = read(&archive(&[(name, shape, poses), trans, rate])).unwrap_err();
+    assert!(error.contains("frame 1, joint `left_hip`"), "{error}");
+    let [poses, (name, shape, mut trans), rate] = standing(24);
+    trans[4] = f64::INFINITY;
+    let error = read(&archive(&[poses, (name, shape, trans), rate])).unwrap_err();
+    assert!(error.contains("frame 1, joint `pelvis`"), "{error}");
+}
+
+#[test]
+fn the_constant_of_the_body_model_is_told_and_shifts_the_whole() {
+    let read_with = |shift: f64| {
+        let [poses, (name, shape, trans), rate] = standing(24);
+        read(&archive(&[poses, (name, shape, trans.iter().map(|t| t + shift).collect()), rate])).unwrap()
+    };
+    let (plain, shifted) = (read_with(0.0), read_with(0.25));
+    assert!(plain.report.warnings.iter().any(|w| w.contains("`trans` is taken for the place of the pelvis")));
+    for frame in 0..2 {
+        let [a, b] = [&plain, &shifted].map(|m| m.clips[0].pose(frame));
+        let by = b.locals[0].translation - a.locals[0].translation;
+        assert!(by.abs_diff_eq(Vec3::new(0.25, 0.25, -0.25), 1e-6), "{by}");
+        assert_eq!(a.locals[1..], b.locals[1..]);
+    }
+}
+
+/// A `.npy` with this header.
+fn npy(header: &str, data: &[u8]) -> Vec<u8> {
+    let length = (header.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\x00".as_slice(), &length, header.as_bytes(), data].concat()
+}
+
+#[test]
+fn arrays_of_other_kinds() {
+    let data: Vec<u8> = [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|x| x.to_be_bytes()).collect();
+    let c = decode(&npy("{'descr': '>f4', 'fortran_order': False, 'shape': (2, 3), }", &data)).unwrap();
+    assert_eq!((c.shape.as_slice(), c.values), ([2, 3].as_slice(), vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    let fortran = decode(&npy("{'descr': '>f4', 'fortran_order': True, 'shape': (2, 3), }", &data)).unwrap();
+    assert_eq!(fortran.values, [1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
+    let whole = decode(&npy("{'descr': '<i8', 'fortran_order': False, 'shape': (), }", &60i64.to_le_bytes()))
+        .unwrap();
+    assert_eq!((whole.rows(), whole.values), (1, vec![60.0]));
+}
+
+#[test]
+fn headers_cannot_ask_for_more_than_is_there() {
+    let shape = |descr: &str, shape: &str| {
+        npy(&format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}"), &[0; 8])
+    };
+    let deep = format!("{}{}", "(".repeat(400), ")".repeat(400));
+    let cases = [
+        ("truncated: 8 bytes for a shape of [1048576, 165]", shape("'<f8'", "(1048576, 165)")),
+        ("expected a plain array", shape("'<f8'", "(4294967296, 4294967296, 4)")),
+        ("expected a plain array", shape("'<f8'", &deep)),
+        ("expected floating-point or whole numbers", shape("'<U2'", "(1,)")),
+        ("truncated", shape("'|O'", "(1,)")),
+        ("header of 4294967295 bytes", b"\x93NUMPY\x02\x00\xff\xff\xff\xff{}".to_vec()),
+        ("expected the header of a numpy array", b"\x93NUMPY\x09\x00".to_vec()),
+    ];
+    for (expected, bytes) in cases {
+        let error = decode(&bytes).err().unwrap();
+        assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
+    }
+}
+
+#[test]
+fn damage_is_an_error_or_another_motion() {
+    let bytes = archive(&standing(24));
+    for end in (0..bytes.len()).step_by(7) {
+        assert!(read(&bytes[..end]).is_err(), "{end}");
+    }
+    for at in 0..bytes.len() {
+        for byte in [0x00, 0x7f, 0xff] {
+            let mut bytes = bytes.clone();
+            bytes[at] = byte;
+            // The directory's own fields have no check sum; the arrays have.
+            if let Ok(motion) = read(&bytes) {
+                assert_eq!(motion.clips[0].frame_count(), 2);
+            }
+        }
+    }
+}

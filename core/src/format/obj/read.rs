@@ -1,0 +1,304 @@
+//! Wavefront OBJ: polygons, one mesh per `o` or `g` section that has faces.
+//!
+//! A mesh has the vertices that its section declares and those that its faces use, in the file's order, so that a file
+//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are passed over.
+
+use std::{collections::BTreeMap, path::Path};
+
+use glam::Vec3;
+
+use super::write::COUNTS;
+use crate::error::Outcome;
+use crate::format::input::MAX_ELEMENTS;
+use crate::format::meshes::{ImportedMesh, ImportedScene};
+use crate::{Error, Result};
+
+/// Reads an `.obj` that is already in memory; `path` is for messages.
+///
+/// # Errors
+/// [`Error::File`] with the line for a number that is none or not finite, an index of nothing, too few corners, a
+/// file of ours that lost its end, or a file without any vertices.
+pub fn from_bytes(bytes: &[u8], path: &Path) -> Result<ImportedScene> {
+    let mut reader = Reader::default();
+    for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+        reader.line(line).map_err(|message| Error::file(path, format!("line {}: {message}", i + 1)))?;
+    }
+    reader.finish().map_err(|message| Error::file(path, message))
+}
+
+/// A corner: places in `positions` and, maybe, in `normals`.
+type Corner = (u32, Option<u32>);
+
+#[derive(Default)]
+struct Section {
+    name: String,
+    first_vertex: usize,
+    end_vertex: usize,
+    triangles: Vec<[Corner; 3]>,
+}
+
+#[derive(Default)]
+struct Reader {
+    positions: Vec<Vec3>,
+    uvs: usize,
+    normals: Vec<Vec3>,
+    faces: usize,
+    triangles: usize,
+    sections: Vec<Section>,
+    /// Numbers of vertices and faces that our own files announce.
+    announced: Option<(usize, usize)>,
+}
+
+impl Reader {
+    fn line(&mut self, line: &[u8]) -> Outcome<()> {
+        let Ok(line) = std::str::from_utf8(line) else {
+            // Names and comments come in any encoding; they alone may.
+            return match line.first() {
+                Some(b'#' | b'o' | b'g' | b'u' | b'm') => self.statement(&String::from_utf8_lossy(line)),
+                _ => Err("is not text".into()),
+            };
+        };
+        self.statement(line)
+    }
+
+    fn statement(&mut self, line: &str) -> Outcome<()> {
+        let line = line.trim();
+        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        match keyword {
+            "v" => {
+                let position = vector(rest)?;
+                self.positions.push(position);
+                self.section().end_vertex += 1;
+            }
+            "vn" => self.normals.push(vector(rest)?.normalize_or_zero()),
+            "vt" => self.uvs += 1,
+            "f" => self.face(rest)?,
+            "o" | "g" => self.sections.push(Section {
+                name: rest.trim().to_owned(),
+                first_vertex: self.positions.len(),
+                end_vertex: self.positions.len(),
+                triangles: Vec::new(),
+            }),
+            _ => {
+                if let Some(counts) = line.strip_prefix(COUNTS) {
+                    let mut counts = counts.split_ascii_whitespace().map(str::parse);
+                    let (Some(Ok(vertices)), Some(Ok(faces))) = (counts.next(), counts.next()) else {
+                        return Err("expected two counts".into());
+                    };
+                    self.announced = Some((vertices, faces));
+                } else if !keyword.starts_with('#')
+                    && !keyword.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+                {
+                    return Err(format!("expected a statement, got `{}`", keyword.escape_debug()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn section(&mut self) -> &mut Section {
+        if self.sections.is_empty() {
+            self.sections.push(Section::default());
+        }
+        let last = self.sections.len() - 1;
+        &mut self.sections[last]
+    }
+
+    fn face(&mut self, rest: &str) -> Outcome<()> {
+        let corners =
+            rest.split_ascii_whitespace().map(|text| self.corner(text)).collect::<Outcome<Vec<_>>>()?;
+        let [first, fan @ ..] = corners.as_slice() else {
+            return Err("expected a face of at least 3 corners, got none".into());
+        };
+        if fan.len() < 2 {
+            return Err(format!("expected a face of at least 3 corners, got {}", corners.len()));
+        }
+        self.faces += 1;
+        self.triangles += fan.len() - 1;
+        if self.triangles > MAX_ELEMENTS {
+            return Err(format!("expected at most {MAX_ELEMENTS} triangles"));
+        }
+        self.section().triangles.extend(fan.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&self, text: &str) -> Outcome<Corner> {
+        let mut parts = text.split('/');
+        let position = place(parts.next().unwrap_or_default(), self.positions.len(), "vertex")?;
+        if let Some(uv) = parts.next().filter(|uv| !uv.is_empty()) {
+            place(uv, self.uvs, "texture coordinate")?;
+        }
+        let normal = parts.next().filter(|n| !n.is_empty()).map(|n| place(n, self.normals.len(), "normal"));
+        Ok((position, normal.transpose()?))
+    }
+
+    fn finish(self) -> Outcome<ImportedScene> {
+        if let Some((vertices, faces)) = self.announced
+            && (vertices, faces) != (self.positions.len(), self.faces)
+        {
+            let came = (self.positions.len(), self.faces);
+            return Err(format!(
+                "expected {vertices} vertices and {faces} faces, got {} and {}",
+                came.0, came.1
+            ));
+        }
+        if self.positions.is_empty() {
+            return Err("holds no vertices".into());
+        }
+        // A file of points alone has one mesh without faces.
+        let any_faces = self.sections.iter().any(|s| !s.triangles.is_empty());
+        let sections = self.sections.iter().filter(|s| !any_faces || !s.triangles.is_empty());
+        let sections = sections.filter(|s| any_faces || s.end_vertex > s.first_vertex);
+        let meshes = sections.map(|section| self.mesh(section)).collect();
+        Ok(ImportedScene { meshes, ..ImportedScene::default() })
+    }
+
+    fn mesh(&self, section: &Section) -> ImportedMesh {
+        // Vertices that are not the section's own, in the file's order, then the place of each.
+        let own = section.first_vertex as u32..section.end_vertex as u32;
+        let corners = || section.triangles.iter().flatten();
+        let mut places: BTreeMap<u32, u32> =
+            corners().map(|c| c.0).filter(|p| !own.contains(p)).map(|p| (p, 0)).collect();
+        let before = places.range(..own.start).count() as u32;
+        for (rank, (vertex, place)) in (0u32..).zip(places.iter_mut()) {
+            *place = if *vertex < own.start { rank } else { rank + own.len() as u32 };
+        }
+        let place = |vertex: u32| {
+            places.get(&vertex).copied().unwrap_or_else(|| before + vertex.saturating_sub(own.start))
+        };
+        let foreign = |range| places.range::<u32, _>(range).map(|(vertex, _)| *vertex);
+        let vertices = foreign(0..own.start).chain(own.clone()).chain(foreign(own.end..u32::MAX));
+        let positions: Vec<_> =
+            vertices.map(|vertex| self.positions.get(vertex as usize).copied().unwrap_or_default()).collect();
+
+        // A vertex has the normal of its first corner; all corners must have one for the mesh to have any.
+        let mut normals = Vec::new();
+        if !section.triangles.is_empty() && corners().all(|corner| corner.1.is_some()) {
+            normals = vec![None; positions.len()];
+            for (vertex, normal) in corners() {
+                let normal = normal.and_then(|n| self.normals.get(n as usize)).copied();
+                if let Some(slot) = normals.get_mut(place(*vertex) as usize) {
+                    *slot = slot.or(normal);
+                }
+            }
+        }
+        ImportedMesh {
+            name: section.name.clone(),
+            model_vertices: positions.len(),
+            triangles: section.triangles.iter().map(|t| t.map(|corner| place(corner.0))).collect(),
+            positions,
+            normals: normals.into_iter().map(Option::unwrap_or_default).collect(),
+            base_color: [1.0; 4],
+            skinned: false,
+        }
+    }
+}
+
+/// The first three numbers of a statement.
+fn vector(rest: &str) -> Outcome<Vec3> {
+    let mut parts = rest.split_ascii_whitespace();
+    let mut vector = Vec3::ZERO;
+    for axis in ["x", "y", "z"] {
+        let text = parts.next().ok_or_else(|| format!("{axis} is missing"))?;
+        let value = text.parse::<f32>().ok().filter(|v| v.is_finite());
+        let value = value.ok_or_else(|| format!("{axis}: expected a finite number, got `{text}`"))?;
+        vector = match axis {
+            "x" => vector.with_x(value),
+            "y" => vector.with_y(value),
+            _ => vector.with_z(value),
+        };
+    }
+    Ok(vector)
+}
+
+/// An index as OBJ counts: from 1, or backwards from −1.
+fn place(text: &str, len: usize, what: &str) -> Outcome<u32> {
+    let index: i64 = text.parse().map_err(|_| format!("expected the number of a {what}, got `{text}`"))?;
+    let place = if index < 0 { len as i64 + index } else { index - 1 };
+    u32::try_from(place)
+        .ok()
+        .filter(|p| (*p as usize) < len)
+        .ok_or_else(|| format!("{what} {index} of {len} so far"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::obj::to_obj;
+    use crate::testing::scene::arm;
+
+    fn read(text: &str) -> std::result::Result<ImportedScene, String> {
+        from_bytes(text.as_bytes(), Path::new("a.obj")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn reads_back_what_was_written() {
+        let scene = arm(4);
+        let read = from_bytes(&to_obj(&scene).unwrap(), Path::new("a.obj")).unwrap();
+        assert_eq!(read.meshes.len(), 2);
+        for (read, written) in read.meshes.iter().zip(&scene.meshes) {
+            assert_eq!(read.name, written.name);
+            assert_eq!(read.positions, written.positions.iter().map(|p| Vec3::from(*p)).collect::<Vec<_>>());
+            let triangles: Vec<_> = written.triangulated().iter().map(|t| t.map(|c| c.0)).collect();
+            assert_eq!(read.triangles, triangles);
+            assert_eq!(read.model_vertices, written.positions.len());
+            assert!(
+                read.normals.iter().zip(&written.normals).all(|(a, b)| a.distance(Vec3::from(*b)) < 1e-6)
+            );
+        }
+        assert_eq!(read.meshes[0].normals.len(), 15);
+    }
+
+    #[test]
+    fn sections_may_share_vertices_that_come_first() {
+        let scene = read(
+            "mtllib x.mtl\r\no All\r\nv 0 0 0 1\r\nv 1 0 0\r\nv 2 0 0\r\nv 3 0 0\r\nv 4 0 0\r\ng b\r\nusemtl y\r\n\
+             f 5 2 -2\r\ng a\r\ns 1\r\nv 5 0 0\r\nf 1 2 3 -1\r\n",
+        )
+        .unwrap();
+        let [b, a] = &scene.meshes[..] else { panic!("{scene:?}") };
+        let x = |mesh: &ImportedMesh| mesh.positions.iter().map(|p| p.x).collect::<Vec<_>>();
+        assert_eq!((x(b), &b.triangles[..]), (vec![1.0, 3.0, 4.0], &[[2, 0, 1]][..]));
+        assert_eq!((x(a), &a.triangles[..]), (vec![0.0, 1.0, 2.0, 5.0], &[[0, 1, 2], [0, 2, 3]][..]));
+    }
+
+    #[test]
+    fn points_alone_are_a_mesh() {
+        let scene = read("v 1 2 3\nv 4 5 6").unwrap();
+        assert_eq!(scene.meshes[0].positions, [Vec3::new(1., 2., 3.), Vec3::new(4., 5., 6.)]);
+    }
+
+    #[test]
+    fn says_what_is_wrong_and_in_which_line() {
+        for (text, expected) in [
+            ("", "a.obj: holds no vertices"),
+            ("# v 1 2 3", "a.obj: holds no vertices"),
+            ("v 1 2", "line 1: z is missing"),
+            ("v 1 2 3\nv 1 nan 3", "line 2: y: expected a finite number, got `nan`"),
+            ("v 1 1e99 3", "line 1: y: expected a finite number, got `1e99`"),
+            ("v 1 x 3", "y: expected a finite number, got `x`"),
+            ("v 1 2 3\nf 1 1 2", "line 2: vertex 2 of 1 so far"),
+            ("v 1 2 3\nf 1 1 0", "vertex 0 of 1 so far"),
+            ("v 1 2 3\nf 1 1 -2", "vertex -2 of 1 so far"),
+            ("v 1 2 3\nf 1 1", "line 2: expected a face of at least 3 corners, got 2"),
+            ("v 1 2 3\nf 1/1 1/1 1/1", "texture coordinate 1 of 0"),
+            ("v 1 2 3\nf 1//9 1//9 1//9", "normal 9 of 0"),
+            ("v 1 2 3\nf 1 1 99999999999999999999", "expected the number of a vertex"),
+            ("v 1 2 3\n\u{1}\u{2}", "line 2: expected a statement"),
+        ] {
+            let message = read(text).unwrap_err();
+            assert!(message.contains(expected), "`{expected}` in `{message}`");
+        }
+        let message = from_bytes(b"v 1 2 3\n\xff\xfe", Path::new("a.obj")).unwrap_err().to_string();
+        assert!(message.contains("line 2: is not text"), "{message}");
+    }
+
+    #[test]
+    fn a_file_of_ours_that_lost_its_end_is_told() {
+        let bytes = to_obj(&arm(4)).unwrap();
+        let last_face = bytes.len() - b"f 16 17 18\n".len();
+        let message = from_bytes(&bytes[..last_face], Path::new("a.obj")).unwrap_err().to_string();
+        assert!(message.contains("expected 18 vertices and 11 faces, got 18 and 10"), "{message}");
+    }
+}

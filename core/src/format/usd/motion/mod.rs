@@ -1,0 +1,196 @@
+//! SkelAnimations of `.usda`, `.usdc` and `.usdz` (openusd.org, "UsdSkel: Schemas In-Depth").
+//!
+//! One layer is read: what it refers to in other files is not. Sizes, turns and moves above the skeleton, animated or
+//! not, become part of its root joints; scales of joints are folded into the translations below them.
+
+use glam::DAffine3;
+use openusd::sdf::Path;
+
+use super::document::Layer;
+use super::skeleton::{Joints, chosen};
+use super::track::{Track, merged};
+use super::xform::Xforms;
+use crate::error::Outcome;
+use crate::format::raw::{Raw, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
+use crate::format::{Found, ReadOptions};
+use crate::space::{Axis, Unit};
+
+/// Most joints of an animation; those beyond the skeleton's are for nobody.
+const MAX_JOINTS: usize = crate::skeleton::MAX_JOINTS;
+/// Below this, keys stand for poses to blend between, not for frames.
+const LEAST_FRAME_RATE: f64 = 10.0;
+
+/// Reads every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
+pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<Raw> {
+    let layer = Layer::open(bytes)?;
+    let prims = layer.prims()?;
+    let of_type = |wanted: &str| -> Outcome<Vec<&Path>> {
+        let mut found = Vec::new();
+        for prim in &prims {
+            if layer.type_name(prim)? == wanted {
+                found.push(prim);
+            }
+        }
+        Ok(found)
+    };
+    let (skeletons, animations) = (of_type("Skeleton")?, of_type("SkelAnimation")?);
+    if animations.is_empty() {
+        return Err(format!("expected a SkelAnimation, found none among {} prims", prims.len()));
+    }
+    let mut warnings = Vec::new();
+    let (skeleton, bound) =
+        chosen(&layer, &skeletons)?.ok_or("expected a Skeleton beside the SkelAnimation, found none")?;
+    if skeletons.len() > 1 {
+        warnings.push(format!("{} skeletons: {skeleton} is read", skeletons.len()));
+    }
+    let joints = Joints::read(&layer, skeleton)?;
+    let above = Xforms::read(&layer, skeleton)?;
+
+    let rate = TimeCodes::read(&layer)?;
+    let mut takes = Vec::new();
+    let mut ordered = animations;
+    ordered.sort_by_key(|path| Some(*path) != bound.as_ref());
+    let rest = joints.locals(&above.at_start()?);
+    for path in ordered {
+        let animation = Animation::read(&layer, path, &joints)?;
+        if animation.joints.iter().all(Option::is_none) {
+            warnings.push(format!("{path}: moves no joint of {skeleton}, left out"));
+            continue;
+        }
+        let title = layer.text(path, "displayName")?.or_else(|| path.name().map(String::from));
+        let title = title.unwrap_or_else(|| name.to_owned());
+        takes.push(animation.take(title, &joints, &above, &rate, options)?);
+    }
+    if takes.is_empty() {
+        return Err(format!("no SkelAnimation moves a joint of {skeleton}"));
+    }
+    let mut names = joints.names;
+    make_unique(&mut names, &mut warnings);
+    Ok(Raw {
+        format: "USD",
+        parents: joints.parents,
+        ends: vec![None; names.len()],
+        names,
+        rest,
+        takes,
+        unit: layer.number("metersPerUnit")?.and_then(Unit::of_metres),
+        up: match layer.text(&Path::abs_root(), "upAxis")?.as_deref() {
+            Some("Y") => Some(Axis::Y),
+            Some("Z") => Some(Axis::Z),
+            _ => None,
+        },
+        rest_is_upright: false,
+        rate_found: if options.frames_per_second.is_some() { Found::Asked } else { rate.found },
+        warnings,
+    })
+}
+
+/// How time codes pass.
+struct TimeCodes {
+    per_second: f64,
+    found: Found,
+}
+
+impl TimeCodes {
+    fn read(layer: &Layer) -> Outcome<Self> {
+        let told = match layer.number("timeCodesPerSecond")? {
+            Some(rate) => Some(rate),
+            None => layer.number("framesPerSecond")?,
+        };
+        // USD's own default.
+        let per_second = told.unwrap_or(24.0);
+        if !(1e-3..=1e6).contains(&per_second) {
+            return Err(format!("timeCodesPerSecond: expected a positive number, got {per_second}"));
+        }
+        Ok(Self { per_second, found: if told.is_some() { Found::File } else { Found::Assumed } })
+    }
+}
+
+/// A SkelAnimation's own joints and how they move.
+struct Animation {
+    /// Per joint of the skeleton its place in the animation.
+    joints: Vec<Option<usize>>,
+    rotations: Track<4>,
+    translations: Track<3>,
+    scales: Track<3>,
+}
+
+impl Animation {
+    fn read(layer: &Layer, path: &Path, skeleton: &Joints) -> Outcome<Self> {
+        let own = layer.tokens(path, "joints")?.unwrap_or_default();
+        if own.is_empty() || own.len() > MAX_JOINTS {
+            return Err(format!("{path}.joints: expected 1 to {MAX_JOINTS} joints, got {}", own.len()));
+        }
+        let place: std::collections::BTreeMap<&str, usize> =
+            own.iter().enumerate().map(|(i, joint)| (joint.as_str(), i)).collect();
+        Ok(Self {
+            joints: skeleton.paths.iter().map(|joint| place.get(joint.as_str()).copied()).collect(),
+            rotations: Track::read(layer, path, "rotations", own.len())?,
+            translations: Track::read(layer, path, "translations", own.len())?,
+            scales: Track::read(layer, path, "scales", own.len())?,
+        })
+    }
+
+    fn take(
+        &self,
+        name: String,
+        joints: &Joints,
+        above: &Xforms,
+        rate: &TimeCodes,
+        options: &ReadOptions,
+    ) -> Outcome<Take> {
+        let times = merged(
+            [self.rotations.times(), self.translations.times(), self.scales.times()]
+                .into_iter()
+                .chain(above.times()),
+        );
+        let (start, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+        let seconds = (end - start) / rate.per_second;
+        let frames_per_second =
+            options.frames_per_second.unwrap_or_else(|| frame_rate(&times, rate.per_second));
+        let frames = frame_count(seconds, frames_per_second, joints.parents.len())
+            .map_err(|message| format!("`{name}`: {message}"))?;
+
+        let rest = joints.locals(&above.at_start()?);
+        let mut recorder = Recorder::new(joints.parents.len());
+        let mut world: Vec<DAffine3> = Vec::with_capacity(joints.parents.len());
+        for frame in 0..frames {
+            let time = start + frame as f64 / frames_per_second * rate.per_second;
+            let rotations = self.rotations.at(time);
+            let (translations, scales) = (self.translations.at(time), self.scales.at(time));
+            let root = above.at(time)?;
+            world.clear();
+            for (joint, parent) in joints.parents.iter().enumerate() {
+                let mut local = joints.rest[joint];
+                if let Some(own) = self.joints[joint] {
+                    if let Some(rotation) = rotations.get(own) {
+                        local.rotate(*rotation);
+                    }
+                    if let Some(translation) = translations.get(own) {
+                        local.translation = glam::DVec3::from_array(*translation);
+                    }
+                    if let Some(scale) = scales.get(own) {
+                        local.scale = glam::DVec3::from_array(*scale);
+                    }
+                }
+                let parent = parent.and_then(|p| world.get(p as usize)).unwrap_or(&root);
+                world.push(*parent * local.to_affine());
+            }
+            let rigid: Vec<Rigid> = world.iter().map(Rigid::of).collect();
+            recorder.push(&Rigid::locals(&rigid, &joints.parents));
+        }
+        Ok(recorder.take(name, frames_per_second, &rest))
+    }
+}
+
+/// Frames a second of keys at these time codes: their own rate where they are evenly spaced, else that of time codes.
+fn frame_rate(times: &[f64], time_codes_per_second: f64) -> f64 {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return time_codes_per_second };
+    let gap = (last - first) / (times.len() - 1).max(1) as f64;
+    let even = times.iter().enumerate().all(|(i, t)| (t - (first + i as f64 * gap)).abs() <= gap * 1e-3);
+    let rate = snapped_rate(time_codes_per_second / gap);
+    if even && rate.is_finite() && rate >= LEAST_FRAME_RATE { rate } else { time_codes_per_second }
+}
+
+#[cfg(test)]
+mod tests;

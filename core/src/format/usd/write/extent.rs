@@ -1,0 +1,97 @@
+//! The room that a character takes, at rest and over a clip.
+//!
+//! Skinning makes every vertex a weighted mean of itself carried along by its joints, so the joints' boxes, each
+//! around the vertices that the joint moves at all and carried along by it, hold the skinned vertices. Their common
+//! box is larger than the tightest one, never smaller, and costs a few matrices a frame instead of the whole mesh.
+
+use glam::{Affine3A, Vec3A};
+use openusd::gf::Vec3f;
+use openusd::sdf::{FieldKey, Value};
+
+use super::layer::Layer;
+use crate::Result;
+use crate::math::RigidTransform;
+use crate::scene::{Scene, SceneMesh};
+use crate::skeleton::model_from_joints;
+
+/// Metres added on every side for the rounding of single precision.
+const MARGIN: f32 = 1e-4;
+
+/// A box along the axes.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: Vec3A,
+    high: Vec3A,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
+
+    fn add(&mut self, point: Vec3A) {
+        self.low = self.low.min(point);
+        self.high = self.high.max(point);
+    }
+
+    /// Takes in the box around this box after a transform.
+    fn add_moved(&mut self, inner: &Self, transform: &Affine3A) {
+        let center = transform.transform_point3a((inner.low + inner.high) * 0.5);
+        let half = (inner.high - inner.low) * 0.5;
+        let m = transform.matrix3;
+        let reach = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
+        self.add(center - reach - MARGIN);
+        self.add(center + reach + MARGIN);
+    }
+
+    fn value(self) -> Value {
+        Value::Vec3fVec([self.low, self.high].map(|corner| Vec3f::from(corner.to_array())).to_vec())
+    }
+}
+
+/// The extent of a mesh in its bind pose.
+pub(super) fn of_mesh(mesh: &SceneMesh) -> Value {
+    let mut bounds = Bounds::EMPTY;
+    mesh.positions.iter().for_each(|p| bounds.add(Vec3A::from_array(*p)));
+    bounds.value()
+}
+
+/// The extent of the whole character: at rest, and over the frames of its first clip.
+pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> {
+    let mut rest = Bounds::EMPTY;
+    scene.meshes.iter().flat_map(|m| &m.positions).for_each(|p| rest.add(Vec3A::from_array(*p)));
+    let extent = layer.attribute(root, "extent", "float3[]", rest.value())?;
+    let Some(clip) = scene.clips.first() else { return Ok(()) };
+
+    let boxes = joint_boxes(scene);
+    let mut pose = crate::skeleton::Pose::default();
+    let mut joints: Vec<RigidTransform> = Vec::new();
+    let sample = |frame: usize| {
+        clip.pose_into(frame, &mut pose);
+        model_from_joints(clip.rest().parents(), &pose.locals, &mut joints);
+        let mut bounds = Bounds::EMPTY;
+        for (moved, at) in boxes.iter().zip(&joints) {
+            if moved.low.cmple(moved.high).all() {
+                bounds.add_moved(moved, &at.to_affine());
+            }
+        }
+        (frame as f64, bounds.value())
+    };
+    let samples = (0..clip.frame_count()).map(sample).collect();
+    layer.set(&extent, FieldKey::TimeSamples, Value::TimeSamples(samples))
+}
+
+/// In each joint's own space, the box around the vertices that it moves; an empty one where it moves none.
+fn joint_boxes(scene: &Scene) -> Vec<Bounds> {
+    let joint_from_model: Vec<Affine3A> =
+        scene.joints.iter().map(|joint| joint.model_from_joint.inverse()).collect();
+    let mut boxes = vec![Bounds::EMPTY; scene.joints.len()];
+    for mesh in &scene.meshes {
+        for (vertex, position) in mesh.positions.iter().enumerate() {
+            let position = Vec3A::from_array(*position);
+            for (joint, _) in mesh.influences(vertex).take_while(|(_, weight)| *weight > 0.0) {
+                let joint = usize::from(joint);
+                boxes[joint].add(joint_from_model[joint].transform_point3a(position));
+            }
+        }
+    }
+    boxes
+}

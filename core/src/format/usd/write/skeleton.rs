@@ -1,0 +1,72 @@
+//! The joint tree as a Skeleton, with the clips below it.
+
+use glam::{Affine3A, DAffine3, DMat3, DVec3};
+use openusd::gf::Matrix4d;
+use openusd::sdf::Value;
+
+use super::animation;
+use super::layer::Layer;
+use super::names::Names;
+use crate::Result;
+use crate::scene::{Scene, SceneJoint};
+
+/// A custom attribute of the Skeleton: how far each joint's bone reaches along its +Y axis, metres.
+pub(crate) const BONE_LENGTHS: &str = "anthronet:boneLengths";
+
+/// The skeleton at this path and its animations.
+pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene) -> Result<()> {
+    layer.prim(path, "Skel", "Skeleton")?;
+    let joints = joint_tokens(&scene.joints);
+    let bind: Vec<DAffine3> = scene.joints.iter().map(|j| in_double(&j.model_from_joint)).collect();
+    let rest = scene.joints.iter().zip(&bind).map(|(joint, model_from_joint)| {
+        let parent = joint.parent.map(|p| bind[p as usize]);
+        parent.map_or(*model_from_joint, |parent| parent.inverse() * *model_from_joint)
+    });
+    layer.uniform(path, "joints", "token[]", joints.clone())?;
+    let names = scene.joints.iter().map(|joint| joint.name.as_str());
+    layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
+    // USD has no word for where a bone ends either; a negative length stands for none.
+    if scene.joints.iter().any(|joint| joint.bone_length.is_some()) {
+        let lengths = scene.joints.iter().map(|joint| joint.bone_length.unwrap_or(-1.0)).collect();
+        layer.custom(path, BONE_LENGTHS, "float[]", Value::FloatVec(lengths))?;
+    }
+    layer.uniform(path, "bindTransforms", "matrix4d[]", matrices(bind.iter().copied()))?;
+    layer.uniform(path, "restTransforms", "matrix4d[]", matrices(rest))?;
+
+    let Some(first) = scene.clips.first() else { return Ok(()) };
+    let time_codes_per_second = first.frames_per_second();
+    let mut names = Names::reserved(["Anim"]);
+    for (i, clip) in scene.clips.iter().enumerate() {
+        let name = if i == 0 { "Anim".to_owned() } else { names.unique(clip.name()) };
+        animation::write(layer, &format!("{path}/{name}"), clip, &joints, time_codes_per_second)?;
+    }
+    layer.apply(path, "SkelBindingAPI")?;
+    layer.relate(path, "skel:animationSource", &format!("{path}/Anim"))
+}
+
+/// The joints as paths from the root joint, such as `Root/pelvis/spine_01`.
+///
+/// Identifiers are unique in the whole tree and not only among siblings: programs name bones by the last part.
+fn joint_tokens(joints: &[SceneJoint]) -> Value {
+    let mut names = Names::default();
+    let mut paths: Vec<String> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let name = names.unique(&joint.name);
+        let parent = joint.parent.and_then(|p| paths.get(p as usize));
+        paths.push(parent.map_or(name.clone(), |parent| format!("{parent}/{name}")));
+    }
+    Value::token_vec(paths)
+}
+
+fn in_double(transform: &Affine3A) -> DAffine3 {
+    let m = transform.matrix3.to_cols_array().map(f64::from);
+    DAffine3 {
+        matrix3: DMat3::from_cols_array(&m),
+        translation: DVec3::from(transform.translation.to_array().map(f64::from)),
+    }
+}
+
+/// USD has row vectors and rows one after the other: the same sixteen numbers as columns of a matrix for column vectors.
+fn matrices(transforms: impl Iterator<Item = DAffine3>) -> Value {
+    Value::Matrix4dVec(transforms.map(|t| Matrix4d(glam::DMat4::from(t).to_cols_array())).collect())
+}

@@ -1,0 +1,112 @@
+//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which says who made the figure and which of its nodes are
+//! the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
+//!
+//! Our bind pose is the T-pose facing +Z that the specification wants. It wants no motion in the file: a scene with
+//! clips is refused, as motion goes into a `.glb` of its own.
+
+use gltf_json::{Value, extensions};
+use serde_json::{Map, json};
+
+use super::gltf::write::{GltfOptions, document, finished, glb};
+use crate::scene::Scene;
+use crate::skeleton::humanoid::{HumanoidBone, humanoid_bones};
+use crate::{Error, Result};
+
+const NAME: &str = "VRMC_vrm";
+
+/// Who made a figure, and what others may do with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VrmMeta {
+    /// Title of the figure; the scene's name if empty.
+    pub name: String,
+    /// Version of the figure, in any form; left out if empty.
+    pub version: String,
+    /// Its authors, at least one.
+    pub authors: Vec<String>,
+    /// Licence of the figure, which has to be the one that VRM 1.0 knows.
+    pub license_url: String,
+    /// Whether everybody may use, change and pass on the figure, for money too. If not, the file says what VRM's
+    /// defaults are: only its author, for no profit.
+    pub free: bool,
+}
+
+impl Default for VrmMeta {
+    /// A free figure by AnthroNet.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            version: String::new(),
+            authors: vec!["AnthroNet".into()],
+            license_url: "https://vrm.dev/licenses/1.0/".into(),
+            free: true,
+        }
+    }
+}
+
+/// The scene as a VRM 1.0 model. Joints may be named in any vocabulary of
+/// [`JointNames`](crate::skeleton::humanoid::JointNames).
+///
+/// # Errors
+/// [`Error::Invalid`] as for [`to_glb`](super::to_glb); for a scene with clips, without one of the bones that VRM
+/// requires; for a figure without author or with an empty name.
+pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
+    if let Some(clip) = scene.clips.first() {
+        let message = format!("`{}`: a .vrm holds no motion, write it to a .glb", clip.name());
+        return Err(Error::invalid("clip", message));
+    }
+    let mut builder = document(scene)?;
+    let extension = json!({
+        "specVersion": "1.0",
+        "meta": meta_json(scene, meta)?,
+        "humanoid": {"humanBones": human_bones(scene)?},
+    });
+    let others = Map::from_iter([(NAME.to_owned(), extension)]);
+    builder.root.extensions = Some(extensions::Root { others });
+    builder.root.extensions_used.push(NAME.into());
+    glb(finished(builder, &GltfOptions::default(), None)?)
+}
+
+fn meta_json(scene: &Scene, meta: &VrmMeta) -> Result<Value> {
+    let name = if meta.name.is_empty() { &scene.name } else { &meta.name };
+    if name.is_empty() {
+        return Err(Error::invalid("VRM", "expected a name of the figure, got none"));
+    }
+    if meta.authors.is_empty() || meta.authors.iter().any(String::is_empty) {
+        return Err(Error::invalid(
+            "VRM",
+            "expected the names of one or more authors, got none or an empty one",
+        ));
+    }
+    let mut json = json!({"name": name, "authors": meta.authors, "licenseUrl": meta.license_url});
+    if !meta.version.is_empty() {
+        json["version"] = meta.version.as_str().into();
+    }
+    if meta.free {
+        json["avatarPermission"] = "everyone".into();
+        json["commercialUsage"] = "corporation".into();
+        json["creditNotation"] = "unnecessary".into();
+        json["allowRedistribution"] = true.into();
+        json["modification"] = "allowModificationRedistribution".into();
+    }
+    Ok(json)
+}
+
+/// `humanBones`: all humanoid bones that are among the joints.
+fn human_bones(scene: &Scene) -> Result<Value> {
+    let find = |bone: &HumanoidBone| {
+        let names = [&bone.native, &bone.vrm, &bone.unity, &bone.mixamo, &bone.blender];
+        names.into_iter().find_map(|name| scene.joints.iter().position(|joint| joint.name == *name))
+    };
+    let mut bones = Map::new();
+    for bone in humanoid_bones() {
+        match find(bone) {
+            Some(node) => drop(bones.insert(bone.vrm.clone(), json!({"node": node}))),
+            None if bone.required => {
+                let message = format!("requires the bone `{}`, no joint is it", bone.vrm);
+                return Err(Error::invalid("VRM", message));
+            }
+            None => {}
+        }
+    }
+    Ok(Value::Object(bones))
+}

@@ -1,0 +1,176 @@
+//! When heels and balls of feet stand on the floor.
+
+use glam::Vec3;
+
+use super::FeetOptions;
+use super::soles;
+use crate::Result;
+use crate::clip::Clip;
+use crate::pose::{Leg, Sole};
+
+/// A point of the sole that can carry a foot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FootPoint {
+    /// Behind the ankle.
+    Heel,
+    /// Under the ball joint.
+    Ball,
+}
+
+impl FootPoint {
+    pub(super) fn of(self, sole: &Sole) -> Vec3 {
+        match self {
+            Self::Heel => sole.heel,
+            Self::Ball => sole.ball,
+        }
+    }
+}
+
+/// How many times faster than a standing point one is that jumps from one frame to the next.
+const JUMP: f32 = 6.0;
+
+/// A point stands on the floor in the frames `start..end`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// Which.
+    pub point: FootPoint,
+    /// First frame.
+    pub start: usize,
+    /// One past the last frame.
+    pub end: usize,
+}
+
+/// The contacts of a clip.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contacts {
+    /// Left and right, in the order of time, heels before balls.
+    pub feet: [Vec<Contact>; 2],
+    /// The height of the floor that they were found on, metres.
+    pub floor: f32,
+}
+
+/// Finds when heels and balls are low and slow, with hysteresis. Positions are averaged over a twentieth of a second
+/// to each side before speeds are taken, so that the noise of a capture does not end a contact. A clip that walks on
+/// the spot has no contacts, as its feet slide.
+///
+/// # Errors
+/// [`Error`](crate::Error) naming a joint of the legs that is missing or an option out of range.
+pub fn contacts(clip: &Clip, options: &FeetOptions) -> Result<Contacts> {
+    options.check()?;
+    let legs = Leg::both(clip.rest())?;
+    let mut tracks = soles::tracks(clip, &legs, 0.0);
+    let floor = if options.find_floor { floor_of(&tracks) } else { 0.0 };
+    for sole in tracks.iter_mut().flatten() {
+        sole.heel.y -= floor;
+        sole.ball.y -= floor;
+    }
+    let rate = clip.frames_per_second() as f32;
+    let feet = tracks.map(|track| {
+        [FootPoint::Heel, FootPoint::Ball]
+            .into_iter()
+            .flat_map(|p| of_point(&track, p, rate, options))
+            .collect()
+    });
+    Ok(Contacts { feet, floor })
+}
+
+/// The floor under the feet: somebody who walks, turns or stands has a foot on it nearly always, so it is a low
+/// percentile over the frames of the height of the lower foot.
+fn floor_of(tracks: &[Vec<Sole>; 2]) -> f32 {
+    let mut heights: Vec<f32> = tracks[0]
+        .iter()
+        .zip(&tracks[1])
+        .map(|(l, r)| l.heel.y.min(l.ball.y).min(r.heel.y).min(r.ball.y))
+        .collect();
+    heights.sort_by(f32::total_cmp);
+    heights.get(heights.len() / 5).copied().unwrap_or(0.0)
+}
+
+fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) -> Vec<Contact> {
+    let places = smoothed(track, point, libm::roundf(0.05 * rate) as usize);
+    let mut touching = Vec::with_capacity(places.len());
+    let mut on = false;
+    for frame in 0..places.len() {
+        let (before, after) = (frame.saturating_sub(1), (frame + 1).min(places.len() - 1));
+        let seconds = (after - before).max(1) as f32 / rate;
+        let speed = places[before].distance(places[after]) / seconds;
+        let slack = if on { 1.25 } else { 1.0 };
+        on = places[frame].y < options.height * slack && speed < options.speed * slack;
+        touching.push(on);
+    }
+    let shortest = (libm::roundf(options.shortest * rate) as usize).clamp(1, track.len().max(1));
+    fill_gaps(&mut touching, shortest);
+    // What the averages hide: a fault of the capture throws the point away and back.
+    for (frame, pair) in track.windows(2).enumerate() {
+        if point.of(&pair[0]).distance(point.of(&pair[1])) * rate > JUMP * options.speed {
+            touching[frame..frame + 2].fill(false);
+        }
+    }
+    let mut found = Vec::new();
+    for (start, end) in runs(&touching) {
+        split(&places, start, end, options.stray, shortest, |start, end| {
+            if end - start >= shortest {
+                found.push(Contact { point, start, end });
+            }
+        });
+    }
+    found
+}
+
+/// Means over `radius` frames to each side, fewer at the ends.
+fn smoothed(track: &[Sole], point: FootPoint, radius: usize) -> Vec<Vec3> {
+    (0..track.len())
+        .map(|frame| {
+            let radius = radius.min(frame).min(track.len() - 1 - frame);
+            let window = &track[frame - radius..=frame + radius];
+            window.iter().map(|sole| point.of(sole)).sum::<Vec3>() / window.len() as f32
+        })
+        .collect()
+}
+
+/// Runs of true frames.
+pub(super) fn runs(frames: &[bool]) -> Vec<(usize, usize)> {
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    for (frame, _) in frames.iter().enumerate().filter(|(_, on)| **on) {
+        match found.last_mut() {
+            Some((_, end)) if *end == frame => *end += 1,
+            _ => found.push((frame, frame + 1)),
+        }
+    }
+    found
+}
+
+/// Fills gaps between two true runs that are shorter than `shortest`.
+fn fill_gaps(frames: &mut [bool], shortest: usize) {
+    for pair in runs(frames).windows(2) {
+        if pair[1].0 - pair[0].1 < shortest {
+            frames[pair[0].1..pair[1].0].fill(true);
+        }
+    }
+}
+
+/// Cuts a run where the point has strayed too far from where the contact began, with `gap` frames between the parts
+/// in which the foot may move on.
+fn split(
+    places: &[Vec3],
+    start: usize,
+    end: usize,
+    stray: f32,
+    gap: usize,
+    mut part: impl FnMut(usize, usize),
+) {
+    let mut first = start;
+    while first < end {
+        let home = places[first].with_y(0.0);
+        match (first..end).find(|f| places[*f].with_y(0.0).distance(home) > stray) {
+            Some(cut) => {
+                part(first, cut);
+                first = cut + gap;
+            }
+            None => {
+                part(first, end);
+                break;
+            }
+        }
+    }
+}

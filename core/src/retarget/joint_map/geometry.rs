@@ -1,0 +1,308 @@
+//! Finding the joints of a person by hierarchy and rest pose, when names say nothing.
+//!
+//! The hips are the deepest joint from which two like branches reach the floor; the branch that rises highest is the
+//! trunk, and where two more like branches leave it to the sides the arms hang. Within a limb, knee and elbow are where
+//! the proportions of people put them. The toes say where front is, and thereby what is left. The rest pose must
+//! stand upright, +Y up, in any facing; arms may hang or be held out.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use crate::skeleton::RestPose;
+use crate::skeleton::humanoid::FINGERS;
+
+/// Upper arm and forearm as parts of thigh and calf together: 50th percentiles of adults (Winter, *Biomechanics and
+/// Motor Control of Human Movement*, table 4.1: 0.186 and 0.146 of height to 0.245 and 0.246).
+const UPPER_ARM: f32 = 0.38;
+const FOREARM: f32 = 0.30;
+
+struct Tree<'a> {
+    rest: &'a RestPose,
+    places: Vec<Vec3>,
+    children: Vec<Vec<usize>>,
+    /// The child that the longest way down goes to; none where no way has a length.
+    longest: Vec<Option<usize>>,
+}
+
+/// Limbs of more joints than this are no limbs of a person.
+const MAX_LIMB: usize = 24;
+
+/// Our joint to source joint, as far as it was found.
+pub(super) fn find(rest: &RestPose) -> BTreeMap<String, usize> {
+    let tree = Tree::new(rest);
+    let mut found = BTreeMap::new();
+    let Some((hips, legs)) = tree.hips() else { return found };
+    let limbs: Vec<_> = legs.iter().filter_map(|&leg| tree.leg(hips, leg)).collect();
+    let [first, second] = &limbs[..] else { return found };
+    // Front is where the toes point; without toes the person is taken to face +Z.
+    let front: Vec3 = limbs.iter().map(|leg| leg.toes.with_y(0.0)).sum();
+    let front = front.try_normalize().unwrap_or(Vec3::Z);
+    let left = Vec3::Y.cross(front);
+    let first_is_left = (tree.places[first.joints[0]] - tree.places[second.joints[0]]).dot(left) >= 0.0;
+    let sides = if first_is_left { ["l", "r"] } else { ["r", "l"] };
+    found.insert("pelvis".to_owned(), hips);
+    for (leg, side) in limbs.iter().zip(sides) {
+        for (name, &joint) in ["thigh", "calf", "foot", "ball"].iter().zip(&leg.joints) {
+            found.insert(format!("{name}_{side}"), joint);
+        }
+    }
+    let leg_length = limbs.iter().map(|leg| leg.length).sum::<f32>() / 2.0;
+    tree.trunk(hips, &legs, left, leg_length, &mut found);
+    found
+}
+
+struct Leg {
+    /// Thigh, calf, foot and, where there is one, ball.
+    joints: Vec<usize>,
+    /// Of thigh and calf.
+    length: f32,
+    /// From the foot to the end.
+    toes: Vec3,
+}
+
+impl<'a> Tree<'a> {
+    fn new(rest: &'a RestPose) -> Self {
+        let model = rest.model_from_joints();
+        let mut children = vec![Vec::new(); rest.len()];
+        for (joint, parent) in rest.parents().iter().enumerate() {
+            if let Some(parent) = parent {
+                children[*parent as usize].push(joint);
+            }
+        }
+        let places: Vec<Vec3> = model.iter().map(|m| m.translation).collect();
+        let mut longest = vec![None; rest.len()];
+        let mut reach = vec![0.0_f32; rest.len()];
+        for joint in (0..rest.len()).rev() {
+            for &child in &children[joint] {
+                let length = reach[child] + places[child].distance(places[joint]);
+                if length > reach[joint] {
+                    (reach[joint], longest[joint]) = (length, Some(child));
+                }
+            }
+        }
+        Self { rest, places, children, longest }
+    }
+
+    /// The joint and all below it, parents first.
+    fn below(&self, joint: usize) -> Vec<usize> {
+        let mut list = vec![joint];
+        let mut next = 0;
+        while let Some(&j) = list.get(next) {
+            list.extend(&self.children[j]);
+            next += 1;
+        }
+        list
+    }
+
+    /// From `top` down to `joint`, both included.
+    fn path(&self, top: usize, joint: usize) -> Vec<usize> {
+        let mut path = vec![joint];
+        let mut current = joint;
+        while current != top {
+            let Some(parent) = self.rest.parents()[current] else { break };
+            current = parent as usize;
+            path.push(current);
+        }
+        path.reverse();
+        path
+    }
+
+    fn length(&self, path: &[usize]) -> f32 {
+        path.windows(2).map(|pair| self.places[pair[0]].distance(self.places[pair[1]])).sum()
+    }
+
+    /// The longest way down from a joint, which it begins with.
+    fn longest(&self, top: usize) -> Vec<usize> {
+        std::iter::successors(Some(top), |&joint| self.longest[joint]).collect()
+    }
+
+    /// The hips and the two branches that are legs.
+    fn hips(&self) -> Option<(usize, [usize; 2])> {
+        let lowest = self.places.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let highest = self.places.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+        let height = highest - lowest;
+        // Deepest first: joints stand after their parents.
+        for hips in (0..self.rest.len()).rev() {
+            let mut legs: Vec<(f32, usize)> = self.children[hips]
+                .iter()
+                .filter_map(|&child| {
+                    let path = self.longest(child);
+                    let low = path.iter().map(|&j| self.places[j].y).fold(f32::INFINITY, f32::min);
+                    let reaches_floor = low < lowest + 0.12 * height;
+                    let length = self.length(&path);
+                    (path.len() >= 3 && reaches_floor && length > 0.3 * height).then_some((length, child))
+                })
+                .collect();
+            legs.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            if let [first, second, ..] = legs[..]
+                && second.0 > 0.8 * first.0
+                && self.places[hips].y > lowest + 0.3 * height
+            {
+                return Some((hips, [first.1, second.1]));
+            }
+        }
+        None
+    }
+
+    fn leg(&self, hips: usize, branch: usize) -> Option<Leg> {
+        let mut path = self.longest(branch);
+        path.truncate(MAX_LIMB);
+        let floor = path.iter().map(|&j| self.places[j].y).fold(f32::INFINITY, f32::min);
+        let drop = self.places[hips].y - floor;
+        // An ankle is a tenth of the leg above the floor.
+        let ankle = path.iter().position(|&j| self.places[j].y - floor < 0.2 * drop)?;
+        let whole = self.length(&path[..=ankle]);
+        let mut best: Option<(f32, usize, usize)> = None;
+        for knee in 1..ankle {
+            let calf = self.length(&path[knee..=ankle]);
+            for thigh in 0..knee {
+                let upper = self.length(&path[thigh..=knee]);
+                // Thigh and calf are as long as each other, and nearly the whole leg.
+                if upper + calf < 0.75 * whole || upper <= 0.0 || calf <= 0.0 {
+                    continue;
+                }
+                let cost = libm::logf(upper / calf).abs();
+                if best.is_none_or(|(least, ..)| cost < least) {
+                    best = Some((cost, thigh, knee));
+                }
+            }
+        }
+        let (_, thigh, knee) = best?;
+        let foot = path[ankle];
+        let ball = path.get(ankle + 1).copied().filter(|&j| self.places[j] != self.places[foot]);
+        let end = path.last().copied().unwrap_or(foot);
+        let toes = if end == foot { self.end(foot) } else { self.places[end] } - self.places[foot];
+        let joints = [path[thigh], path[knee], foot].into_iter().chain(ball).collect();
+        Some(Leg { joints, length: self.length(&path[thigh..=ankle]), toes })
+    }
+
+    /// The far end of a joint's bone, or the joint when nothing says where it is.
+    fn end(&self, joint: usize) -> Vec3 {
+        let end = self.rest.ends()[joint].unwrap_or(Vec3::ZERO);
+        self.rest.model_from_joints()[joint].to_affine().transform_point3(end)
+    }
+
+    /// Spine, neck, head and arms.
+    fn trunk(
+        &self,
+        hips: usize,
+        legs: &[usize; 2],
+        left: Vec3,
+        leg: f32,
+        found: &mut BTreeMap<String, usize>,
+    ) {
+        let centre = self.places[hips];
+        let branches: Vec<usize> = self.below(hips).into_iter().filter(|j| !legs.contains(j)).collect();
+        // The chest: the deepest joint with an arm on each side.
+        let arms = branches.iter().rev().find_map(|&chest| {
+            let side = |sign: f32| {
+                self.children[chest].iter().copied().filter(|c| !legs.contains(c)).find(|&child| {
+                    let path = self.longest(child);
+                    let end = path.last().map_or(centre, |&j| self.places[j]);
+                    let aside = sign * (end - centre).dot(left) > 0.12 * leg;
+                    aside && self.length(&path) > 0.5 * leg && path.len() >= 3
+                })
+            };
+            Some((chest, side(1.0)?, side(-1.0)?))
+        });
+        let Some((chest, left_arm, right_arm)) = arms else { return };
+        if chest == hips {
+            return;
+        }
+        for (branch, side) in [(left_arm, "l"), (right_arm, "r")] {
+            self.arm(branch, side, leg, left.cross(Vec3::Y), found);
+        }
+        if let Some(&first) = self.path(hips, chest).get(1) {
+            found.insert("spine_01".to_owned(), first);
+        }
+        let head = self.children[chest]
+            .iter()
+            .copied()
+            .filter(|child| ![left_arm, right_arm].contains(child))
+            .map(|child| self.longest(child))
+            .max_by(|a, b| {
+                let top = |path: &[usize]| path.last().map_or(0.0, |&j| self.places[j].y);
+                top(a).total_cmp(&top(b))
+            });
+        let Some(path) = head else { return };
+        // The joint of the head stands a sixth of the leg above the shoulders; a head that carries eyes branches.
+        let shoulders = ["l", "r"].iter().filter_map(|s| found.get(&format!("upperarm_{s}")));
+        let shoulder = shoulders.map(|&j| self.places[j].y).fold(f32::NEG_INFINITY, f32::max);
+        let miss = |joint: usize| (self.places[joint].y - shoulder - 0.17 * leg).abs();
+        let head = path.iter().position(|&j| self.children[j].len() > 1).or_else(|| {
+            (0..path.len()).min_by(|&a, &b| miss(path[a]).total_cmp(&miss(path[b])).then(b.cmp(&a)))
+        });
+        let Some(head) = head else { return };
+        found.insert("head".to_owned(), path[head]);
+        if head > 0 {
+            found.insert("neck_01".to_owned(), path[0]);
+        }
+    }
+
+    fn arm(&self, branch: usize, side: &str, leg: f32, front: Vec3, found: &mut BTreeMap<String, usize>) {
+        let mut path = self.longest(branch);
+        path.truncate(MAX_LIMB);
+        let mut best: Option<(f32, [usize; 3])> = None;
+        for wrist in 2..path.len() {
+            for elbow in 1..wrist {
+                for shoulder in 0..elbow {
+                    let miss = |from: usize, to: usize, part: f32| {
+                        let length = self.length(&path[from..=to]);
+                        libm::logf((length / (part * leg)).max(1e-3)).abs()
+                    };
+                    let cost = miss(shoulder, elbow, UPPER_ARM) + miss(elbow, wrist, FOREARM);
+                    // A wrist is where fingers part.
+                    let cost = if self.children[path[wrist]].len() >= 3 { cost - 0.5 } else { cost };
+                    if best.is_none_or(|(least, _)| cost < least) {
+                        best = Some((cost, [shoulder, elbow, wrist]));
+                    }
+                }
+            }
+        }
+        let Some((_, [shoulder, elbow, wrist])) = best else { return };
+        for (name, at) in [("upperarm", shoulder), ("lowerarm", elbow), ("hand", wrist)] {
+            found.insert(format!("{name}_{side}"), path[at]);
+        }
+        if shoulder > 0 {
+            found.insert(format!("clavicle_{side}"), path[0]);
+        }
+        self.fingers(path[wrist], side, front, found);
+    }
+
+    /// Five chains: the thumb begins nearest to the wrist, and the others stand in a row beside it.
+    fn fingers(&self, hand: usize, side: &str, front: Vec3, found: &mut BTreeMap<String, usize>) {
+        let mut chains: Vec<Vec<usize>> =
+            self.children[hand].iter().map(|&c| self.longest(c)).filter(|path| path.len() >= 3).collect();
+        if chains.len() != 5 {
+            return;
+        }
+        let wrist = self.places[hand];
+        for chain in &mut chains {
+            // A bone of the palm is longer than its way from the wrist.
+            let first = self.places[chain[0]].distance(wrist);
+            if chain.len() > 3 && first < self.places[chain[0]].distance(self.places[chain[1]]) {
+                chain.remove(0);
+            }
+        }
+        let reach = |chain: &Vec<usize>| chain.last().map_or(0.0, |&j| self.places[j].distance(wrist));
+        let Some(thumb) = (0..5).min_by(|&a, &b| reach(&chains[a]).total_cmp(&reach(&chains[b]))) else {
+            return;
+        };
+        let thumb = chains.swap_remove(thumb);
+        let mean = chains.iter().map(|c| self.places[c[0]]).sum::<Vec3>() / 4.0;
+        let along = (mean - wrist).normalize_or_zero();
+        // Across the palm towards the thumb, which in the T-pose is the front.
+        let towards = self.places[thumb[thumb.len() - 1]] - mean;
+        let across = (towards - along * towards.dot(along)).try_normalize().unwrap_or(front);
+        chains.sort_by(|a, b| {
+            (self.places[b[0]] - mean).dot(across).total_cmp(&(self.places[a[0]] - mean).dot(across))
+        });
+        chains.insert(0, thumb);
+        for (finger, chain) in FINGERS.iter().zip(&chains) {
+            for (i, &joint) in chain.iter().take(3).enumerate() {
+                found.insert(format!("{finger}_0{}_{side}", i + 1), joint);
+            }
+        }
+    }
+}

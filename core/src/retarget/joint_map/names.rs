@@ -1,0 +1,230 @@
+//! Names of joints in other programs, as tables: which joint of ours each one drives.
+//!
+//! Names are compared without namespace, prefix, case and separators. Five vocabularies are those that
+//! [`rig::humanoid`](crate::skeleton::humanoid) writes; the others are only read:
+//! - **CMU ASF**: the Carnegie Mellon motion capture database's own skeleton. Its `lwrist` turns the forearm two thirds
+//!   down its length, and the wrist that bends is `lhand`.
+//! - **cgspeed**: B. Hahne's BVH conversion of that database. The wrist that bends is `LeftFingerBase`, and
+//!   `LeftHandIndex1` stands for all fingers.
+//! - **MotionBuilder**: its template names, as in FAIR's and many other BVH files.
+//! - **Biovision**: the names of the first BVH files, such as `LeftKnee`.
+//! - **SMPL**, SMPL-H, SMPL-X: names of the published models, whose `left_foot` is the ball of the foot.
+//! - **Rokoko**, **Xsens**, **3ds Max Biped**, **Daz**, **VRoid**, **Rigify**: as these programs export.
+
+use std::{collections::BTreeMap, sync::LazyLock};
+
+use crate::skeleton::humanoid::humanoid_bones;
+
+/// Where a hand points, for sources whose fingers are one joint: no joint of ours, a direction.
+pub(super) const TIPS: [&str; 2] = ["hand_tip_l", "hand_tip_r"];
+
+/// A vocabulary: name of a joint of ours (or of [`TIPS`]) and the names for it, the best first.
+pub(super) struct Vocabulary {
+    pub(super) name: &'static str,
+    pub(super) rows: Vec<(String, Vec<String>)>,
+}
+
+/// A vocabulary as it is written down: rows `ours=theirs|theirs…`, a star for the side.
+struct Written {
+    name: &'static str,
+    sides: [&'static str; 2],
+    central: &'static str,
+    sided: &'static str,
+}
+
+const WRITTEN: [Written; 12] = [
+    Written {
+        name: "CMU ASF",
+        sides: ["l", "r"],
+        central: "pelvis=root|hips spine_01=lowerback neck_01=lowerneck|neck head=head",
+        sided: "thigh=*femur calf=*tibia foot=*foot ball=*toes clavicle=*clavicle upperarm=*humerus \
+                lowerarm=*radius hand=*hand|*wrist hand_tip=*fingers thumb_01=*thumb",
+    },
+    Written {
+        name: "MotionBuilder",
+        sides: ["left", "right"],
+        central: "pelvis=hips spine_01=spine spine_02=spine1 spine_03=spine2 neck_01=neck head=head jaw=jaw",
+        sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
+                lowerarm=*forearm hand=*hand hand_tip=*handend eye=*eye \
+                thumb_01=*handthumb1 thumb_02=*handthumb2 thumb_03=*handthumb3 \
+                index_01=*handindex1 index_02=*handindex2 index_03=*handindex3 \
+                middle_01=*handmiddle1 middle_02=*handmiddle2 middle_03=*handmiddle3 \
+                ring_01=*handring1 ring_02=*handring2 ring_03=*handring3 \
+                pinky_01=*handpinky1 pinky_02=*handpinky2 pinky_03=*handpinky3",
+    },
+    Written {
+        name: "cgspeed",
+        sides: ["left", "right"],
+        central: "pelvis=hips spine_01=lowerback spine_02=spine spine_03=spine1 neck_01=neck head=head",
+        sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
+                lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1 thumb_01=*thumb",
+    },
+    Written {
+        name: "Biovision",
+        sides: ["left", "right"],
+        central: "pelvis=hips spine_01=lowerback|chest neck_01=neck head=head",
+        sided: "thigh=*hip calf=*knee foot=*ankle ball=*toe clavicle=*collar upperarm=*shoulder|*uparm \
+                lowerarm=*elbow|*lowarm hand=*wrist|*hand hand_tip=*fingers",
+    },
+    Written {
+        name: "SMPL",
+        sides: ["left", "right"],
+        central: "pelvis=pelvis spine_01=spine1 neck_01=neck head=head jaw=jaw",
+        sided: "thigh=*hip calf=*knee foot=*ankle ball=*foot clavicle=*collar upperarm=*shoulder \
+                lowerarm=*elbow hand=*wrist hand_tip=*hand eye=*eyesmplhf|*eye \
+                thumb_01=*thumb1 thumb_02=*thumb2 thumb_03=*thumb3 index_01=*index1 index_02=*index2 \
+                index_03=*index3 middle_01=*middle1 middle_02=*middle2 middle_03=*middle3 ring_01=*ring1 \
+                ring_02=*ring2 ring_03=*ring3 pinky_01=*pinky1 pinky_02=*pinky2 pinky_03=*pinky3",
+    },
+    Written {
+        name: "SMPL in Maya",
+        sides: ["l", "r"],
+        central: "pelvis=pelvis spine_01=spine1 neck_01=neck head=head",
+        sided: "thigh=*hip calf=*knee foot=*ankle ball=*foot clavicle=*collar upperarm=*shoulder \
+                lowerarm=*elbow hand=*wrist hand_tip=*hand",
+    },
+    Written {
+        name: "Rokoko",
+        sides: ["left", "right"],
+        central: "pelvis=hips spine_01=spine1|spine neck_01=neck head=head",
+        sided: "thigh=*thigh calf=*shin foot=*foot ball=*toe clavicle=*shoulder upperarm=*arm \
+                lowerarm=*forearm hand=*hand \
+                thumb_01=*finger1metacarpal thumb_02=*finger1proximal thumb_03=*finger1distal \
+                index_01=*finger2proximal index_02=*finger2medial|*finger2intermediate \
+                index_03=*finger2distal middle_01=*finger3proximal \
+                middle_02=*finger3medial|*finger3intermediate middle_03=*finger3distal \
+                ring_01=*finger4proximal ring_02=*finger4medial|*finger4intermediate \
+                ring_03=*finger4distal pinky_01=*finger5proximal \
+                pinky_02=*finger5medial|*finger5intermediate pinky_03=*finger5distal",
+    },
+    Written {
+        name: "Xsens",
+        sides: ["left", "right"],
+        central: "pelvis=hips|pelvis spine_01=chest|l5 neck_01=neck head=head",
+        sided: "thigh=*hip|*upperleg calf=*knee|*lowerleg foot=*ankle|*foot ball=*toe \
+                clavicle=*collar|*shoulder upperarm=*upperarm|*shoulder lowerarm=*forearm|*elbow \
+                hand=*hand|*wrist",
+    },
+    Written {
+        name: "3ds Max Biped",
+        sides: ["l", "r"],
+        central: "pelvis=pelvis spine_01=spine neck_01=neck head=head",
+        sided: "thigh=*thigh calf=*calf foot=*foot ball=*toe0 clavicle=*clavicle upperarm=*upperarm \
+                lowerarm=*forearm hand=*hand thumb_01=*finger0 thumb_02=*finger01 thumb_03=*finger02 \
+                index_01=*finger1 index_02=*finger11 index_03=*finger12 middle_01=*finger2 \
+                middle_02=*finger21 middle_03=*finger22 ring_01=*finger3 ring_02=*finger31 \
+                ring_03=*finger32 pinky_01=*finger4 pinky_02=*finger41 pinky_03=*finger42",
+    },
+    Written {
+        name: "Daz",
+        sides: ["l", "r"],
+        central: "pelvis=pelvis|hip spine_01=abdomenlower|abdomen neck_01=necklower|neck head=head",
+        sided: "thigh=*thighbend|*thigh calf=*shin foot=*foot ball=*toe clavicle=*collar \
+                upperarm=*shldrbend|*shldr lowerarm=*forearmbend|*forearm hand=*hand eye=*eye \
+                thumb_01=*thumb1 thumb_02=*thumb2 thumb_03=*thumb3 index_01=*index1 index_02=*index2 \
+                index_03=*index3 middle_01=*mid1 middle_02=*mid2 middle_03=*mid3 ring_01=*ring1 \
+                ring_02=*ring2 ring_03=*ring3 pinky_01=*pinky1 pinky_02=*pinky2 pinky_03=*pinky3",
+    },
+    Written {
+        name: "VRoid",
+        sides: ["l", "r"],
+        central: "pelvis=chips spine_01=cspine neck_01=cneck head=chead",
+        sided: "thigh=*upperleg calf=*lowerleg foot=*foot ball=*toebase clavicle=*shoulder \
+                upperarm=*upperarm lowerarm=*lowerarm hand=*hand thumb_01=*thumb1 thumb_02=*thumb2 \
+                thumb_03=*thumb3 index_01=*index1 index_02=*index2 index_03=*index3 middle_01=*middle1 \
+                middle_02=*middle2 middle_03=*middle3 ring_01=*ring1 ring_02=*ring2 ring_03=*ring3 \
+                pinky_01=*little1 pinky_02=*little2 pinky_03=*little3",
+    },
+    Written {
+        name: "Rigify",
+        sides: ["l", "r"],
+        central: "pelvis=spine spine_01=spine001 neck_01=spine004 head=spine006",
+        sided: "thigh=thigh* calf=shin* foot=foot* ball=toe* clavicle=shoulder* upperarm=upperarm* \
+                lowerarm=forearm* hand=hand* thumb_01=thumb01* thumb_02=thumb02* thumb_03=thumb03* \
+                index_01=findex01* index_02=findex02* index_03=findex03* middle_01=fmiddle01* \
+                middle_02=fmiddle02* middle_03=fmiddle03* ring_01=fring01* ring_02=fring02* \
+                ring_03=fring03* pinky_01=fpinky01* pinky_02=fpinky02* pinky_03=fpinky03*",
+    },
+];
+
+/// Every vocabulary, ours first: of several with the same number of matches the first counts.
+pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
+    let bones = humanoid_bones();
+    let column = |name, of: fn(usize) -> &'static str| Vocabulary {
+        name,
+        rows: bones.iter().enumerate().map(|(b, bone)| (bone.native.clone(), vec![plain(of(b))])).collect(),
+    };
+    let mut all = vec![
+        column("native", |b| &humanoid_bones()[b].native),
+        column("Mixamo", |b| &humanoid_bones()[b].mixamo),
+        column("Unity", |b| &humanoid_bones()[b].unity),
+        column("VRM", |b| &humanoid_bones()[b].vrm),
+        column("Blender", |b| &humanoid_bones()[b].blender),
+    ];
+    all.extend(WRITTEN.iter().map(Written::read));
+    all
+});
+
+impl Written {
+    fn read(&self) -> Vocabulary {
+        let mut rows = Vec::new();
+        for (ours, theirs) in self.central.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
+            rows.push((ours.to_owned(), theirs.split('|').map(str::to_owned).collect()));
+        }
+        for (side, ending) in self.sides.iter().zip(["_l", "_r"]) {
+            for (ours, theirs) in self.sided.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
+                let names = theirs.split('|').map(|name| name.replace('*', side)).collect();
+                rows.push((format!("{ours}{ending}"), names));
+            }
+        }
+        Vocabulary { name: self.name, rows }
+    }
+}
+
+/// A name without namespace, case and separators.
+fn plain(name: &str) -> String {
+    let name = name.rsplit([':', '|']).next().unwrap_or(name);
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The names of a skeleton made comparable: namespaces go, and so does a first word that most names share, such as
+/// `Bip01 ` or `DEF-`.
+pub(super) fn comparable(names: &[String]) -> Vec<String> {
+    let local: Vec<&str> = names.iter().map(|n| n.rsplit([':', '|']).next().unwrap_or(n)).collect();
+    let mut counts = BTreeMap::<&str, usize>::new();
+    for name in &local {
+        for (end, _) in name.match_indices(['_', ' ', '-', '.']) {
+            *counts.entry(&name[..=end]).or_insert(0) += 1;
+        }
+    }
+    let most = counts.into_iter().filter(|(_, n)| n * 5 >= names.len() * 3 && names.len() > 2);
+    // The longest of those that most names share.
+    let prefix = most.max_by_key(|(prefix, _)| prefix.len()).map_or("", |(prefix, _)| prefix);
+    local.iter().map(|name| plain(name.strip_prefix(prefix).unwrap_or(name))).collect()
+}
+
+/// The vocabulary that names the most joints and what it names: our joint to source joint. `taken` are source joints
+/// that somebody else spoke for. Of two source joints with one name the first counts.
+pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<String, usize>) {
+    let mut index = BTreeMap::new();
+    for (joint, name) in comparable(names).into_iter().enumerate() {
+        if !taken[joint] {
+            index.entry(name).or_insert(joint);
+        }
+    }
+    let mut found = ("", BTreeMap::new());
+    for vocabulary in VOCABULARIES.iter() {
+        let mut used = std::collections::BTreeSet::new();
+        let mut matched = BTreeMap::new();
+        for (ours, theirs) in &vocabulary.rows {
+            let joint = theirs.iter().find_map(|name| index.get(name));
+            if let Some(&joint) = joint.filter(|j| used.insert(**j)) {
+                matched.insert(ours.clone(), joint);
+            }
+        }
+        if matched.len() > found.1.len() {
+            found = (vocabulary.name, matched);
+        }
+    }
+    found
+}

@@ -1,0 +1,16 @@
+//! Retargeting: which joint of a motion is which of ours, poses carried over, joints within limits, feet on the floor.
+
+pub mod feet;
+mod joint_map;
+mod pipeline;
+mod solve;
+
+pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
+pub use pipeline::{
+    ClipReport, RetargetOptions, RetargetReport, RetargetSwitches, retarget, retarget_clip,
+    worst_limit_excess,
+};
+pub use solve::{
+    BoneError, DirectionError, FingerMode, Floor, FootMode, Jump, Retargeter, RootMotion, TransferOptions,
+    direction_error, worst_jump,
+};

@@ -1,0 +1,73 @@
+//! How far the limbs of a retargeted clip point from where the source's point.
+
+use serde::Serialize;
+
+use super::super::JointMap;
+use super::bones::{Bone, LIMBS};
+use crate::clip::Clip;
+use crate::skeleton::Pose;
+
+/// Degrees between a bone of source and target in model space, over the frames.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoneError {
+    /// The joint of ours that the bone begins at.
+    pub bone: String,
+    /// Mean over the frames, degrees.
+    pub mean: f64,
+    /// The largest, degrees.
+    pub max: f64,
+}
+
+/// What [`direction_error`] finds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DirectionError {
+    /// Upper arms, forearms, thighs and calves.
+    pub limbs: Vec<BoneError>,
+    /// Hands and feet. Skeletons draw a foot at different slopes while it stands flat: with
+    /// [`FootMode::Sole`](super::FootMode::Sole) its error is that difference.
+    pub ends: Vec<BoneError>,
+}
+
+impl DirectionError {
+    /// Mean over the limbs, degrees; 0 without any.
+    pub fn mean(&self) -> f64 {
+        self.limbs.iter().map(|bone| bone.mean).sum::<f64>() / self.limbs.len().max(1) as f64
+    }
+
+    /// The largest of a limb in any frame, degrees.
+    pub fn max(&self) -> f64 {
+        self.limbs.iter().map(|bone| bone.max).fold(0.0, f64::max)
+    }
+}
+
+/// Compares the directions of bones, from joint to joint in model space, frame by frame; of clips of different lengths
+/// the frames that both have. Bones that a skeleton lacks are left out.
+pub fn direction_error(source: &Clip, target: &Clip, map: &JointMap) -> DirectionError {
+    let mut result = DirectionError::default();
+    let (mut pose, mut theirs, mut ours) = (Pose::default(), Vec::new(), Vec::new());
+    let mut bones: Vec<(Bone, BoneError)> = Vec::new();
+    for side in ["l", "r"] {
+        for (stem, _) in LIMBS {
+            let name = format!("{stem}_{side}");
+            if let Some(bone) = Bone::of(&name, map, source.rest(), target.rest()) {
+                bones.push((bone, BoneError { bone: name, mean: 0.0, max: 0.0 }));
+            }
+        }
+    }
+    let frames = source.frame_count().min(target.frame_count());
+    for frame in 0..frames {
+        source.model_into(frame, &mut pose, &mut theirs);
+        target.model_into(frame, &mut pose, &mut ours);
+        for (bone, error) in &mut bones {
+            let (a, b) = (bone.of_source(&theirs).as_dvec3(), bone.of_target(&ours).as_dvec3());
+            let degrees = libm::atan2(a.cross(b).length(), a.dot(b)).to_degrees();
+            error.mean += degrees / frames as f64;
+            error.max = error.max.max(degrees);
+        }
+    }
+    for (_, error) in bones {
+        let end = error.bone.starts_with("hand") || error.bone.starts_with("foot");
+        if end { &mut result.ends } else { &mut result.limbs }.push(error);
+    }
+    result
+}

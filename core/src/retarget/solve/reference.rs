@@ -1,0 +1,168 @@
+//! The target's rest pose brought into the source's: one constant rotation per joint.
+//!
+//! Let `A` turn the target's joint from its own rest pose to where the source rests, in model space. Then a source that
+//! has moved its joint to `W` from `R` at rest moves the target's joint, at rest `T`, to `W · (R⁻¹ · A · T)`: the
+//! bracket is what is computed here, once per pair of skeletons.
+//!
+//! The trunk only turns to the source's facing (and leans with a source that leans much): spines are drawn too
+//! differently to match them bone by bone. Limbs match directions, each bone on top of the one before it by the
+//! shortest arc, so that no roll comes in between; where an elbow or knee is bent at rest its plane says the roll, and
+//! where a hand has fingers the row of their knuckles does.
+
+use glam::{Mat3, Quat, Vec3};
+
+use super::super::JointMap;
+use super::bones::Bone;
+use super::{FootMode, Joints};
+use crate::math::RigidTransform;
+
+/// Bends and leans below this are taken for the drawing of the skeleton and not for a pose, radians (15°).
+const POSED: f32 = 0.26;
+/// Legs apart beyond this, from the vertical in the frontal plane, mean that feet splay with them, as the zero poses of
+/// CMU's skeletons do, and do not stand flat, radians (12°).
+const SPLAYED: f32 = 0.21;
+/// A foot that points further from ours than this at rest is not flat, radians (25°).
+const FLAT: f32 = 0.44;
+
+/// Source and target at rest.
+pub(super) struct Reference<'a> {
+    pub(super) map: &'a JointMap,
+    pub(super) joints: &'a Joints<'a>,
+    facing: Quat,
+    trunk: Quat,
+}
+
+impl<'a> Reference<'a> {
+    pub(super) fn new(map: &'a JointMap, joints: &'a Joints<'a>) -> Self {
+        let yaw = |model: &[RigidTransform], find: &dyn Fn(&str) -> Option<usize>| {
+            let across = |name: &str| {
+                let at = |side| find(&format!("{name}_{side}")).map(|j| model[j].translation);
+                at("l").zip(at("r")).map_or(Vec3::ZERO, |(l, r)| l - r)
+            };
+            let left = across("thigh") + across("upperarm");
+            libm::atan2f(-left.z, left.x)
+        };
+        let up = |model: &[RigidTransform], find: &dyn Fn(&str) -> Option<usize>| {
+            let mid = |name: &str| {
+                let at = |side| find(&format!("{name}_{side}")).map(|j| model[j].translation);
+                at("l").zip(at("r")).map(|(l, r)| (l + r) / 2.0)
+            };
+            mid("upperarm").zip(mid("thigh")).and_then(|(top, bottom)| (top - bottom).try_normalize())
+        };
+        let of_source = |name: &str| map.source_of(name);
+        let of_target = |name: &str| joints.target.find(name);
+        let turn = yaw(&joints.source_rest, &of_source) - yaw(&joints.target_rest, &of_target);
+        let facing = Quat::from_rotation_y(turn);
+        let up = up(&joints.source_rest, &of_source).zip(up(&joints.target_rest, &of_target));
+        let lean = up.map_or(Quat::IDENTITY, |(source, target)| {
+            let target = facing * target;
+            if source.angle_between(target) > POSED {
+                Quat::from_rotation_arc(target, source)
+            } else {
+                Quat::IDENTITY
+            }
+        });
+        Self { map, joints, facing, trunk: lean * facing }
+    }
+
+    /// `R⁻¹ · A · T` for a source joint that drives a target joint with the alignment `A`.
+    pub(super) fn offset(&self, source: usize, target: usize, alignment: Quat) -> Quat {
+        let (r, t) = (self.joints.source_rest[source].rotation, self.joints.target_rest[target].rotation);
+        (r.conjugate() * alignment * t).normalize()
+    }
+
+    /// `A` of pelvis, spine, neck, head and clavicles.
+    pub(super) fn trunk(&self) -> Quat {
+        self.trunk
+    }
+
+    /// `A` of a side's arm: upper arm, forearm, hand.
+    pub(super) fn arm(&self, side: &str) -> [Quat; 3] {
+        let [upper, lower] = self.hinge("upperarm", "lowerarm", side, Vec3::Z);
+        let hand = self.bone(&format!("hand_{side}"), lower);
+        [upper, lower, self.knuckles(side).unwrap_or(hand)]
+    }
+
+    /// `A` of a side's leg: thigh, calf, foot.
+    pub(super) fn leg(&self, side: &str, mode: FootMode) -> [Quat; 3] {
+        let [upper, lower] = self.hinge("thigh", "calf", side, Vec3::NEG_Z);
+        [upper, lower, self.foot(side, lower, mode)]
+    }
+
+    /// `A` of a finger bone, on top of that of the bone before.
+    pub(super) fn finger(&self, name: &str, before: Quat) -> Quat {
+        self.bone(name, before)
+    }
+
+    fn pair(&self, name: &str) -> Option<(Vec3, Vec3)> {
+        let bone = Bone::of(name, self.map, self.joints.source, self.joints.target)?;
+        let source = bone.of_source(&self.joints.source_rest).try_normalize()?;
+        Some((source, bone.of_target(&self.joints.target_rest).try_normalize()?))
+    }
+
+    /// The shortest arc on top of what comes before.
+    fn bone(&self, name: &str, before: Quat) -> Quat {
+        match self.pair(name) {
+            Some((source, target)) => (Quat::from_rotation_arc(before * target, source) * before).normalize(),
+            None => before,
+        }
+    }
+
+    /// Upper and lower part of a limb that flexes the lower one towards `flexion` of the upper one's joint.
+    fn hinge(&self, upper: &str, lower: &str, side: &str, flexion: Vec3) -> [Quat; 2] {
+        let [upper, lower] = [upper, lower].map(|stem| format!("{stem}_{side}"));
+        let mut first = self.bone(&upper, self.trunk);
+        if let (Some((source, target)), Some((bent, _)), Some(joint)) =
+            (self.pair(&upper), self.pair(&lower), self.joints.target.find(&upper))
+            && source.angle_between(bent) > POSED
+        {
+            let flexion = self.joints.target_rest[joint].rotation * flexion;
+            first = align(target, flexion, source, bent).unwrap_or(first);
+        }
+        [first, self.bone(&lower, first)]
+    }
+
+    /// The hand by its direction and the row of its knuckles.
+    fn knuckles(&self, side: &str) -> Option<Quat> {
+        let (source, target) = self.pair(&format!("hand_{side}"))?;
+        let names = ["index_01", "pinky_01"].map(|stem| format!("{stem}_{side}"));
+        let [a, b] = [self.map.source_of(&names[0])?, self.map.source_of(&names[1])?];
+        let [c, d] = [self.joints.target.find(&names[0])?, self.joints.target.find(&names[1])?];
+        let (rest, ours) = (&self.joints.source_rest, &self.joints.target_rest);
+        let row = rest[a].translation - rest[b].translation;
+        align(target, ours[c].translation - ours[d].translation, source, row)
+    }
+
+    /// The foot by its sole, which stands on the floor at rest whatever way the bone above it points, or by the bone.
+    fn foot(&self, side: &str, calf: Quat, mode: FootMode) -> Quat {
+        let Some((source, target)) = self.pair(&format!("foot_{side}")) else { return self.facing };
+        let by_bone = self.bone(&format!("foot_{side}"), calf);
+        let up = self.up_of_foot(side);
+        let flat = align(Vec3::Y, target, up, source);
+        match flat.filter(|flat| mode == FootMode::Sole && (*flat * target).angle_between(source) < FLAT) {
+            Some(flat) => flat,
+            None => by_bone,
+        }
+    }
+
+    /// Which way is up from the sole at rest.
+    fn up_of_foot(&self, side: &str) -> Vec3 {
+        let at = |stem: &str| {
+            self.map.source_of(&format!("{stem}_{side}")).map(|j| self.joints.source_rest[j].translation)
+        };
+        let leg = at("thigh").zip(at("foot")).map_or(Vec3::Y, |(thigh, foot)| thigh - foot);
+        let aside = leg.dot(self.facing * Vec3::X);
+        if libm::atan2f(aside.abs(), leg.y) > SPLAYED { leg.normalize_or(Vec3::Y) } else { Vec3::Y }
+    }
+}
+
+/// The rotation that takes one direction to another and, as far as that leaves room, a second one to its other.
+fn align(from: Vec3, from_second: Vec3, to: Vec3, to_second: Vec3) -> Option<Quat> {
+    let basis = |first: Vec3, second: Vec3| {
+        let x = first.try_normalize()?;
+        let z = x.cross(second).try_normalize()?;
+        Some(Mat3::from_cols(x, z.cross(x), z))
+    };
+    let rotation = basis(to, to_second)? * basis(from, from_second)?.transpose();
+    Some(Quat::from_mat3(&rotation).normalize())
+}

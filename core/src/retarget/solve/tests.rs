@@ -1,0 +1,287 @@
+use super::*;
+use crate::skeleton::humanoid::{JointNames, renamed};
+use crate::testing::person::{Style, motion, person, posed, restyled};
+
+/// f32 through a chain of a dozen joints, radians and metres.
+const EXACT: f32 = 1e-5;
+/// The same where directions were compared, whose shortest arcs stop at 7e-4 (`Quat::from_rotation_arc`).
+const CLOSE: f32 = 4e-3;
+
+fn exactly() -> TransferOptions {
+    TransferOptions { floor: Floor::Source, ..Default::default() }
+}
+
+fn retarget(clip: &Clip, target: &Arc<RestPose>, options: &TransferOptions) -> Clip {
+    let map = JointMap::find(clip.rest(), &Default::default()).unwrap();
+    Retargeter::new(clip.rest(), target.clone(), &map, options).unwrap().retarget(clip).unwrap()
+}
+
+/// The largest angle of a rotation and distance of a translation; twist joints only when asked for.
+fn assert_same(a: &Clip, b: &Clip, tolerance: f32, twists: bool) {
+    assert_eq!(a.frame_count(), b.frame_count());
+    for frame in 0..a.frame_count() {
+        let pairs = a.pose(frame).locals.into_iter().zip(b.pose(frame).locals);
+        for ((x, y), name) in pairs.zip(a.rest().names()) {
+            if name.contains("twist") && !twists {
+                continue;
+            }
+            let q = x.rotation.conjugate() * y.rotation;
+            let angle = 2.0 * libm::asinf(q.xyz().length().min(1.0));
+            assert!(angle < tolerance, "frame {frame}, {name}: {angle} rad");
+            let way = x.translation.distance(y.translation);
+            assert!(way < tolerance, "frame {frame}, {name}: {} m for {}", y.translation, x.translation);
+        }
+    }
+}
+
+fn mixamo(name: &str) -> Option<String> {
+    (!name.contains("twist") && name != "Root").then(|| renamed(name, JointNames::Mixamo).into_owned())
+}
+
+#[test]
+fn our_own_clip_stays_as_it_is() {
+    let rest = person();
+    let clip = motion(&rest, 20);
+    assert_same(&clip, &retarget(&clip, &rest, &exactly()), EXACT, false);
+    // Elbows that roll and fold sideways stay when hinges are off.
+    let mut rotations: Vec<Quat> = (0..20).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    for (i, q) in rotations.iter_mut().enumerate() {
+        *q *= Quat::from_scaled_axis(glam::Vec3::new(0.1, 0.2, -0.1) * (i % 5) as f32);
+    }
+    // Twist joints, Root and face are not the source's to say.
+    let names = rest.names();
+    for (i, q) in rotations.iter_mut().enumerate() {
+        let joint = i % rest.len();
+        if ["twist", "Root", "eye", "jaw"].iter().any(|part| names[joint].contains(part)) {
+            *q = rest.pose().locals[joint].rotation;
+        }
+    }
+    let wild = Clip::new("wild".into(), rest.clone(), 30.0, rotations, clip.translations().to_vec()).unwrap();
+    let found = retarget(&wild, &rest, &TransferOptions { hinges: false, ..exactly() });
+    assert_same(&wild, &found, EXACT, false);
+}
+
+#[test]
+fn the_same_motion_in_any_style_is_the_same() {
+    let rest = person();
+    let clip = motion(&rest, 20);
+    let expected = retarget(&clip, &rest, &exactly());
+    let a_pose = posed(
+        &rest,
+        &[
+            ("upperarm_l", [0.0, 0.0, -50.0]),
+            ("upperarm_r", [0.0, 0.0, 50.0]),
+            ("index_01_l", [0.0, 0.0, 20.0]),
+        ],
+    );
+    // Crouching with the arms ahead, soles flat, one upper arm rolled.
+    let bent = posed(
+        &rest,
+        &[
+            ("upperarm_l", [30.0, 0.0, -40.0]),
+            ("lowerarm_l", [50.0, 0.0, 0.0]),
+            ("upperarm_r", [0.0, -60.0, 0.0]),
+            ("lowerarm_r", [80.0, 0.0, 0.0]),
+            ("thigh_l", [20.0, 0.0, 0.0]),
+            ("calf_l", [-40.0, 0.0, 0.0]),
+            ("foot_l", [20.0, 0.0, 0.0]),
+            ("thigh_r", [30.0, 0.0, 0.0]),
+            ("calf_r", [-50.0, 0.0, 0.0]),
+            ("foot_r", [20.0, 0.0, 0.0]),
+        ],
+    );
+    let t_pose = rest.pose().locals.clone();
+    for (what, pose, facing, frames) in [
+        ("T", &t_pose, 0.0, false),
+        ("other axes", &t_pose, 0.0, true),
+        ("facing -X", &t_pose, -1.6, true),
+        ("facing back", &t_pose, 3.1, false),
+        ("A-pose", &a_pose, 0.0, true),
+        ("bent", &bent, 2.0, true),
+    ] {
+        let style = Style { rename: &mixamo, rest: pose.clone(), facing, frames, scale: 1.0 };
+        let source = restyled(&clip, &style);
+        println!("{what}");
+        for feet in [FootMode::Sole, FootMode::Bone] {
+            // A bent knee in the plane of the rest pose leaves no more than what a leg's own slant at rest adds.
+            let tolerance = if what == "bent" { 0.05 } else { CLOSE };
+            let found = retarget(&source, &rest, &TransferOptions { feet, ..exactly() });
+            assert_same(&expected, &found, tolerance, false);
+        }
+    }
+}
+
+#[test]
+fn a_giant_moves_as_far_as_its_legs_are_long() {
+    let rest = person();
+    let clip = motion(&rest, 12);
+    let style =
+        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: true, scale: 2.0 };
+    let giant = restyled(&clip, &style);
+    assert_same(&retarget(&clip, &rest, &exactly()), &retarget(&giant, &rest, &exactly()), CLOSE, false);
+    let twice = retarget(&giant, &rest, &TransferOptions { scale: Some(1.0), ..exactly() });
+    let height = |clip: &Clip| clip.pose(0).locals[clip.rest().find("pelvis").unwrap()].translation.y;
+    assert!((height(&twice) - height(&clip)).abs() > 0.8);
+}
+
+#[test]
+fn left_is_left() {
+    let rest = person();
+    let raised = posed(&rest, &[("upperarm_l", [0.0, 0.0, 80.0])]);
+    let rotations: Vec<Quat> = raised.iter().map(|l| l.rotation).collect();
+    let clip = Clip::new("wave".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
+    let style =
+        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: -1.6, frames: true, scale: 1.0 };
+    let found = retarget(&restyled(&clip, &style), &rest, &TransferOptions::default());
+    let model = found.pose(0).model_from_joints(rest.parents());
+    let hand = |side| model[rest.find(&format!("hand_{side}")).unwrap()].translation;
+    assert!(hand("l").y > 1.8 && (hand("r").y - 1.39).abs() < 0.01, "{} {}", hand("l"), hand("r"));
+    assert!(hand("l").x > 0.1 && hand("r").x < -0.5);
+}
+
+#[test]
+fn roll_is_spread_along_limbs() {
+    let rest = person();
+    let turn = |turns: &[(&str, [f32; 3])]| {
+        let rotations: Vec<Quat> = posed(&rest, turns).iter().map(|l| l.rotation).collect();
+        let clip = Clip::new("roll".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
+        retarget(&clip, &rest, &exactly())
+    };
+    let roll = |clip: &Clip, name: &str| {
+        let joint = rest.find(name).unwrap();
+        let q = rest.pose().locals[joint].rotation.conjugate() * clip.rotations(0)[joint];
+        crate::pose::SwingTwist::of(q).twist.to_degrees()
+    };
+    // A forearm that was rolled at the elbow rolls at the wrist.
+    for turns in [[("hand_l", [0.0, -80.0, 0.0])], [("lowerarm_l", [0.0, -80.0, 0.0])]] {
+        let clip = turn(&turns);
+        let rolls = ["lowerarm_l", "lowerarm_twist_01_l", "lowerarm_twist_02_l"].map(|n| roll(&clip, n));
+        for (found, expected) in rolls.into_iter().zip([0.0, -40.0, -80.0]) {
+            assert!((found - expected).abs() < 1.5, "{rolls:?}");
+        }
+    }
+    let clip = turn(&[("upperarm_l", [0.0, 60.0, 0.0]), ("thigh_r", [0.0, 20.0, 0.0])]);
+    for (name, expected) in
+        [("upperarm_twist_01_l", -60.0), ("upperarm_twist_02_l", -30.0), ("thigh_twist_01_r", -20.0)]
+    {
+        assert!((roll(&clip, name) - expected).abs() < 0.5, "{name}: {}", roll(&clip, name));
+    }
+}
+
+#[test]
+fn spines_of_other_counts_bend_as_a_whole() {
+    let rest = person();
+    let clip = motion(&rest, 10);
+    for drop in [&["spine_02"][..], &["spine_01", "spine_02"], &["spine_02", "neck_01"]] {
+        let rename = |name: &str| mixamo(name);
+        let style = Style {
+            rename: &rename,
+            rest: rest.pose().locals.clone(),
+            facing: 0.3,
+            frames: true,
+            scale: 1.0,
+        };
+        let source = restyled(&clip, &style);
+        // A joint that shall drive nothing is left out of the chain.
+        let overrides = drop.iter().map(|name| (mixamo(name).unwrap(), None)).collect();
+        let map = JointMap::find(source.rest(), &overrides).unwrap();
+        let retargeter = Retargeter::new(source.rest(), rest.clone(), &map, &exactly()).unwrap();
+        let found = retargeter.retarget(&source).unwrap();
+        let error = direction_error(&source, &found, &map);
+        // Degrees, of arcs that stop at 7e-4.
+        assert!(error.max() < 0.1, "{error:?}");
+        for frame in 0..10 {
+            let chest = |clip: &Clip| {
+                clip.pose(frame).model_from_joints(rest.parents())[rest.find("spine_03").unwrap()].rotation
+            };
+            assert!(chest(&clip).angle_between(chest(&found)) < CLOSE);
+        }
+    }
+}
+
+#[test]
+fn root_motion_moves_over_to_the_root() {
+    let rest = person();
+    let clip = motion(&rest, 10);
+    let pelvis = retarget(&clip, &rest, &TransferOptions::default());
+    let root = retarget(&clip, &rest, &TransferOptions { root: RootMotion::Root, ..Default::default() });
+    assert_eq!(pelvis.translations().len(), 1);
+    assert_eq!(root.translations()[0].joint, 0);
+    assert!(root.translations()[0].values.iter().all(|v| v.y == 0.0));
+    for frame in 0..10 {
+        let places = |clip: &Clip| clip.pose(frame).model_from_joints(rest.parents());
+        for (a, b) in places(&pelvis)[1..].iter().zip(&places(&root)[1..]) {
+            assert!(a.translation.distance(b.translation) < EXACT);
+        }
+    }
+}
+
+#[test]
+fn feet_stand_on_the_floor_wherever_the_source_floats() {
+    let rest = person();
+    let clip = motion(&rest, 30);
+    let mut track = clip.translations()[0].clone();
+    track.values.iter_mut().for_each(|v| v.y += 3.0);
+    let rotations = (0..30).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    let floating = Clip::new("up".into(), rest.clone(), 30.0, rotations, vec![track]).unwrap();
+    let found = retarget(&floating, &rest, &TransferOptions::default());
+    let resting = rest.model_from_joints();
+    let mut lowest = f32::INFINITY;
+    for frame in 0..30 {
+        let model = found.pose(frame).model_from_joints(rest.parents());
+        for name in ["foot_l", "foot_r", "ball_l", "ball_r"] {
+            let joint = rest.find(name).unwrap();
+            lowest = lowest.min(model[joint].translation.y - resting[joint].translation.y);
+        }
+    }
+    assert!(lowest.abs() < 1e-4, "{lowest}");
+}
+
+#[test]
+fn hands_without_fingers_are_at_ease() {
+    let rest = person();
+    let clip = motion(&rest, 3);
+    let fingerless = |name: &str| mixamo(name).filter(|n| !n.contains("Index") && !n.contains("Pinky"));
+    let fingerless = |name: &str| fingerless(name).filter(|n| !n.contains("Middle") && !n.contains("Ring"));
+    let style = Style {
+        rename: &fingerless,
+        rest: rest.pose().locals.clone(),
+        facing: 0.0,
+        frames: false,
+        scale: 1.0,
+    };
+    let source = restyled(&clip, &style);
+    let curl = |fingers, name: &str| {
+        let found = retarget(&source, &rest, &TransferOptions { fingers, ..Default::default() });
+        let joint = rest.find(name).unwrap();
+        let down = |q: Quat| (q * glam::Vec3::Y).y;
+        // In the T-pose a curl lowers the finger's tip.
+        let upright = rest.model_from_joints();
+        let parent = upright[rest.parents()[joint].unwrap() as usize].rotation;
+        down(parent * rest.pose().locals[joint].rotation) - down(parent * found.rotations(0)[joint])
+    };
+    for side in ["l", "r"] {
+        let [index, pinky] =
+            ["index_01", "pinky_01"].map(|f| curl(FingerMode::Source, &format!("{f}_{side}")));
+        assert!(index > 0.1 && pinky > index + 0.05, "{index} {pinky}");
+        assert_eq!(curl(FingerMode::Rest, &format!("index_01_{side}")), 0.0);
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let rest = person();
+    let clip = motion(&rest, 2);
+    let map = JointMap::find(&rest, &Default::default()).unwrap();
+    let new = |target: &Arc<RestPose>, scale| {
+        Retargeter::new(&rest, target.clone(), &map, &TransferOptions { scale, ..Default::default() })
+    };
+    assert!(new(&rest, Some(0.0)).unwrap_err().to_string().contains("positive scale"));
+    let other = restyled(
+        &clip,
+        &Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: false, scale: 1.0 },
+    );
+    assert!(new(other.rest(), None).unwrap_err().to_string().contains("no pelvis"));
+    let message = new(&rest, None).unwrap().retarget(&other).unwrap_err().to_string();
+    assert!(message.contains("another skeleton"), "{message}");
+}

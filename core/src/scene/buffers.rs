@@ -1,0 +1,228 @@
+//! A mesh of the scene as plain arrays in somebody's space: what graphics hardware draws, or what editors edit.
+
+use glam::Vec3;
+
+use super::scene::{Corners, Scene, SceneMaterial, SceneMesh, flip_v};
+use super::split::SplitMesh;
+use crate::skeleton::Influences;
+use crate::space::Space;
+use crate::{Error, Result};
+
+/// Which vertices and faces a mesh has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+    #[default]
+    Render,
+    /// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+    Model,
+}
+
+/// A mesh of the scene, its material and its skin. Metres, in the space that was asked for.
+#[derive(Clone, Debug)]
+pub struct MeshBuffers {
+    /// Name, such as `Body`.
+    pub name: String,
+    /// What it looks like.
+    pub material: SceneMaterial,
+    /// `(V, 3)`, metres.
+    pub positions: Vec<[f32; 3]>,
+    /// `(V, 3)`, unit length, or empty for none.
+    pub normals: Vec<[f32; 3]>,
+    /// `(V, 2)` in the render layout, else `(T, 2)`, which the faces' corners point at. v grows downwards in the
+    /// library's own space, as in glTF, and upwards in the others, as their programs have it.
+    pub uvs: Vec<[f32; 2]>,
+    /// Vertices of the triangles; in the model layout of the faces that are no quads.
+    pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates of the triangles' corners; empty in the render layout.
+    pub triangle_uvs: Vec<[u32; 3]>,
+    /// Vertices of the quads; empty in the render layout.
+    pub quads: Vec<[u32; 4]>,
+    /// Texture coordinates of the quads' corners; empty in the render layout.
+    pub quad_uvs: Vec<[u32; 4]>,
+    /// Which vertex of the model each vertex is, `(V)`.
+    pub sources: Vec<u32>,
+    /// Which joints each vertex follows.
+    pub influences: Influences,
+}
+
+/// A surface's way to another shape. A share of it is added to the bind pose, before skinning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlendShape {
+    /// Its name.
+    pub name: String,
+    /// `(V, 3)`, metres, to be added to the positions.
+    pub positions: Vec<[f32; 3]>,
+    /// `(V, 3)`, to be added to the normals, whose sum is then to be brought to unit length.
+    pub normals: Vec<[f32; 3]>,
+}
+
+impl Scene {
+    /// The meshes as arrays, in order.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when a mesh has no material.
+    pub fn into_buffers(self, layout: Layout, space: Space) -> Result<Vec<MeshBuffers>> {
+        let Self { meshes, materials, .. } = self;
+        let buffers = meshes.into_iter().map(|mesh| {
+            let material = materials.get(mesh.material as usize).cloned().ok_or_else(|| {
+                Error::invalid(
+                    "mesh",
+                    format!("`{}` has material {}, which is not there", mesh.name, mesh.material),
+                )
+            })?;
+            let mut buffers = match layout {
+                Layout::Render => MeshBuffers::split(mesh, material),
+                Layout::Model => MeshBuffers::whole(mesh, material),
+            };
+            buffers.bring_into(space);
+            Ok(buffers)
+        });
+        buffers.collect()
+    }
+}
+
+impl MeshBuffers {
+    /// The way from this surface to that of another body, at the same level of detail, in the same layout and space.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the two do not have the same vertices.
+    pub fn blend_shape(&self, name: impl Into<String>, other: &Self) -> Result<BlendShape> {
+        if self.sources != other.sources {
+            let (ours, theirs) = (self.positions.len(), other.positions.len());
+            let message = format!("`{}`: expected the same {ours} vertices, got {theirs}", self.name);
+            return Err(Error::invalid("blend shape", message));
+        }
+        let way = |from: &[[f32; 3]], to: &[[f32; 3]]| {
+            let difference = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| b[i] - a[i]);
+            from.iter().zip(to).map(difference).collect()
+        };
+        Ok(BlendShape {
+            name: name.into(),
+            positions: way(&self.positions, &other.positions),
+            normals: way(&self.normals, &other.normals),
+        })
+    }
+
+    fn split(mesh: SceneMesh, material: SceneMaterial) -> Self {
+        let split = SplitMesh::new(&mesh);
+        let per_vertex = mesh.influences_per_vertex;
+        let source = || split.source.iter().map(|v| *v as usize);
+        let rows = || source().map(|v| v * per_vertex..(v + 1) * per_vertex);
+        Self {
+            positions: source().map(|v| mesh.positions[v]).collect(),
+            normals: source().filter_map(|v| mesh.normals.get(v).copied()).collect(),
+            uvs: split.uvs(&mesh),
+            triangle_uvs: Vec::new(),
+            quads: Vec::new(),
+            quad_uvs: Vec::new(),
+            influences: Influences {
+                per_vertex,
+                joints: rows().flat_map(|r| mesh.joint_indices[r].iter().copied()).collect(),
+                weights: rows().flat_map(|r| mesh.joint_weights[r].iter().copied()).collect(),
+            },
+            triangles: split.triangles,
+            sources: split.source,
+            name: mesh.name,
+            material,
+        }
+    }
+
+    fn whole(mesh: SceneMesh, material: SceneMaterial) -> Self {
+        let Corners { positions: quads, uvs: quad_uvs } = mesh.quads;
+        let Corners { positions: triangles, uvs: triangle_uvs } = mesh.triangles;
+        Self {
+            sources: (0..mesh.positions.len() as u32).collect(),
+            positions: mesh.positions,
+            normals: mesh.normals,
+            uvs: mesh.uvs,
+            triangles,
+            triangle_uvs,
+            quads,
+            quad_uvs,
+            influences: Influences {
+                per_vertex: mesh.influences_per_vertex,
+                joints: mesh.joint_indices,
+                weights: mesh.joint_weights,
+            },
+            name: mesh.name,
+            material,
+        }
+    }
+
+    /// From the library's own space into another.
+    fn bring_into(&mut self, space: Space) {
+        if space == Space::YUp {
+            return;
+        }
+        for vector in self.positions.iter_mut().chain(&mut self.normals) {
+            *vector = space.from_ours(Vec3::from_array(*vector)).to_array();
+        }
+        self.uvs.iter_mut().for_each(|uv| *uv = flip_v(*uv));
+        if space.flips_winding() {
+            self.triangles.iter_mut().chain(&mut self.triangle_uvs).for_each(|face| face.swap(1, 2));
+            self.quads.iter_mut().chain(&mut self.quad_uvs).for_each(|face| face.swap(1, 3));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::scene::arm;
+
+    /// Six times the volume of the tetrahedra from the origin, with the sign of the winding.
+    fn signed_volume(buffers: &MeshBuffers) -> f32 {
+        let at = |v: u32| Vec3::from_array(buffers.positions[v as usize]);
+        let quads = buffers.quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        quads.chain(buffers.triangles.iter().copied()).map(|[a, b, c]| at(a).cross(at(b)).dot(at(c))).sum()
+    }
+
+    #[test]
+    fn every_space_and_layout_is_the_same_surface() {
+        let first = |layout, space| arm(4).into_buffers(layout, space).unwrap().swap_remove(0);
+        let ours = first(Layout::Model, Space::YUp);
+        let volume = signed_volume(&ours);
+        assert!(volume.abs() > 0.0);
+        for layout in [Layout::Render, Layout::Model] {
+            for space in [Space::YUp, Space::ZUp, Space::Unity] {
+                let there = first(layout, space);
+                // Mirrored positions turn the sign, corners that go round the other way turn it back.
+                assert!((signed_volume(&there) - volume).abs() < 1e-4 * volume.abs(), "{layout:?} {space:?}");
+                assert_eq!(there.sources.len(), there.positions.len());
+                assert_eq!(
+                    there.influences.weights.len(),
+                    there.positions.len() * there.influences.per_vertex
+                );
+                for (vertex, source) in there.sources.iter().enumerate() {
+                    let back = space.to_ours(Vec3::from_array(there.positions[vertex]));
+                    assert_eq!(back.to_array(), ours.positions[*source as usize]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_blend_shape_leads_to_the_other_body() {
+        let one = arm(4).into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let mut scene = arm(4);
+        scene.meshes[0].positions[1][0] += 0.5;
+        let other = scene.into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let shape = one.blend_shape("wide", &other).unwrap();
+        for (vertex, source) in one.sources.iter().enumerate() {
+            let expected = if *source == 1 { [0.5, 0.0, 0.0] } else { [0.0; 3] };
+            assert_eq!(shape.positions[vertex], expected);
+        }
+        let mut fewer = other;
+        fewer.sources.pop();
+        assert!(one.blend_shape("wide", &fewer).is_err());
+    }
+
+    #[test]
+    fn a_mesh_without_its_material_is_refused() {
+        let mut scene = arm(4);
+        scene.materials.clear();
+        let message = scene.into_buffers(Layout::Render, Space::YUp).unwrap_err().to_string();
+        assert!(message.contains("material 0"), "{message}");
+    }
+}

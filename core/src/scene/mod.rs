@@ -1,0 +1,15 @@
+//! The neutral [`Scene`]: what every file format is read into and written from, and what hosts fill meshes from.
+
+mod buffers;
+mod character;
+#[expect(clippy::module_inception, reason = "the file of the type of that name")]
+mod scene;
+pub mod skin_tone;
+mod split;
+pub(crate) mod titles;
+
+pub use buffers::{BlendShape, Layout, MeshBuffers};
+pub use character::SceneOptions;
+pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
+pub use skin_tone::SkinTone;
+pub use split::SplitMesh;

@@ -1,0 +1,551 @@
+//! The neutral scene: everything that a file writer needs to know of a character, and nothing about files.
+//!
+//! Space of the whole scene: model space in metres, right-handed, +Y up, +Z forward, +X the character's left, feet
+//! on y = 0, in the bind pose. Texture coordinates follow glTF: the origin is the image's *upper* left corner and v
+//! grows downwards; writers of formats with v upwards convert with [`flip_v`].
+
+use std::collections::BTreeSet;
+
+use glam::{Affine3A, Vec3};
+
+use super::titles::Titles;
+use crate::clip::Clip;
+use crate::scene::SkinTone;
+use crate::skeleton::Joint;
+use crate::skeleton::RestPose;
+use crate::{Error, Result};
+
+/// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
+const WEIGHT_SUM_TOLERANCE: f32 = 1e-5;
+/// How far a normal's length may be from 1.
+const NORMAL_LENGTH_TOLERANCE: f32 = 1e-3;
+/// How far a joint's rotation may be from orthonormal.
+const ROTATION_TOLERANCE: f32 = 1e-4;
+/// How far off its parent's axis, in distances along it, a joint stands that the parent's bone ends at.
+const AXIS_TOLERANCE: f32 = 1e-3;
+/// How far a number of a clip's rest pose may be from the bind pose: the rounding of a chain of joints.
+const REST_TOLERANCE: f32 = 1e-4;
+
+/// A character: a joint tree, skinned meshes, materials. The body is the first mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// Name of the character.
+    pub name: String,
+    /// The joint tree, parents first; the first joint is the only root. Empty for meshes without a skin.
+    pub joints: Vec<SceneJoint>,
+    /// The meshes, the body first.
+    pub meshes: Vec<SceneMesh>,
+    /// The materials that meshes refer to.
+    pub materials: Vec<SceneMaterial>,
+    /// Motions of the joint tree: the joints of each clip are [`Scene::joints`] in their order, and rest in the bind
+    /// pose; what the clips call them does not matter. Names are unique: [`add_clip`](Scene::add_clip) sees to it.
+    pub clips: Vec<Clip>,
+    /// Anything to be kept with the file, such as the report: an object, or `null` for nothing.
+    pub extras: serde_json::Value,
+}
+
+/// One joint in its bind pose, which is the rest pose of every written file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneJoint {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Place of the parent in [`Scene::joints`], before this joint's own; `None` for the root.
+    pub parent: Option<u32>,
+    /// Rotation and translation from the joint's space to model space, metres; no scale.
+    pub model_from_joint: Affine3A,
+    /// How far the bone reaches along the joint's +Y axis, metres; `None` where nothing says so.
+    pub bone_length: Option<f32>,
+}
+
+/// One mesh with one material. Positions and texture coordinates have index spaces of their own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneMesh {
+    /// Name, unique among the meshes.
+    pub name: String,
+    /// Vertices in model order: `(V, 3)`, metres, model space.
+    pub positions: Vec<[f32; 3]>,
+    /// One unit normal per vertex, `(V, 3)`, or empty for none.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates `(T, 2)`, v downwards, indexed by the faces' `uvs`; empty for none.
+    pub uvs: Vec<[f32; 2]>,
+    /// Faces of four corners, counter-clockwise from outside. A repeated corner makes a triangle of a quad.
+    pub quads: Corners<4>,
+    /// Faces of three corners, counter-clockwise from outside; they come after the quads.
+    pub triangles: Corners<3>,
+    /// Slots per vertex in the next two fields: 4 or 8, or 0 for a mesh without a skin.
+    pub influences_per_vertex: usize,
+    /// `(V, influences_per_vertex)` places in [`Scene::joints`]; what an unused slot holds does not matter.
+    pub joint_indices: Vec<u16>,
+    /// `(V, influences_per_vertex)` weights, per vertex in descending order with sum 1; 0 marks an unused slot.
+    pub joint_weights: Vec<f32>,
+    /// Place in [`Scene::materials`].
+    pub material: u32,
+}
+
+/// Faces of `N` corners each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Corners<const N: usize> {
+    /// Position indices per corner, `(F, N)`.
+    pub positions: Vec<[u32; N]>,
+    /// Texture coordinate indices per corner, `(F, N)`; empty if and only if the mesh has no texture coordinates.
+    pub uvs: Vec<[u32; N]>,
+}
+
+/// How a surface treats the alpha of its base colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    #[default]
+    Opaque,
+    /// Alpha is coverage, blended.
+    Blend,
+}
+
+/// A physically based dielectric in glTF's parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneMaterial {
+    /// Name, unique among the materials.
+    pub name: String,
+    /// Linear red, green, blue and alpha, each in 0..=1.
+    pub base_color: [f32; 4],
+    /// Perceptual roughness in 0..=1.
+    pub roughness: f32,
+    /// Metalness in 0..=1.
+    pub metallic: f32,
+    /// Index of refraction, at least 1.
+    pub ior: f32,
+    /// Strength of the dielectric reflection in 0..=1.
+    pub specular: f32,
+    /// Use of the alpha.
+    pub alpha_mode: AlphaMode,
+    /// Whether back faces are drawn too.
+    pub double_sided: bool,
+}
+
+impl SceneMaterial {
+    /// An opaque, single-sided dielectric with glTF's default index of refraction, 1.5.
+    pub fn dielectric(name: impl Into<String>, base_color: [f32; 4], roughness: f32) -> Self {
+        Self {
+            name: name.into(),
+            base_color,
+            roughness,
+            metallic: 0.0,
+            ior: 1.5,
+            specular: 1.0,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: false,
+        }
+    }
+
+    /// Skin of this tone: roughness 0.5, index of refraction 1.4 (that of the epidermis).
+    pub fn skin(tone: SkinTone) -> Self {
+        Self { ior: 1.4, ..Self::dielectric("Skin", tone.base_color(), 0.5) }
+    }
+}
+
+impl SceneMesh {
+    /// Every face as triangles of corners `(position index, texture coordinate index)`: the quads first, each split
+    /// along its diagonal from corner 0 to corner 2, then the triangles, in order. Triangles that a repeated corner
+    /// leaves without area are left out. A mesh without texture coordinates has 0 for all of them.
+    pub(crate) fn triangulated(&self) -> Vec<[(u32, u32); 3]> {
+        let quads = self.quads.iter().flat_map(|c| [[c[0], c[1], c[2]], [c[0], c[2], c[3]]]);
+        let mut triangles =
+            Vec::with_capacity(2 * self.quads.positions.len() + self.triangles.positions.len());
+        triangles.extend(
+            quads.chain(self.triangles.iter()).filter(|[a, b, c]| a.0 != b.0 && b.0 != c.0 && c.0 != a.0),
+        );
+        triangles
+    }
+
+    /// The `(joint, weight)` slots of one vertex; empty for a mesh without a skin.
+    pub fn influences(&self, vertex: usize) -> impl Iterator<Item = (u16, f32)> + '_ {
+        let slots = vertex * self.influences_per_vertex..(vertex + 1) * self.influences_per_vertex;
+        let joints = self.joint_indices.get(slots.clone()).unwrap_or_default();
+        joints.iter().copied().zip(self.joint_weights.get(slots).unwrap_or_default().iter().copied())
+    }
+}
+
+impl<const N: usize> Corners<N> {
+    /// The faces, each corner as `(position index, texture coordinate index or 0)`.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = [(u32, u32); N]> + '_ {
+        self.positions.iter().enumerate().map(|(face, positions)| {
+            let uvs = self.uvs.get(face);
+            std::array::from_fn(|corner| (positions[corner], uvs.map_or(0, |uvs| uvs[corner])))
+        })
+    }
+}
+
+/// Converts between v downwards (glTF, this crate) and v upwards (OBJ, USD, Blender).
+pub fn flip_v([u, v]: [f32; 2]) -> [f32; 2] {
+    [u, 1.0 - v]
+}
+
+impl Scene {
+    /// Checks all that the writers rely on: every index in range, every number finite, names unique, parents first
+    /// with one root, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] names the joint, mesh or material and the first value that is wrong.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.extras.is_object() || self.extras.is_null()) {
+            return Err(Error::invalid("scene", "extras must be an object or null"));
+        }
+        self.validate_joints()?;
+        self.validate_materials()?;
+        if self.meshes.is_empty() {
+            return Err(Error::invalid("scene", "expected at least one mesh, got none"));
+        }
+        unique("mesh", self.meshes.iter().map(|m| m.name.as_str()))?;
+        self.validate_clips()?;
+        self.meshes.iter().try_for_each(|mesh| {
+            self.validate_mesh(mesh)
+                .map_err(|message| Error::invalid("mesh", format!("`{}`: {message}", mesh.name)))
+        })
+    }
+
+    fn validate_joints(&self) -> Result<()> {
+        for (i, joint) in self.joints.iter().enumerate() {
+            let fault =
+                |message: String| Err(Error::invalid("joint", format!("`{}`: {message}", joint.name)));
+            match joint.parent {
+                None if i > 0 => {
+                    return fault(format!("joint {i} has no parent, only joint 0 may be a root"));
+                }
+                Some(parent) if parent as usize >= i => {
+                    return fault(format!("parent {parent} does not come before the joint itself, {i}"));
+                }
+                _ => {}
+            }
+            let transform = joint.model_from_joint;
+            if !transform.is_finite() {
+                return fault("bind pose is not finite".into());
+            }
+            if let Some(length) = joint.bone_length
+                && !(0.0..f32::INFINITY).contains(&length)
+            {
+                return fault(format!("expected a bone length of 0 or more, got {length}"));
+            }
+            let m = transform.matrix3;
+            let off = (m.transpose() * m - glam::Mat3A::IDENTITY).to_cols_array();
+            if off.iter().any(|v| v.abs() > ROTATION_TOLERANCE) || m.determinant() < 0.0 {
+                return fault(
+                    "bind pose must be a rotation and a translation, got scale, shear or a mirror".into(),
+                );
+            }
+        }
+        if self.joints.len() > usize::from(u16::MAX) {
+            return Err(Error::invalid(
+                "joints",
+                format!("expected at most 65535, got {}", self.joints.len()),
+            ));
+        }
+        unique("joint", self.joints.iter().map(|j| j.name.as_str()))
+    }
+
+    /// The joints at rest, under the names that `name` makes of theirs: what clips for this scene rest in.
+    ///
+    /// # Errors
+    /// As [`RestPose::new`].
+    pub fn rest_pose(&self, name: impl Fn(&str) -> String) -> Result<RestPose> {
+        let joints: Vec<Joint> = self
+            .joints
+            .iter()
+            .map(|joint| Joint {
+                name: name(&joint.name),
+                parent: joint.parent,
+                model_from_joint: joint.model_from_joint,
+                length: joint.bone_length.unwrap_or(0.0),
+            })
+            .collect();
+        let rest = RestPose::of_joints(&joints)?;
+        if self.joints.iter().all(|joint| joint.bone_length.is_some()) {
+            return Ok(rest);
+        }
+        // Characters of others do not say where a bone ends: at the farthest of the joints that stand on its axis, if there
+        // are any.
+        let mut ends: Vec<Option<Vec3>> =
+            self.joints.iter().map(|joint| joint.bone_length.map(|length| Vec3::Y * length)).collect();
+        for (parent, local) in rest.parents().iter().zip(&rest.pose().locals) {
+            let at = local.translation;
+            let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
+            if let (Some(parent), true) = (*parent, on_axis)
+                && self.joints[parent as usize].bone_length.is_none()
+            {
+                let end = &mut ends[parent as usize];
+                *end = Some(Vec3::Y * end.map_or(at.y, |e| e.y.max(at.y)));
+            }
+        }
+        RestPose::new(rest.names().to_vec(), rest.parents().to_vec(), rest.pose().locals.clone(), ends)
+    }
+
+    /// Adds a motion. Its name loses control characters, and gets a number behind it where another has it already.
+    pub fn add_clip(&mut self, clip: Clip) {
+        let name = Titles::taken(self.clips.iter().map(Clip::name)).unique(clip.name());
+        self.clips.push(clip.with_name(name));
+    }
+
+    fn validate_clips(&self) -> Result<()> {
+        for clip in &self.clips {
+            let fault =
+                |message: String| Err(Error::invalid("clip", format!("`{}`: {message}", clip.name())));
+            let rest = clip.rest();
+            if !rest.parents().iter().eq(self.joints.iter().map(|j| &j.parent)) {
+                let (got, expected) = (rest.len(), self.joints.len());
+                return fault(format!("its {got} joints are not the {expected} of the scene"));
+            }
+            for (at, joint) in rest.model_from_joints().iter().zip(&self.joints) {
+                if !at.to_affine().abs_diff_eq(joint.model_from_joint, REST_TOLERANCE) {
+                    return fault(format!("joint `{}` does not rest in the bind pose", joint.name));
+                }
+            }
+        }
+        // Names of clips are free text; the writers of formats with narrower names narrow them.
+        unique("clip", self.clips.iter().map(|c| c.name()))
+    }
+
+    fn validate_materials(&self) -> Result<()> {
+        for material in &self.materials {
+            let fault =
+                |message: String| Err(Error::invalid("material", format!("`{}`: {message}", material.name)));
+            let SceneMaterial { base_color, roughness, metallic, specular, ior, .. } = material;
+            for value in base_color.iter().chain([roughness, metallic, specular]) {
+                if !(0.0..=1.0).contains(value) {
+                    return fault(format!("expected colours and factors in 0..=1, got {value}"));
+                }
+            }
+            if !(1.0..f32::INFINITY).contains(ior) {
+                return fault(format!("expected a refractive index of at least 1, got {ior}"));
+            }
+        }
+        unique("material", self.materials.iter().map(|m| m.name.as_str()))
+    }
+
+    fn validate_mesh(&self, mesh: &SceneMesh) -> std::result::Result<(), String> {
+        let vertices = mesh.positions.len();
+        if vertices == 0 || (mesh.quads.positions.is_empty() && mesh.triangles.positions.is_empty()) {
+            return Err("has no vertices or no faces".into());
+        }
+        if vertices > i32::MAX as usize || mesh.uvs.len() > i32::MAX as usize {
+            return Err(format!("expected at most {} vertices, got {vertices}", i32::MAX));
+        }
+        if mesh.material as usize >= self.materials.len() {
+            return Err(format!("material {} of {}", mesh.material, self.materials.len()));
+        }
+        if let Some(i) = mesh.positions.iter().position(|p| !p.iter().all(|v| v.is_finite())) {
+            return Err(format!("position {i} is not finite: {:?}", mesh.positions[i]));
+        }
+        if let Some(i) = mesh.uvs.iter().position(|p| !p.iter().all(|v| v.is_finite())) {
+            return Err(format!("texture coordinate {i} is not finite: {:?}", mesh.uvs[i]));
+        }
+        if !mesh.normals.is_empty() && mesh.normals.len() != vertices {
+            return Err(format!("expected {vertices} normals or none, got {}", mesh.normals.len()));
+        }
+        for (i, normal) in mesh.normals.iter().enumerate() {
+            let length = Vec3::from(*normal).length();
+            if length.is_nan() || (length - 1.0).abs() > NORMAL_LENGTH_TOLERANCE {
+                return Err(format!("normal {i} has length {length}, expected 1"));
+            }
+        }
+        validate_corners(&mesh.quads, mesh)?;
+        validate_corners(&mesh.triangles, mesh)?;
+        self.validate_influences(mesh)
+    }
+
+    fn validate_influences(&self, mesh: &SceneMesh) -> std::result::Result<(), String> {
+        let per_vertex = mesh.influences_per_vertex;
+        if !matches!(per_vertex, 0 | 4 | 8) {
+            return Err(format!(
+                "influences per vertex must be 4 or 8, or 0 without a skin, got {per_vertex}"
+            ));
+        }
+        if (per_vertex == 0) != self.joints.is_empty() {
+            return Err(format!(
+                "{per_vertex} influences per vertex in a scene of {} joints",
+                self.joints.len()
+            ));
+        }
+        let expected = mesh.positions.len() * per_vertex;
+        if mesh.joint_indices.len() != expected || mesh.joint_weights.len() != expected {
+            return Err(format!(
+                "expected {expected} joint indices and weights, got {} and {}",
+                mesh.joint_indices.len(),
+                mesh.joint_weights.len()
+            ));
+        }
+        for vertex in 0..if per_vertex == 0 { 0 } else { mesh.positions.len() } {
+            let slots = vertex * per_vertex..(vertex + 1) * per_vertex;
+            let (joints, weights) = (&mesh.joint_indices[slots.clone()], &mesh.joint_weights[slots]);
+            let sum: f32 = weights.iter().sum();
+            if sum.is_nan() || (sum - 1.0).abs() > WEIGHT_SUM_TOLERANCE {
+                return Err(format!("weights of vertex {vertex} sum to {sum}, expected 1"));
+            }
+            if weights.iter().any(|w| *w < 0.0) || weights.windows(2).any(|w| w[0] < w[1]) {
+                return Err(format!(
+                    "weights of vertex {vertex} are not descending and non-negative: {weights:?}"
+                ));
+            }
+            let used = &joints[..weights.iter().take_while(|w| **w > 0.0).count()];
+            for (slot, joint) in used.iter().enumerate() {
+                if usize::from(*joint) >= self.joints.len() {
+                    return Err(format!("vertex {vertex} uses joint {joint} of {}", self.joints.len()));
+                }
+                if used[..slot].contains(joint) {
+                    return Err(format!("vertex {vertex} uses joint {joint} twice"));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn validate_corners<const N: usize>(
+    corners: &Corners<N>,
+    mesh: &SceneMesh,
+) -> std::result::Result<(), String> {
+    let expected_uvs = if mesh.uvs.is_empty() { 0 } else { corners.positions.len() };
+    if corners.uvs.len() != expected_uvs {
+        return Err(format!(
+            "{} faces of {N} corners need {expected_uvs} rows of texture coordinate indices, got {}",
+            corners.positions.len(),
+            corners.uvs.len()
+        ));
+    }
+    let outside =
+        |rows: &[[u32; N]], len: usize| rows.iter().position(|r| r.iter().any(|i| *i as usize >= len));
+    if let Some(face) = outside(&corners.positions, mesh.positions.len()) {
+        return Err(format!(
+            "face {face} {:?} of {} vertices",
+            corners.positions[face],
+            mesh.positions.len()
+        ));
+    }
+    if let Some(face) = outside(&corners.uvs, mesh.uvs.len()) {
+        return Err(format!("face {face} {:?} of {} texture coordinates", corners.uvs[face], mesh.uvs.len()));
+    }
+    Ok(())
+}
+
+fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Result<()> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if name.is_empty() || name.chars().any(char::is_control) {
+            return Err(Error::invalid(what, format!("name {name:?} is empty or holds control characters")));
+        }
+        if !seen.insert(name) {
+            return Err(Error::invalid(what, format!("two are called `{name}`, names must be unique")));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::scene::{arm, bent};
+
+    #[test]
+    fn the_synthetic_arm_is_valid() {
+        arm(4).validate().unwrap();
+        arm(8).validate().unwrap();
+    }
+
+    #[test]
+    fn names_what_is_wrong() {
+        type Case = (&'static str, fn(&mut Scene));
+        let cases: &[Case] = &[
+            ("extras must be an object", |s| s.extras = serde_json::json!([1])),
+            ("at least one mesh", |s| s.meshes.clear()),
+            ("two are called `lower`", |s| s.joints[2].name = "lower".into()),
+            ("name \"\" is empty", |s| s.joints[2].name.clear()),
+            ("name \"a\\nb\"", |s| s.meshes[1].name = "a\nb".into()),
+            ("`lower`: parent 1 does not come before", |s| s.joints[1].parent = Some(1)),
+            ("only joint 0 may be a root", |s| s.joints[2].parent = None),
+            ("bind pose is not finite", |s| s.joints[1].model_from_joint.translation.x = f32::NAN),
+            ("`lower`: expected a bone length", |s| s.joints[1].bone_length = Some(f32::NAN)),
+            ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3 *= 1.1),
+            ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3.x_axis *= -1.0),
+            ("`Skin`: expected colours", |s| s.materials[0].base_color[1] = f32::NAN),
+            ("refractive index", |s| s.materials[0].ior = 0.5),
+            ("`Sleeve`: has no vertices or no faces", |s| s.meshes[0].quads = Corners::default()),
+            ("material 7 of 2", |s| s.meshes[0].material = 7),
+            ("position 3 is not finite", |s| s.meshes[0].positions[3][2] = f32::INFINITY),
+            ("texture coordinate 1 is not finite", |s| s.meshes[0].uvs[1][0] = f32::NAN),
+            ("normals or none, got 1", |s| s.meshes[0].normals.truncate(1)),
+            ("normal 2 has length 0", |s| s.meshes[0].normals[2] = [0.0; 3]),
+            ("normal 2 has length NaN", |s| s.meshes[0].normals[2] = [f32::NAN; 3]),
+            ("face 1 [", |s| s.meshes[0].quads.positions[1][3] = 1000),
+            ("texture coordinates", |s| s.meshes[0].quads.uvs[1][3] = 1000),
+            ("rows of texture coordinate indices", |s| s.meshes[0].quads.uvs.clear()),
+            ("must be 4 or 8", |s| s.meshes[0].influences_per_vertex = 5),
+            ("joint indices and weights", |s| s.meshes[0].joint_weights.truncate(3)),
+            ("vertex 0 sum to 1.5", |s| s.meshes[0].joint_weights[0] += 0.5),
+            ("vertex 0 sum to NaN", |s| s.meshes[0].joint_weights[0] = f32::NAN),
+            ("vertex 0 are not descending", |s| {
+                s.meshes[0].joint_weights[..4].copy_from_slice(&[0.4, 0.6, 0., 0.]);
+            }),
+            ("vertex 0 are not descending", |s| {
+                s.meshes[0].joint_weights[..4].copy_from_slice(&[1.1, 0., 0., -0.1]);
+            }),
+            ("vertex 0 uses joint 9 of 3", |s| s.meshes[0].joint_indices[0] = 9),
+            ("uses joint 1 twice", |s| {
+                s.meshes[0].joint_indices[..2].fill(1);
+                s.meshes[0].joint_weights[..4].copy_from_slice(&[0.5, 0.5, 0., 0.]);
+            }),
+            ("its 3 joints are not the 2", |s| {
+                s.clips.push(bent(s));
+                s.joints.pop();
+                s.meshes.pop();
+            }),
+            ("`lower` does not rest in the bind pose", |s| {
+                s.clips.push(bent(s));
+                s.joints[1].model_from_joint.translation.x += 0.01;
+            }),
+            ("two are called `bent`", |s| s.clips = vec![bent(s); 2]),
+            ("4 influences per vertex in a scene of 0 joints", |s| s.joints.clear()),
+        ];
+        for (expected, spoil) in cases {
+            let mut scene = arm(4);
+            spoil(&mut scene);
+            let message = scene.validate().unwrap_err().to_string();
+            assert!(message.contains(expected), "expected `{expected}` in `{message}`");
+        }
+    }
+
+    #[test]
+    fn clips_of_one_name_or_with_unprintable_ones_are_numbered_and_written() {
+        let mut scene = arm(4);
+        let clip = bent(&scene);
+        for name in ["walk", "walk", "walk 2", "walk", "a\nb", ""] {
+            scene.add_clip(clip.clone().with_name(name));
+        }
+        let names: Vec<&str> = scene.clips.iter().map(Clip::name).collect();
+        assert_eq!(names, ["walk", "walk 2", "walk 2 2", "walk 3", "ab", "unnamed"]);
+        scene.validate().unwrap();
+    }
+
+    #[test]
+    fn bones_end_where_the_scene_says_else_where_the_next_joint_is() {
+        let mut scene = arm(4);
+        scene.joints[0].model_from_joint = Affine3A::IDENTITY;
+        scene.joints[1].model_from_joint = Affine3A::from_translation(Vec3::Y * 0.3);
+        for joint in &mut scene.joints {
+            joint.bone_length = None;
+        }
+        let ends = |scene: &Scene| scene.rest_pose(str::to_owned).unwrap().ends().to_vec();
+        assert_eq!(ends(&scene), [Some(Vec3::Y * 0.3), None, None]);
+        scene.joints[0].bone_length = Some(0.25);
+        scene.joints[2].bone_length = Some(0.1);
+        assert_eq!(ends(&scene), [Some(Vec3::Y * 0.25), None, Some(Vec3::Y * 0.1)]);
+    }
+
+    #[test]
+    fn splits_quads_along_the_diagonal_from_corner_0_and_drops_what_has_no_area() {
+        let mesh = SceneMesh {
+            quads: Corners { positions: vec![[5, 6, 7, 8], [1, 2, 3, 1]], uvs: vec![] },
+            triangles: Corners { positions: vec![[9, 8, 7]], uvs: vec![] },
+            ..SceneMesh::default()
+        };
+        let positions: Vec<_> = mesh.triangulated().iter().map(|t| t.map(|c| c.0)).collect();
+        assert_eq!(positions, [[5, 6, 7], [5, 7, 8], [1, 2, 3], [9, 8, 7]]);
+    }
+}

@@ -1,0 +1,70 @@
+//! Poses of a skeleton, and forward kinematics.
+
+use crate::math::RigidTransform;
+
+/// One local transform per joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// `parent_from_joint`, in the order of the joints.
+    pub locals: Vec<RigidTransform>,
+}
+
+impl Pose {
+    /// Where the joints are: `model_from_joint` of each, by [`model_from_joints`].
+    pub fn model_from_joints(&self, parents: &[Option<u32>]) -> Vec<RigidTransform> {
+        let mut out = Vec::with_capacity(self.locals.len());
+        model_from_joints(parents, &self.locals, &mut out);
+        out
+    }
+}
+
+/// Forward kinematics: fills `out` with `model_from_joint` of each joint. Parents stand before their joints; a
+/// parent that does not is taken for none.
+pub fn model_from_joints(parents: &[Option<u32>], locals: &[RigidTransform], out: &mut Vec<RigidTransform>) {
+    out.clear();
+    for (parent, local) in parents.iter().zip(locals) {
+        let above = parent.and_then(|p| out.get(p as usize).copied());
+        out.push(above.map_or(*local, |above: RigidTransform| above.then(*local)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::space::Space;
+    use glam::{Quat, Vec3};
+
+    #[test]
+    fn a_chain_ends_at_the_same_place_in_every_space() {
+        let step = |angle| RigidTransform {
+            rotation: Quat::from_rotation_x(angle),
+            translation: Vec3::new(1.0, 2.0, 3.0),
+        };
+        let (root, child) = (step(0.3), step(-1.1));
+        for space in [Space::YUp, Space::ZUp, Space::Unity] {
+            let there = [root.parent_from_joint_in(space, None), child.parent_from_joint_in(space, Some(0))];
+            let end = there[0].then(there[1]);
+            let expected = root.then(child).model_from_joint_in(space);
+            assert!(end.translation.distance(expected.translation) < 1e-6, "{space:?}");
+            assert!(end.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "{space:?}");
+            let back = there[0].parent_from_joint_out_of(space, None);
+            assert!(back.translation == root.translation && back.rotation.dot(root.rotation) > 1.0 - 1e-6);
+            assert_eq!(there[1].parent_from_joint_out_of(space, Some(0)), child);
+        }
+    }
+
+    #[test]
+    fn an_elbow_bent_by_a_right_angle() {
+        let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::X };
+        let bent = RigidTransform { rotation: Quat::from_rotation_z(FRAC_PI_2), ..step };
+        let pose = Pose { locals: vec![step, bent, step] };
+        let joints = pose.model_from_joints(&[None, Some(0), Some(1)]);
+        assert!(joints[2].translation.distance(Vec3::new(2.0, 1.0, 0.0)) < 1e-6);
+        let matrix = step.to_affine() * bent.to_affine() * step.to_affine();
+        assert!((matrix.translation - joints[2].to_affine().translation).length() < 1e-6);
+        let back = joints[2].inverse().then(joints[2]);
+        assert!(back.translation.length() < 1e-6 && back.rotation.angle_between(Quat::IDENTITY) < 1e-3);
+    }
+}

@@ -1,0 +1,78 @@
+//! Three very different bodies of our rig, made without the model: for tests.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::skeleton::RestPose;
+use crate::skeleton::{Skeleton, SkeletonShape};
+
+/// A joint of the middle or the left: name, parent, head, tail, in shares of the height.
+type Row = (&'static str, &'static str, [f32; 3], [f32; 3]);
+
+const MIDDLE: [Row; 7] = [
+    ("Root", "", [0., 0., 0.], [0., 0.1, 0.]),
+    ("pelvis", "Root", [0., 0.53, 0.], [0., 0.575, -0.025]),
+    ("spine_01", "pelvis", [0., 0.575, -0.025], [0., 0.615, -0.015]),
+    ("spine_02", "spine_01", [0., 0.615, -0.015], [0., 0.67, -0.01]),
+    ("spine_03", "spine_02", [0., 0.67, -0.01], [0., 0.84, -0.005]),
+    ("neck_01", "spine_03", [0., 0.84, -0.005], [0., 0.905, 0.02]),
+    ("head", "neck_01", [0., 0.905, 0.02], [0., 1.0, 0.02]),
+];
+
+const LEFT: [Row; 11] = [
+    ("clavicle", "spine_03", [0.015, 0.8, 0.01], [0.1, 0.79, 0.01]),
+    ("upperarm", "clavicle", [0.1, 0.79, 0.01], [0.265, 0.79, 0.01]),
+    ("upperarm_twist_01", "upperarm", [0.1, 0.79, 0.01], [0.18, 0.79, 0.01]),
+    ("lowerarm", "upperarm", [0.265, 0.79, 0.01], [0.405, 0.79, 0.01]),
+    ("hand", "lowerarm", [0.405, 0.79, 0.01], [0.46, 0.787, 0.015]),
+    ("index_01", "hand", [0.46, 0.785, 0.025], [0.47, 0.782, 0.026]),
+    ("thigh", "pelvis", [0.06, 0.515, -0.005], [0.085, 0.293, 0.011]),
+    ("calf", "thigh", [0.085, 0.293, 0.011], [0.115, 0.044, -0.003]),
+    ("foot", "calf", [0.115, 0.044, -0.003], [0.115, 0.006, 0.069]),
+    ("ball", "foot", [0.115, 0.006, 0.069], [0.112, 0.008, 0.115]),
+    ("calf_twist_01", "calf", [0.115, 0.044, -0.003], [0.12, 0.02, -0.003]),
+];
+
+/// Short with short legs, tall with long legs, and wide with long arms and feet apart.
+pub(crate) fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
+    [
+        ("short", 1.49, Vec3::new(1.0, 0.93, 1.0), 1.0),
+        ("tall", 1.99, Vec3::new(0.9, 1.05, 0.95), 0.95),
+        ("wide", 1.7, Vec3::new(1.5, 1.0, 1.2), 1.2),
+    ]
+    .map(|(name, height, legs, width)| (name, Arc::new(body(height, legs, width))))
+    .to_vec()
+}
+
+/// Legs stretched by `legs`, and what stands on them lifted; the upper body made as wide as `width`.
+fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
+    let lift = (legs.y - 1.0) * 0.515;
+    let place = |name: &str, [x, y, z]: [f32; 3]| {
+        let leg = ["thigh", "calf", "foot", "ball"].iter().any(|part| name.starts_with(part));
+        let at = match (name, leg) {
+            ("Root", _) => return Vec3::ZERO,
+            (_, true) => Vec3::new(x, y, z) * legs,
+            _ => Vec3::new(x * width, y + lift, z),
+        };
+        at * height
+    };
+    let left = LEFT.map(|(name, parent, head, tail)| (name, parent, head, tail, "_l"));
+    let right = LEFT.map(|(name, parent, head, tail)| {
+        let mirror = |[x, y, z]: [f32; 3]| [-x, y, z];
+        (name, parent, mirror(head), mirror(tail), "_r")
+    });
+    let middle = MIDDLE.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
+    let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), SkeletonShape::default());
+    for (name, parent, head, tail, side) in middle.into_iter().chain(left).chain(right) {
+        let found = [format!("{parent}{side}"), parent.to_owned()]
+            .iter()
+            .find_map(|p| names.iter().position(|n| n == p));
+        parents.push(found.map(|p| p as u32));
+        names.push(format!("{name}{side}"));
+        shape.heads.push(place(name, head));
+        shape.tails.push(if name == "Root" { Vec3::Y } else { place(name, tail) });
+    }
+    let joints = Skeleton::new(names, parents).unwrap().bind(&shape).unwrap();
+    RestPose::of_joints(&joints).unwrap()
+}

@@ -1,0 +1,140 @@
+//! A small asymmetric character for the writers' tests: a bent sleeve of quads with a texture seam, and a thumb.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Quat, Vec3};
+
+use crate::clip::{Clip, TranslationTrack};
+use crate::scene::{AlphaMode, SkinTone};
+use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
+use crate::skeleton::Joint;
+use crate::skeleton::RestPose;
+
+/// Sides of the sleeve.
+const SIDES: u32 = 5;
+
+/// Three joints with rotations of their own, a sleeve of 3 × 5 vertices with a seam, a static-looking cap of
+/// triangles without texture coordinates.
+pub(crate) fn arm(influences: usize) -> Scene {
+    sleeve(influences, 3)
+}
+
+/// The same with this many rings, for tests of size.
+pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
+    let place = |axis: Vec3, angle: f32, at: [f32; 3]| {
+        Affine3A::from_rotation_translation(
+            Quat::from_axis_angle(axis.normalize_or_zero(), angle),
+            Vec3::from(at),
+        )
+    };
+    let joint = |name: &str, parent, model_from_joint| SceneJoint {
+        name: name.into(),
+        parent,
+        model_from_joint,
+        bone_length: Some(0.1 + 0.013 * name.len() as f32),
+    };
+    let joints = vec![
+        joint("upper", None, place(Vec3::new(1.0, 2.0, -0.5), 0.7, [0.1, 1.2, -0.03])),
+        joint("lower", Some(0), place(Vec3::new(-1.0, 0.3, 0.9), 2.9, [0.37, 1.25, 0.02])),
+        joint("thumb", Some(1), place(Vec3::new(0.2, -1.0, 0.4), -1.3, [0.61, 1.11, 0.08])),
+    ];
+    let materials = vec![
+        SceneMaterial::skin(SkinTone::default()),
+        SceneMaterial {
+            alpha_mode: AlphaMode::Blend,
+            double_sided: true,
+            specular: 0.25,
+            ..SceneMaterial::dielectric("Nail", [0.8, 0.6, 0.55, 0.9], 0.2)
+        },
+    ];
+    Scene {
+        name: "Arm".into(),
+        joints,
+        meshes: vec![tube(influences, rings), cap(influences)],
+        materials,
+        clips: Vec::new(),
+        extras: serde_json::json!({"asked": {"arm_length": 0.6}}),
+    }
+}
+
+/// Three frames of every joint of a scene turning about an axis of its own, the root wandering.
+pub(crate) fn bent(scene: &Scene) -> Clip {
+    let joints: Vec<Joint> = scene
+        .joints
+        .iter()
+        .map(|j| Joint {
+            name: j.name.clone(),
+            parent: j.parent,
+            model_from_joint: j.model_from_joint,
+            length: 0.1,
+        })
+        .collect();
+    let rest = Arc::new(RestPose::of_joints(&joints).unwrap());
+    let turn = |frame: usize, joint: usize| {
+        let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
+        Quat::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
+    };
+    let rotations = (0..3)
+        .flat_map(|f| rest.rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
+        .collect();
+    let start = rest.pose().locals[0].translation;
+    let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
+    Clip::new("bent".into(), rest, 25.0, rotations, vec![TranslationTrack { joint: 0, values }]).unwrap()
+}
+
+fn tube(influences: usize, rings: u32) -> SceneMesh {
+    let mut mesh =
+        SceneMesh { name: "Sleeve".into(), influences_per_vertex: influences, ..SceneMesh::default() };
+    for ring in 0..rings {
+        let t = ring as f32 / (rings - 1) as f32;
+        for side in 0..SIDES {
+            let turn = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
+            let (c, s) = (libm::cos(turn) as f32, libm::sin(turn) as f32);
+            let radius = 0.05 + 0.01 * t + 0.003 * side as f32;
+            mesh.positions.push([0.1 + 0.5 * t, 1.2 + radius * c, 0.1 * t * t - 0.03 + radius * s]);
+            mesh.normals.push([0.0, c, s]);
+            let mut weights = [0.0; 8];
+            weights[..3].copy_from_slice(&[1.0 - t, t * 0.7, t * 0.3]);
+            push_influences(&mut mesh, weights, influences);
+        }
+        // One texture column more than sides: the seam.
+        for column in 0..=SIDES {
+            mesh.uvs.push(flip_v([column as f32 / SIDES as f32, 0.1 + 0.8 * t]));
+        }
+    }
+    for ring in 1..rings {
+        for side in 0..SIDES {
+            let next = (side + 1) % SIDES;
+            let (low, high) = ((ring - 1) * SIDES, ring * SIDES);
+            mesh.quads.positions.push([low + side, low + next, high + next, high + side]);
+            let (low, high) = ((ring - 1) * (SIDES + 1), ring * (SIDES + 1));
+            mesh.quads.uvs.push([low + side, low + side + 1, high + side + 1, high + side]);
+        }
+    }
+    mesh
+}
+
+fn cap(influences: usize) -> SceneMesh {
+    let mut mesh = SceneMesh {
+        name: "Nail".into(),
+        positions: vec![[0.6, 1.2, 0.1], [0.62, 1.21, 0.1], [0.61, 1.2, 0.13]],
+        triangles: Corners { positions: vec![[0, 1, 2]], uvs: vec![] },
+        influences_per_vertex: influences,
+        material: 1,
+        ..SceneMesh::default()
+    };
+    for _ in 0..3 {
+        push_influences(&mut mesh, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], influences);
+    }
+    mesh
+}
+
+/// Appends weights per joint as sorted slots; unused slots carry a joint index on purpose.
+fn push_influences(mesh: &mut SceneMesh, weights: [f32; 8], influences: usize) {
+    let mut slots: Vec<_> = weights.iter().enumerate().map(|(joint, w)| (joint as u16, *w)).collect();
+    slots.sort_by(|a, b| b.1.total_cmp(&a.1));
+    for (joint, weight) in &slots[..influences] {
+        mesh.joint_indices.push(*joint);
+        mesh.joint_weights.push(*weight);
+    }
+}
