@@ -2,7 +2,6 @@
 
 mod common;
 
-use anthronet::clip;
 use anthronet::format::{self, ReadOptions};
 
 #[test]

@@ -30,9 +30,28 @@ const TABLE: &[(&str, &[&str])] = &[
         "format",
         &["clip", "math", "measure", "mesh", "model", "pose", "retarget", "scene", "skeleton", "space"],
     ),
+    (
+        "testing",
+        &[
+            "space",
+            "math",
+            "mesh",
+            "measure",
+            "skeleton",
+            "pose",
+            "network",
+            "condition",
+            "model",
+            "body",
+            "skin",
+            "clip",
+            "retarget",
+            "scene",
+        ],
+    ),
 ];
 
-/// Rooms without a view of bodies, open to everybody.
+/// Rooms that everybody may use: those without a view of bodies, and what tests share.
 const OPEN: &[&str] = &["error", "random", "testing"];
 
 /// One line per use of a room that the table does not grant: `path:line: …`.

@@ -69,6 +69,3 @@ fn keyed(keys: &[(f32, f32)], at: f32) -> f32 {
     }
     keys.last().map_or(0.0, |key| key.1)
 }
-
-#[cfg(test)]
-mod tests;

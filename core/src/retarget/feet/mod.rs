@@ -144,4 +144,6 @@ fn for_each_pose(clip: &Clip, mut visit: impl FnMut(usize, &Pose)) {
 }
 
 #[cfg(test)]
+mod builtin_tests;
+#[cfg(test)]
 mod tests;

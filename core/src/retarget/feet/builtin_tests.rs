@@ -1,7 +1,11 @@
-use super::*;
+//! The built-in clips, by what feet and joint limits say of them.
 use crate::pose::limits::JointLimits;
+use std::sync::Arc;
+
+use crate::clip::{BUILTIN, builtin};
 use crate::retarget::feet;
 use crate::retarget::feet::FeetOptions;
+use crate::skeleton::RestPose;
 use crate::testing::bodies::bodies;
 
 #[test]
