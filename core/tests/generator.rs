@@ -120,7 +120,7 @@ fn the_bind_pose_is_an_exact_t_on_the_ground() {
     let body = model().generate(&somebody(Sex::Male, 4)).unwrap();
     let at = |name: &str| {
         let j = body.skeleton().find(name).unwrap();
-        body.joints()[j].model_from_joint.translation
+        body.skeleton().bind()[j].translation
     };
     for side in ["l", "r"] {
         let shoulder = at(&format!("upperarm_{side}"));
@@ -142,7 +142,7 @@ fn the_bind_pose_is_an_exact_t_on_the_ground() {
 
 #[test]
 fn the_vocabularies_name_the_joints_of_the_rig_and_no_others() {
-    let skeleton = model().character().skeleton();
+    let skeleton = model().character().joint_tree();
     let joints: BTreeSet<&str> = skeleton.names().iter().map(String::as_str).collect();
     assert_eq!(joints.len(), skeleton.len(), "names are unique");
     assert_eq!(joints, humanoid::native_names().collect());

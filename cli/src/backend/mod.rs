@@ -108,8 +108,8 @@ impl Person {
 
     /// Where a joint of the bind pose is, metres.
     pub(crate) fn joint(&self, name: &str) -> Option<Vec3> {
-        let joint = self.0.skeleton().find(name).and_then(|j| self.0.joints().get(j));
-        joint.map(|joint| joint.model_from_joint.translation.into())
+        let skeleton = self.0.skeleton();
+        skeleton.find(name).map(|joint| skeleton.bind()[joint].translation.into())
     }
 
     /// The person as files take it.

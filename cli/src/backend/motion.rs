@@ -10,7 +10,7 @@ use anthronet::format::{self, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
 use anthronet::retarget::{self, FingerMode, RetargetOptions};
 use anthronet::scene::Scene;
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 use anthronet::skeleton::humanoid::{native_name, renamed};
 use anthronet::space::{Axis, Unit};
 use serde_json::json;
@@ -38,7 +38,7 @@ pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<
     if arguments.clips.is_empty() {
         return Ok(());
     }
-    let rest = Arc::new(scene.rest_pose(|name| native_name(name).into_owned())?);
+    let rest = Arc::new(scene.skeleton(|name| native_name(name).into_owned())?);
     let mut reports = Vec::new();
     for source in &arguments.clips {
         let (clips, report) = load(source, &rest, arguments)?;
@@ -54,7 +54,7 @@ pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<
 /// The clips of one `--clip`, on the body, with their report.
 fn load(
     source: &str,
-    rest: &Arc<RestPose>,
+    rest: &Arc<Skeleton>,
     arguments: &MotionArguments,
 ) -> Result<(Vec<Clip>, serde_json::Value)> {
     if BUILTIN.contains(&source) {

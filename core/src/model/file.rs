@@ -19,7 +19,7 @@ use crate::measure::MEASURE_COUNT;
 use crate::mesh::Topology;
 use crate::network::config::GeneratorConfig;
 use crate::network::{Tensor, Tensors};
-use crate::skeleton::{Skeleton, SkinWeights};
+use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
 
 /// Version of the file's layout; a file of another version is refused.
@@ -286,15 +286,18 @@ impl ModelParts {
     /// # Errors
     /// [`Error::Invalid`] when the parts do not fit together.
     pub fn character(&self) -> Result<Character> {
-        let skeleton = Skeleton::new(self.joint_names.clone(), self.joint_parents.clone())?;
+        let joint_tree = JointTree::new(self.joint_names.clone(), self.joint_parents.clone())?;
+        if !joint_tree.has_one_root() {
+            return Err(Error::invalid("skeleton", "expected every joint but the first to have a parent"));
+        }
         let (offsets, joints, weights) = self.skin.clone();
-        let weights = SkinWeights::new(offsets, joints, weights, skeleton.len())?;
+        let weights = SkinWeights::new(offsets, joints, weights, joint_tree.len())?;
         let mean = self.mean.chunks_exact(3).map(Vec3::from_slice).collect();
         Character::new(
             self.cage.clone(),
             self.reduced.clone(),
             self.accessories.clone(),
-            skeleton,
+            std::sync::Arc::new(joint_tree),
             weights,
             mean,
         )

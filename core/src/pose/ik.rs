@@ -7,7 +7,7 @@
 use glam::{Quat, Vec3};
 
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 /// Which way the middle joint of a limb points when the limb bends.
@@ -47,7 +47,7 @@ impl Limb {
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
-    pub fn named(rest: &RestPose, names: [&str; 3], bend: Bend) -> Result<Self> {
+    pub fn named(rest: &Skeleton, names: [&str; 3], bend: Bend) -> Result<Self> {
         let mut joints = [0; 3];
         for (i, name) in names.iter().enumerate() {
             joints[i] = rest.require(name)?;
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
-    fn leg() -> (RestPose, Limb) {
+    fn leg() -> (Skeleton, Limb) {
         let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
         let local = |rotation, translation| RigidTransform { rotation, translation };
         let locals = vec![
@@ -160,14 +160,14 @@ mod tests {
         ];
         let names = ["thigh_l", "calf_l", "foot_l"];
         let parents = vec![None, Some(0), Some(1)];
-        let rest = RestPose::new(names.map(String::from).to_vec(), parents, locals, vec![None; 3]).unwrap();
+        let rest = Skeleton::new(names.map(String::from).to_vec(), parents, locals, vec![None; 3]).unwrap();
         let limb = Limb::named(&rest, names, Bend::Forwards).unwrap();
         (rest, limb)
     }
 
     fn reached(target: Vec3, softness: f32) -> [RigidTransform; 3] {
         let (rest, limb) = leg();
-        let mut pose = rest.pose().clone();
+        let mut pose = rest.rest_pose().clone();
         let target = RigidTransform { rotation: Quat::from_rotation_y(0.3), translation: target };
         limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
         limb.model_from_joints(&pose, RigidTransform::IDENTITY)
@@ -210,7 +210,7 @@ mod tests {
             x in -1.2f32..1.2, y in -1.2f32..1.2, z in -1.2f32..1.2, bend in -2.0f32..0.2, turn in -1.5f32..1.5,
         ) {
             let (rest, limb) = leg();
-            let mut pose = rest.pose().clone();
+            let mut pose = rest.rest_pose().clone();
             pose.locals[0].rotation *= Quat::from_rotation_z(turn);
             pose.locals[1].rotation *= Quat::from_rotation_x(bend);
             let parent = RigidTransform { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };

@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 use super::ik::{Bend, Limb};
 use crate::Result;
 use crate::math::RigidTransform;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 
 /// How far the heel reaches behind the ankle, in distances from the ankle to the ball: bodies of the model have a
 /// quarter to a third.
@@ -64,11 +64,11 @@ impl Leg {
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) naming a joint that is missing.
-    pub(crate) fn both(rest: &RestPose) -> Result<[Self; 2]> {
+    pub(crate) fn both(rest: &Skeleton) -> Result<[Self; 2]> {
         Ok([Self::named(rest, "l")?, Self::named(rest, "r")?])
     }
 
-    fn named(rest: &RestPose, side: &str) -> Result<Self> {
+    fn named(rest: &Skeleton, side: &str) -> Result<Self> {
         let names = ["thigh", "calf", "foot"].map(|n| format!("{n}_{side}"));
         let limb = Limb::named(rest, [&names[0], &names[1], &names[2]], Bend::Forwards)?;
         let ball = rest.require(&format!("ball_{side}"))?;

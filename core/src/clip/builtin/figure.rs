@@ -8,7 +8,7 @@ use crate::math::RigidTransform;
 use crate::pose::Leg;
 use crate::pose::ik::Reach;
 use crate::skeleton::humanoid::finger;
-use crate::skeleton::{Pose, RestPose, model_from_joints};
+use crate::skeleton::{Pose, Skeleton, model_from_joints};
 use crate::{Error, Result};
 
 /// What of a leg may be used, so that a knee never locks.
@@ -88,7 +88,7 @@ struct ArmJoints {
 
 /// A skeleton at rest with its joints found and its proportions.
 pub(super) struct Figure {
-    pub(super) rest: Arc<RestPose>,
+    pub(super) rest: Arc<Skeleton>,
     model: Vec<RigidTransform>,
     root: usize,
     pelvis: usize,
@@ -106,7 +106,7 @@ pub(super) struct Figure {
 const SIDES: [(&str, f32); 2] = [("l", 1.0), ("r", -1.0)];
 
 impl Figure {
-    pub(super) fn new(rest: &Arc<RestPose>) -> Result<Self> {
+    pub(super) fn new(rest: &Arc<Skeleton>) -> Result<Self> {
         let joint = |name: &str| rest.require(name);
         let arm = |side: &str| -> Result<ArmJoints> {
             let of = |part: &str| joint(&format!("{part}_{side}"));
@@ -129,14 +129,14 @@ impl Figure {
             })
         };
         let legs = Leg::both(rest)?;
-        let lengths = legs.map(|leg| leg.limb.length(rest.pose()));
+        let lengths = legs.map(|leg| leg.limb.length(rest.rest_pose()));
         if lengths.iter().any(|l| *l < 1e-3) {
             return Err(Error::invalid(
                 "skeleton",
                 format!("expected legs with a length, got {lengths:?} m"),
             ));
         }
-        let bone = |joint: usize| rest.pose().locals[joint].translation.length();
+        let bone = |joint: usize| rest.rest_pose().locals[joint].translation.length();
         Ok(Self {
             rest: rest.clone(),
             model: rest.model_from_joints(),
@@ -162,7 +162,7 @@ impl Figure {
     /// How much the pelvis would have to come down for legs to reach their feet with a slightly bent knee, metres;
     /// below 0 when there is room.
     pub(super) fn too_high(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         let mut model = Vec::new();
         model_from_joints(self.rest.parents(), &pose.locals, &mut model);
@@ -185,7 +185,7 @@ impl Figure {
 
     /// The pose of a stance.
     pub(super) fn pose(&self, stance: &Stance) -> Pose {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         for (f, (_, side)) in SIDES.iter().enumerate() {
             self.set_arm(&self.arms[f], &stance.arms[f], *side, &mut pose);

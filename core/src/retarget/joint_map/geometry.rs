@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::FINGERS;
 
 /// Upper arm and forearm as parts of thigh and calf together: 50th percentiles of adults (Winter, *Biomechanics and
@@ -18,7 +18,7 @@ const UPPER_ARM: f32 = 0.38;
 const FOREARM: f32 = 0.30;
 
 struct Tree<'a> {
-    rest: &'a RestPose,
+    rest: &'a Skeleton,
     places: Vec<Vec3>,
     children: Vec<Vec<usize>>,
     /// The child that the longest way down goes to; none where no way has a length.
@@ -29,7 +29,7 @@ struct Tree<'a> {
 const MAX_LIMB: usize = 24;
 
 /// Our joint to source joint, as far as it was found.
-pub(super) fn find(rest: &RestPose) -> BTreeMap<String, usize> {
+pub(super) fn find(rest: &Skeleton) -> BTreeMap<String, usize> {
     let tree = Tree::new(rest);
     let mut found = BTreeMap::new();
     let Some((hips, legs)) = tree.hips() else { return found };
@@ -62,7 +62,7 @@ struct Leg {
 }
 
 impl<'a> Tree<'a> {
-    fn new(rest: &'a RestPose) -> Self {
+    fn new(rest: &'a Skeleton) -> Self {
         let model = rest.model_from_joints();
         let mut children = vec![Vec::new(); rest.len()];
         for (joint, parent) in rest.parents().iter().enumerate() {

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 pub use overrides::{Overrides, read_overrides};
 
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::{humanoid_bones, native_name, native_names};
 use crate::{Error, Result};
 
@@ -80,7 +80,7 @@ impl JointMap {
     /// # Errors
     /// [`Error::Invalid`] when `overrides` names a joint that does not exist, with those most like it, or when pelvis,
     /// thighs or calves are not found, with their names.
-    pub fn find(source: &RestPose, overrides: &Overrides) -> Result<Self> {
+    pub fn find(source: &Skeleton, overrides: &Overrides) -> Result<Self> {
         let (mapped, nothing) = overrides::check(source, overrides)?;
         let mut taken = vec![false; source.len()];
         for &joint in mapped.values().chain(&nothing) {
@@ -147,7 +147,7 @@ impl JointMap {
 }
 
 struct Builder<'a> {
-    source: &'a RestPose,
+    source: &'a Skeleton,
     taken: Vec<bool>,
     pairs: BTreeMap<String, (usize, MatchedBy)>,
 }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use super::names::TIPS;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::humanoid_bones;
 use crate::{Error, Result};
 
@@ -27,7 +27,7 @@ pub(super) fn slots() -> impl Iterator<Item = &'static str> {
 
 /// Checks both sides: our joint to source joint, and source joints that shall drive nothing.
 pub(super) fn check(
-    source: &RestPose,
+    source: &Skeleton,
     overrides: &Overrides,
 ) -> Result<(BTreeMap<String, usize>, Vec<usize>)> {
     let fail = |message| Err(Error::invalid("joint mapping", message));

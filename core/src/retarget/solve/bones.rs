@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::super::JointMap;
 use crate::math::RigidTransform;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 
 /// Below this two joints are one, metres: no direction can be read from them.
 const SHORTEST: f32 = 1e-4;
@@ -39,7 +39,7 @@ pub(super) const LIMBS: [(&str, &str); 6] = [
 
 impl Bone {
     /// The bone of this limb joint, such as `foot_l`, where both skeletons have it with a length.
-    pub(super) fn of(name: &str, map: &JointMap, source: &RestPose, target: &RestPose) -> Option<Self> {
+    pub(super) fn of(name: &str, map: &JointMap, source: &Skeleton, target: &Skeleton) -> Option<Self> {
         let (stem, side) = name.rsplit_once('_')?;
         let tip = next(stem)?;
         let joint = map.source_of(name)?;

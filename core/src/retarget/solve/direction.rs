@@ -49,7 +49,7 @@ pub fn direction_error(source: &Clip, target: &Clip, map: &JointMap) -> Directio
     for side in ["l", "r"] {
         for (stem, _) in LIMBS {
             let name = format!("{stem}_{side}");
-            if let Some(bone) = Bone::of(&name, map, source.rest(), target.rest()) {
+            if let Some(bone) = Bone::of(&name, map, source.skeleton(), target.skeleton()) {
                 bones.push((bone, BoneError { bone: name, mean: 0.0, max: 0.0 }));
             }
         }

@@ -11,7 +11,7 @@ use crate::skeleton::humanoid::finger;
 /// One driver per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<Driver> {
     let target = reference.joints.target;
-    let mut drivers: Vec<Driver> = target.rotations().map(Driver::Still).collect();
+    let mut drivers: Vec<Driver> = target.rest_rotations().map(Driver::Still).collect();
     let mut set = |name: &str, alignment: Quat| {
         let pair = reference.map.source_of(name).zip(target.find(name));
         if let Some((source, joint)) = pair {

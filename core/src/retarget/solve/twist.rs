@@ -29,7 +29,7 @@ pub(super) struct Twist {
 
 /// The twist joints of the target.
 pub(super) fn find(joints: &Joints) -> Vec<Twist> {
-    let rest = joints.target.pose();
+    let rest = joints.target.rest_pose();
     let names = joints.target.names();
     let limbs = [("upperarm", "upperarm"), ("lowerarm", "hand"), ("thigh", "thigh"), ("calf", "foot")];
     let twist = |joint: usize| {
