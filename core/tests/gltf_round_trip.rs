@@ -1,6 +1,6 @@
 //! Bodies to glTF and back.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
 
 use anthronet::clip::Clip;
 use anthronet::condition::Request;
@@ -9,7 +9,6 @@ use anthronet::format::scene_from_bytes;
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::scene::{Scene, SceneOptions};
-use anthronet::skeleton::Skeleton;
 use glam::Quat;
 
 #[test]
