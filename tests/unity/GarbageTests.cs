@@ -52,8 +52,8 @@ namespace Anthronet.Tests
                 character.AddBlendShape("other", other);
             }
             Nothing("weights of blend shapes", 1000, () => character.SetBlendShapeWeight("other", 30f));
-            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
-            Nothing("correctives", 1000, correctives.Apply);
+            var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
+            Nothing("pose-driven shapes", 1000, poseDriven.Apply);
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];
             Nothing("reports", 1000, () => character.Body.Measures(reports));
             using (var surface = new AnthroSurface(character.Body, 3))

@@ -80,6 +80,8 @@ namespace Anthronet.Tests
                     return member.EndsWith("AnimationClipSettings") ? "Editor/Mono/Animation/AnimationUtility.bindings.cs" : null;
                 case "Matrix4x4":
                     return member.Length == 3 && member[0] == 'm' ? "Runtime/Export/Math/Matrix4x4.cs" : null;
+                case "MovedFromAttribute":
+                    return "Runtime/Export/Scripting/APIUpdating/UpdatedFromAttribute.cs";
                 case "SkinnedMeshRenderer":
                     return member == "rootBone" ? "Runtime/Export/Graphics/GraphicsRenderers.bindings.cs" : null;
                 default:
@@ -113,7 +115,7 @@ namespace Anthronet.Tests
             }
             foreach (var made in type.GetConstructors(Own).Where(made => made.GetParameters().Length > 0))
             {
-                yield return "  " + Name(type) + Parameters(made) + " | " + page + "-ctor.html";
+                yield return Line("  " + Name(type) + Parameters(made), type, "", page + "-ctor.html");
             }
             foreach (var property in type.GetProperties(Own))
             {

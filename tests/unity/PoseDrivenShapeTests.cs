@@ -1,13 +1,16 @@
 using System;
 using System.Linq;
+using System.Reflection;
 using NUnit.Framework;
 using UnityEngine;
+using UnityEngine.Scripting.APIUpdating;
+using UnityEngine.Serialization;
 
 namespace Anthronet.Tests
 {
-    /// Correctives: blend shapes whose weights follow the pose.
+    /// Blend shapes whose weights follow joint angles.
     [TestFixture]
-    public static class CorrectiveTests
+    public static class PoseDrivenShapeTests
     {
         static float Weight(AnthroCharacter character, int lod, int shape)
         {
@@ -22,11 +25,11 @@ namespace Anthronet.Tests
             character.Rig.Bones[place].localRotation = character.Rig.Joints[place].local.rotation * by;
         }
 
-        [Test(Description = "weights of correctives follow the elbow on its side, on all levels, each frame")]
+        [Test(Description = "pose-driven shapes: weights follow the elbow of their side, on all levels of detail, every frame")]
         public static void Weights()
         {
             var character = Scene.Character(1, 2);
-            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
+            var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
             foreach (var lod in new[] { 1, 2 })
             {
                 Expect.Equal(2, character.MeshOf(lod).blendShapeCount, "shapes of LOD" + lod);
@@ -34,7 +37,7 @@ namespace Anthronet.Tests
             foreach (var step in new[] { new[] { 0f, 0f }, new[] { 15f, 0f }, new[] { 67.5f, 50f }, new[] { 120f, 100f }, new[] { 150f, 100f } })
             {
                 Bend(character, "lowerarm_l", step[0]);
-                MonoBehaviour.Tell(correctives, "LateUpdate");
+                MonoBehaviour.Tell(poseDriven, "LateUpdate");
                 foreach (var lod in new[] { 1, 2 })
                 {
                     Expect.That(Math.Abs(Weight(character, lod, 0) - step[1]) < 0.01, step[0] + " degrees, LOD" + lod + ": " + Weight(character, lod, 0));
@@ -42,18 +45,18 @@ namespace Anthronet.Tests
                 }
             }
             character.Rig.ToBindPose();
-            correctives.Apply();
+            poseDriven.Apply();
             Expect.Equal(0f, Weight(character, 1, 0), "in the bind pose");
             Scene.End(character);
         }
 
-        [Test(Description = "a corrective moves what it measures, on its side, and next to nothing else")]
+        [Test(Description = "pose-driven shapes: a shape moves the measured part of its side and hardly anything else")]
         public static void Shapes()
         {
             var character = Scene.Character();
-            character.gameObject.AddComponent<AnthroCorrectives>();
+            character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
             var mesh = character.MeshOf(1);
-            var way = mesh.Shapes[mesh.Shapes.Keys.First()];
+            var offsets = mesh.Shapes[mesh.Shapes.Keys.First()];
             Func<string, Vector3> joint =
                 name => character.Rig.Joints[Scene.Joint(character, name)].modelFromJoint.MultiplyPoint3x4(Vector3.zero);
             Vector3 shoulder = joint("upperarm_l"), elbow = joint("lowerarm_l"), knee = joint("calf_l");
@@ -63,9 +66,9 @@ namespace Anthronet.Tests
                 var at = mesh.Position(v);
                 // A character's left is at -X in Unity.
                 var between = at.x < 0.7f * shoulder.x + 0.3f * elbow.x && at.x > 0.3f * shoulder.x + 0.7f * elbow.x;
-                arm = between ? Math.Max(arm, way[v].magnitude) : arm;
-                other = -at.x < 0.7f * shoulder.x + 0.3f * elbow.x ? Math.Max(other, way[v].magnitude) : other;
-                legs = at.y < knee.y ? Math.Max(legs, way[v].magnitude) : legs;
+                arm = between ? Math.Max(arm, offsets[v].magnitude) : arm;
+                other = -at.x < 0.7f * shoulder.x + 0.3f * elbow.x ? Math.Max(other, offsets[v].magnitude) : other;
+                legs = at.y < knee.y ? Math.Max(legs, offsets[v].magnitude) : legs;
             }
             // 5 % of 0.3 m around are 2.4 mm of radius.
             Expect.That(arm > 0.0015f && arm < 0.008f, "arm " + arm);
@@ -73,31 +76,53 @@ namespace Anthronet.Tests
             Scene.End(character);
         }
 
-        [Test(Description = "correctives are made anew for another body, and their errors say what is wrong")]
+        [Test(Description = "pose-driven shapes: rebuilt when the character changes, and errors name the culprit")]
         public static void Anew()
         {
             var character = Scene.Character(3, 3);
-            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
+            var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
             character.Request = Scene.Request(1.6);
             character.Generate();
             Expect.Equal(2, character.MeshOf(3).blendShapeCount, "shapes of the next body");
             Bend(character, "lowerarm_r", 120f);
-            correctives.Apply();
+            poseDriven.Apply();
             Expect.That(Math.Abs(Weight(character, 3, 1) - 100f) < 0.01, "weight on the next body");
 
-            correctives.Correctives[0].joint = "elbow";
-            Expect.That(Expect.Throws<ArgumentException>(correctives.Rebuild, "joint").Message.Contains("\"elbow\""), "names the joint");
-            correctives.Correctives[0].joint = "lowerarm_l";
-            correctives.Correctives[0].measure = "biceps";
-            Expect.Code(AnthroError.Request, "biceps", correctives.Rebuild, "measure");
-            correctives.Correctives[0].measure = "arm_circumference";
-            correctives.Correctives[0].to = 10f;
-            Expect.That(Expect.Throws<ArgumentException>(correctives.Rebuild, "angles").Message.Contains("15 and 10"), "says the angles");
+            poseDriven.Shapes[0].joint = "elbow";
+            Expect.That(Expect.Throws<ArgumentException>(poseDriven.Rebuild, "joint").Message.Contains("\"elbow\""), "names the joint");
+            poseDriven.Shapes[0].joint = "lowerarm_l";
+            poseDriven.Shapes[0].measure = "biceps";
+            Expect.Code(AnthroError.Request, "biceps", poseDriven.Rebuild, "measure");
+            poseDriven.Shapes[0].measure = "arm_circumference";
+            poseDriven.Shapes[0].endDegrees = 10f;
+            Expect.That(Expect.Throws<ArgumentException>(poseDriven.Rebuild, "angles").Message.Contains("15 and 10"), "says the angles");
             Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after errors");
-            correctives.Correctives[0].to = 90f;
-            correctives.Rebuild();
+            poseDriven.Shapes[0].endDegrees = 90f;
+            poseDriven.Rebuild();
             Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after a change");
             Scene.End(character);
+        }
+
+        [Test(Description = "pose-driven shapes: Unity finds types and fields that were renamed by their former names")]
+        public static void FormerNames()
+        {
+            Expect.Equal("AnthroCorrectives", FormerName(typeof(AnthroPoseDrivenShapes)), "component");
+            Expect.Equal("AnthroCorrective", FormerName(typeof(AnthroPoseDrivenShape)), "shape");
+            Expect.Equal("correctives", FormerName(typeof(AnthroPoseDrivenShapes), "shapes"), "list");
+            Expect.Equal("from", FormerName(typeof(AnthroPoseDrivenShape), "startDegrees"), "start");
+            Expect.Equal("to", FormerName(typeof(AnthroPoseDrivenShape), "endDegrees"), "end");
+            Expect.Equal("change", FormerName(typeof(AnthroPoseDrivenShape), "relativeChange"), "change");
+        }
+
+        static string FormerName(Type type)
+        {
+            return ((MovedFromAttribute)Attribute.GetCustomAttribute(type, typeof(MovedFromAttribute))).SourceClassName;
+        }
+
+        static string FormerName(Type type, string field)
+        {
+            var found = type.GetField(field, BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic);
+            return found.GetCustomAttribute<FormerlySerializedAsAttribute>().oldName;
         }
     }
 }
