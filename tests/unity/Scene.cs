@@ -1,4 +1,5 @@
 using System;
+using System.Collections.Generic;
 using System.Reflection;
 using UnityEngine;
 
@@ -21,7 +22,7 @@ namespace Anthronet.Tests
 
         internal static int Joint(AnthroCharacter character, string name)
         {
-            var place = Array.FindIndex(character.Rig.Bones, bone => bone.name == name);
+            var place = character.Rig.IndexOf(name);
             Expect.That(place >= 0, "no joint " + name);
             return place;
         }
@@ -47,7 +48,7 @@ namespace Anthronet.Tests
         /// What loading the code anew leaves of a component: that which Unity serialises.
         internal static void Reload(MonoBehaviour part)
         {
-            foreach (var field in part.GetType().GetFields(Hidden))
+            foreach (var field in Fields(part.GetType()))
             {
                 if (!field.IsStatic && !field.IsPublic && !Attribute.IsDefined(field, typeof(SerializeField)))
                 {
@@ -57,6 +58,24 @@ namespace Anthronet.Tests
             part.Enabled = false;
             MonoBehaviour.Tell(part, "OnEnable");
             part.Enabled = true;
+        }
+
+        /// The fields of a component, private ones of its base classes too.
+        static IEnumerable<FieldInfo> Fields(Type type)
+        {
+            for (; type != typeof(MonoBehaviour); type = type.BaseType)
+            {
+                foreach (var field in type.GetFields(Hidden | BindingFlags.DeclaredOnly))
+                {
+                    yield return field;
+                }
+            }
+        }
+
+        /// A private field of an object.
+        internal static object Field(object home, string name)
+        {
+            return home.GetType().GetField(name, Hidden).GetValue(home);
         }
 
         internal static object Static(Type type, string name)

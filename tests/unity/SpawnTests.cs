@@ -74,8 +74,7 @@ namespace Anthronet.Tests
             {
                 using (var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), count).ToArray(), settings))
                 {
-                    var jobs = (AnthroJob[])typeof(AnthroSpawn).GetField("jobs", System.Reflection.BindingFlags.Instance
-                        | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+                    var jobs = (AnthroJob[])Scene.Field(spawn, "jobs");
                     Expect.Equal(Math.Max(1, Math.Min(count, Math.Min(16, Environment.ProcessorCount))), jobs.Length, "jobs");
                     Expect.Equal(count == 0, spawn.IsDone, "done");
                 }
@@ -100,8 +99,7 @@ namespace Anthronet.Tests
                     }
                 };
                 Debug.Errors.Clear();
-                var half = (AnthroCharacter[])typeof(AnthroSpawn).GetField("characters",
-                    System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+                var half = (AnthroCharacter[])Scene.Field(spawn, "characters");
                 // A budget of nothing takes one step: while the third is made its object is taken away.
                 while (!spawn.Advance(0))
                 {
@@ -216,8 +214,7 @@ namespace Anthronet.Tests
             Expect.Throws<ObjectDisposedException>(() => clip.Bake(), "clip");
             Expect.Throws<ObjectDisposedException>(() => crowd.Run(), "crowd");
             Expect.Throws<ObjectDisposedException>(spawn.Cancel, "spawn");
-            var packers = (System.Threading.Thread[])typeof(AnthroSpawn).GetField("packers", System.Reflection.BindingFlags.Instance
-                | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+            var packers = (System.Threading.Thread[])Scene.Field(spawn, "packers");
             Expect.That(packers.All(thread => !thread.IsAlive), "threads run on");
             // What comes afterwards begins anew.
             using (var again = AnthroModel.Default.Generate(new AnthroRequest()))

@@ -20,14 +20,8 @@ namespace Anthronet.Editor
         public override void OnInspectorGUI()
         {
             var character = (AnthroCharacter)target;
-            try
+            if (!AnthroRequestGui.DrawWithLibrary(() => Draw(character)))
             {
-                Draw(character);
-            }
-            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
-            {
-                // Thrown anew at each repaint until the library is there: nothing to fill the console with.
-                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
                 EditorGUILayout.PropertyField(serializedObject.FindProperty("generateOnAwake"), true);
                 serializedObject.ApplyModifiedProperties();
             }

@@ -1,4 +1,3 @@
-using System;
 using UnityEditor;
 
 namespace Anthronet.Editor
@@ -13,14 +12,7 @@ namespace Anthronet.Editor
         public override void OnInspectorGUI()
         {
             serializedObject.Update();
-            try
-            {
-                gui.Draw(serializedObject.FindProperty("request"), null);
-            }
-            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
-            {
-                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
-            }
+            AnthroRequestGui.DrawWithLibrary(() => gui.Draw(serializedObject.FindProperty("request"), null));
             serializedObject.ApplyModifiedProperties();
         }
     }

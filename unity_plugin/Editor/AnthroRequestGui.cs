@@ -1,3 +1,4 @@
+using System;
 using UnityEditor;
 using UnityEngine;
 
@@ -40,6 +41,23 @@ namespace Anthronet.Editor
         readonly double[] max = new double[AnthroMeasures.Count];
         bool ranges;
         bool reported;
+
+        /// <summary>Draws an inspector that needs the native library. Where the library is missing or of another release, the
+        /// error is shown in the inspector: it would be thrown again at every repaint and fill the console.</summary>
+        /// <returns>Whether everything was drawn.</returns>
+        public static bool DrawWithLibrary(Action draw)
+        {
+            try
+            {
+                draw();
+                return true;
+            }
+            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
+            {
+                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
+                return false;
+            }
+        }
 
         /// <summary>Draws the property of a request, and beside it what a body has; null for none.</summary>
         public void Draw(SerializedProperty request, AnthroBody body)

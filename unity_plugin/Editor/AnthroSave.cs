@@ -119,10 +119,7 @@ namespace Anthronet.Editor
         /// <param name="loops">Whether it begins anew at its end.</param>
         public static AnimationClip ToAnimationClip(AnthroClip clip, AnthroRig rig, bool loops)
         {
-            var made = new AnimationClip();
-            made.name = clip.Name;
-            made.legacy = false;
-            made.frameRate = (float)clip.FramesPerSecond;
+            var made = AnthroCurves.NewClip(clip, false);
             foreach (var curve in AnthroCurves.Of(clip, rig))
             {
                 // As it is called in the file: localRotation.x is m_LocalRotation.x.

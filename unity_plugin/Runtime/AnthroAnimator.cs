@@ -8,9 +8,8 @@ namespace Anthronet
     /// body, and goes on at the same time; a clip of the caller's plays on as it is.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Animator")]
-    [RequireComponent(typeof(AnthroCharacter))]
     [DisallowMultipleComponent]
-    public sealed class AnthroAnimator : MonoBehaviour
+    public sealed class AnthroAnimator : AnthroCharacterBehaviour
     {
         [SerializeField] string builtin = "";
         [SerializeField] float speed = 1f;
@@ -18,7 +17,6 @@ namespace Anthronet
         // Goes on here after the code was loaded anew.
         [SerializeField] [HideInInspector] double time;
 
-        AnthroCharacter character;
         AnthroClip clip;
         AnthroBody madeFor;
         bool own;
@@ -71,12 +69,7 @@ namespace Anthronet
 
         void Make(string name)
         {
-            var body = Character().Body;
-            if (body == null)
-            {
-                throw new System.InvalidOperationException(
-                    "the character has to be generated before a clip is made for it: " + gameObject.name);
-            }
+            var body = RequireBody();
             Use(AnthroClip.Builtin(name, body));
             madeFor = body;
             own = true;
@@ -92,34 +85,8 @@ namespace Anthronet
             }
         }
 
-        AnthroCharacter Character()
-        {
-            if (character == null)
-            {
-                character = GetComponent<AnthroCharacter>();
-            }
-            return character;
-        }
-
-        void OnEnable()
-        {
-            Character().OnReport += Rebind;
-            if (Character().Body != null)
-            {
-                Rebind(Character().Body);
-            }
-        }
-
-        void OnDisable()
-        {
-            if (Character() != null)
-            {
-                Character().OnReport -= Rebind;
-            }
-        }
-
         /// <summary>Makes a clip of its own for the body that the character is now, at the same time.</summary>
-        void Rebind(AnthroBody body)
+        internal override void OnBody(AnthroBody body)
         {
             if (!string.IsNullOrEmpty(builtin) && !ReferenceEquals(madeFor, body))
             {
@@ -140,13 +107,13 @@ namespace Anthronet
         /// <summary>Goes on by seconds and poses the character. `LateUpdate` does it each frame.</summary>
         public void Advance(float seconds)
         {
-            if (clip == null || Character().Rig == null)
+            if (clip == null || Character.Rig == null)
             {
                 return;
             }
             time += (double)speed * seconds;
             clip.Sample(time, wrap, pose);
-            character.Rig.ToPose(pose);
+            Character.Rig.ToPose(pose);
         }
 
         void OnDestroy()

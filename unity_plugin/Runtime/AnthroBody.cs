@@ -90,7 +90,7 @@ namespace Anthronet
         public void Measures(AnthroMeasureReport[] into)
         {
             using (var held = new Held(handle))
-            fixed (AnthroMeasureReport* first = Library.Given(into, "into"))
+            fixed (AnthroMeasureReport* first = Library.NotNull(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_measures((anthronet_body*)held.Pointer,
@@ -111,14 +111,8 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_body_report(
-                        (anthronet_body*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_body_report((anthronet_body*)pointer, bytes, error));
             }
         }
 
@@ -126,7 +120,7 @@ namespace Anthronet
         public void Latent(double[] into)
         {
             using (var held = new Held(handle))
-            fixed (double* first = Library.Given(into, "into"))
+            fixed (double* first = Library.NotNull(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_latent(
@@ -138,7 +132,7 @@ namespace Anthronet
         public void Joints(AnthroJoint[] into)
         {
             using (var held = new Held(handle))
-            fixed (AnthroJoint* first = Library.Given(into, "into"))
+            fixed (AnthroJoint* first = Library.NotNull(into, "into"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_joints((anthronet_body*)held.Pointer,
@@ -157,14 +151,9 @@ namespace Anthronet
         /// <summary>The name of a joint in the rig, such as `upperarm_l`. No two are the same.</summary>
         public string JointName(int joint)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_body_joint_name((anthronet_body*)held.Pointer,
-                    checked((uint)joint), NativeMethods.ANTHRONET_NAMES_NATIVE, &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)joint);
+            return Library.Text(handle, (pointer, name, error) => NativeMethods.anthronet_body_joint_name(
+                (anthronet_body*)pointer, index, NativeMethods.ANTHRONET_NAMES_NATIVE, name, error));
         }
 
         /// <summary>Writes a file in the format of its ending: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj. It appears
@@ -212,13 +201,13 @@ namespace Anthronet
         static void Export(int lod, AnthroClip[] clips, Action<IntPtr> write)
         {
             // One more: an empty array has no first entry to point at.
-            var pointers = new IntPtr[Library.Given(clips, "clips").Length + 1];
+            var pointers = new IntPtr[Library.NotNull(clips, "clips").Length + 1];
             var held = new Held[clips.Length];
             try
             {
                 for (var i = 0; i < clips.Length; i++)
                 {
-                    held[i] = new Held(Library.Given(clips[i], "clips").Handle);
+                    held[i] = new Held(Library.NotNull(clips[i], "clips").Handle);
                     pointers[i] = (IntPtr)held[i].Pointer;
                 }
                 fixed (IntPtr* first = pointers)

@@ -212,10 +212,7 @@ namespace Anthronet
         /// </summary>
         public IEnumerator BecomeInSteps(AnthroBody next)
         {
-            if (next == null)
-            {
-                throw new ArgumentNullException("next");
-            }
+            Native.Library.NotNull(next, "next");
             return Steps(new AnthroBuild(next, skinTone, bodyOnly));
         }
 
@@ -308,12 +305,7 @@ namespace Anthronet
             {
                 return figure.Levels.ConvertAll(level => level.lod);
             }
-            var lods = new List<int>();
-            for (var lod = Mathf.Min(finestLod, coarsestLod); lod <= Mathf.Max(finestLod, coarsestLod); lod++)
-            {
-                lods.Add(lod);
-            }
-            return lods;
+            return AnthroFigure.LodRange(finestLod, coarsestLod);
         }
 
         /// <summary>
@@ -343,6 +335,11 @@ namespace Anthronet
             {
                 figure.Levels[i].mesh.ClearBlendShapes();
             }
+        }
+
+        internal bool HasBlendShape(string shape)
+        {
+            return figure != null && figure.Levels.TrueForAll(level => level.mesh.GetBlendShapeIndex(shape) >= 0);
         }
 
         /// <summary>Sets how much of a blend shape is seen, 0 to 100, on all levels of detail. Makes no garbage.</summary>

@@ -84,7 +84,7 @@ namespace Anthronet
         public static AnthroClip Builtin(string name, AnthroBody body)
         {
             ulong length;
-            using (var held = new Held(Library.Given(body, "body").Handle))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -112,8 +112,8 @@ namespace Anthronet
         public static AnthroClip Of(AnthroBody body, string name, double framesPerSecond, AnthroTransform[] frames)
         {
             ulong length;
-            using (var held = new Held(Library.Given(body, "body").Handle))
-            fixed (AnthroTransform* first = Library.Given(frames, "frames"))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
+            fixed (AnthroTransform* first = Library.NotNull(frames, "frames"))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -139,7 +139,7 @@ namespace Anthronet
         /// <param name="toModel">Relative to the character, as `AnthroSkinner` takes it.</param>
         public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] into, bool toModel = false)
         {
-            fixed (AnthroTransform* first = Library.Given(into, "into"))
+            fixed (AnthroTransform* first = Library.NotNull(into, "into"))
             {
                 Sample(seconds, wrap, first, into.Length, toModel);
             }
@@ -180,10 +180,7 @@ namespace Anthronet
         /// <exception cref="ArgumentException">The rig has other joints.</exception>
         public AnimationClip ToAnimationClip(AnthroRig rig)
         {
-            var made = new AnimationClip();
-            made.name = Name;
-            made.legacy = true;
-            made.frameRate = (float)FramesPerSecond;
+            var made = AnthroCurves.NewClip(this, true);
             foreach (var curve in AnthroCurves.Of(this, rig))
             {
                 made.SetCurve(curve.path, typeof(Transform), curve.property, curve.keys);
@@ -195,66 +192,51 @@ namespace Anthronet
         /// <summary>At another rate.</summary>
         public AnthroClip Resampled(double framesPerSecond)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_resample(
-                    (anthronet_clip*)held.Pointer, framesPerSecond, &made, &error), &error);
-                return new AnthroClip(made);
-            }
+            return Derive((clip, made, error) =>
+                NativeMethods.anthronet_clip_resample(clip, framesPerSecond, made, error));
         }
 
         /// <summary>Without its way over the ground.</summary>
         public AnthroClip InPlace()
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_in_place(
-                    (anthronet_clip*)held.Pointer, &made, &error), &error);
-                return new AnthroClip(made);
-            }
+            return Derive((clip, made, error) => NativeMethods.anthronet_clip_in_place(clip, made, error));
         }
 
         /// <summary>With its end going over into its beginning during the last `seconds`.</summary>
         public AnthroClip Looped(double seconds)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_looped(
-                    (anthronet_clip*)held.Pointer, seconds, &made, &error), &error);
-                return new AnthroClip(made);
-            }
+            return Derive((clip, made, error) => NativeMethods.anthronet_clip_looped(clip, seconds, made, error));
         }
 
         /// <summary>Two clips of one body at once: `weight` 0 is this, 1 the other.</summary>
         public AnthroClip Blended(AnthroClip other, float weight)
         {
-            using (var second = new Held(Library.Given(other, "other").handle))
-            using (var first = new Held(handle))
+            using (var second = new Held(Library.NotNull(other, "other").handle))
             {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_blend((anthronet_clip*)first.Pointer,
-                    (anthronet_clip*)second.Pointer, weight, &made, &error), &error);
-                return new AnthroClip(made);
+                var to = (anthronet_clip*)second.Pointer;
+                return Derive((clip, made, error) => NativeMethods.anthronet_clip_blend(clip, to, weight, made, error));
             }
         }
 
         /// <summary>Two clips of one body one after the other, overlapping by `seconds`.</summary>
         public AnthroClip Then(AnthroClip other, double seconds)
         {
-            using (var second = new Held(Library.Given(other, "other").handle))
-            using (var first = new Held(handle))
+            using (var second = new Held(Library.NotNull(other, "other").handle))
+            {
+                var to = (anthronet_clip*)second.Pointer;
+                return Derive((clip, made, error) => NativeMethods.anthronet_clip_crossfade(clip, to, seconds, made, error));
+            }
+        }
+
+        delegate int DeriveCall(anthronet_clip* clip, anthronet_clip** made, anthronet_error* error);
+
+        AnthroClip Derive(DeriveCall call)
+        {
+            using (var held = new Held(handle))
             {
                 anthronet_clip* made;
                 anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_crossfade((anthronet_clip*)first.Pointer,
-                    (anthronet_clip*)second.Pointer, seconds, &made, &error), &error);
+                Library.Check(call((anthronet_clip*)held.Pointer, &made, &error), &error);
                 return new AnthroClip(made);
             }
         }

@@ -28,12 +28,12 @@ namespace Anthronet
         public AnthroCrowdSkin(
             AnthroSkinner[] skinners, int jointCount, AnthroSkinning method = AnthroSkinning.Linear)
         {
-            this.skinners = (AnthroSkinner[])Library.Given(skinners, "skinners").Clone();
+            this.skinners = (AnthroSkinner[])Library.NotNull(skinners, "skinners").Clone();
             this.jointCount = jointCount;
             offsets = new int[skinners.Length + 1];
             for (var i = 0; i < skinners.Length; i++)
             {
-                offsets[i + 1] = checked(offsets[i] + Library.Given(skinners[i], "skinners").VertexCount);
+                offsets[i + 1] = checked(offsets[i] + Library.NotNull(skinners[i], "skinners").VertexCount);
             }
             var vertices = offsets[skinners.Length];
             held = new Held[skinners.Length];
@@ -103,7 +103,7 @@ namespace Anthronet
                 throw new ArgumentOutOfRangeException("character");
             }
             var first = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses) + character * jointCount;
-            Library.Given(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
+            Library.NotNull(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
         }
 
         /// <summary>Poses all surfaces. Makes no garbage.</summary>

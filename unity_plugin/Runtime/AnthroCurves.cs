@@ -27,13 +27,20 @@ namespace Anthronet
         /// <summary>How far a joint is from where it rests before its place is told, metres.</summary>
         const float Moved = 1e-6f;
 
+        /// <summary>An animation clip with the name and frame rate of a clip, without curves.</summary>
+        public static AnimationClip NewClip(AnthroClip clip, bool legacy)
+        {
+            var made = new AnimationClip();
+            made.name = clip.Name;
+            made.legacy = legacy;
+            made.frameRate = (float)clip.FramesPerSecond;
+            return made;
+        }
+
         /// <summary>All curves of a clip, joint by joint.</summary>
         public static List<Curve> Of(AnthroClip clip, AnthroRig rig)
         {
-            if (rig == null)
-            {
-                throw new ArgumentNullException("rig");
-            }
+            Native.Library.NotNull(rig, "rig");
             var count = clip.JointCount;
             if (rig.Bones.Length != count)
             {

@@ -60,10 +60,10 @@ namespace Anthronet
         /// </summary>
         public static AnthroSpawn CreateAsync(IList<AnthroRequest> requests, AnthroSettings settings = null)
         {
-            var copies = new AnthroRequest[Library.Given(requests, "requests").Count];
+            var copies = new AnthroRequest[Library.NotNull(requests, "requests").Count];
             for (var i = 0; i < copies.Length; i++)
             {
-                copies[i] = Library.Given(requests[i], "requests").Copy();
+                copies[i] = Library.NotNull(requests[i], "requests").Copy();
             }
             return new AnthroSpawn(copies, settings == null ? new AnthroSettings() : settings.Copy());
         }

@@ -52,6 +52,17 @@ namespace Anthronet
             get { return Application.isPlaying ? HideFlags.None : HideFlags.DontSave; }
         }
 
+        /// <summary>The levels of detail between two, in whichever order they are given; the finest first.</summary>
+        public static List<int> LodRange(int finest, int coarsest)
+        {
+            var lods = new List<int>();
+            for (var lod = Mathf.Min(finest, coarsest); lod <= Mathf.Max(finest, coarsest); lod++)
+            {
+                lods.Add(lod);
+            }
+            return lods;
+        }
+
         /// <summary>Makes it of a body in steps, with nothing to be seen before the last.</summary>
         public IEnumerator Make(AnthroBuild build, IList<int> lods, bool humanoid)
         {

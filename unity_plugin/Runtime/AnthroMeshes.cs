@@ -33,8 +33,8 @@ namespace Anthronet
         /// <param name="name">What the mesh is called.</param>
         public static Mesh Create(AnthroSurface surface, AnthroJoint[] joints, string name)
         {
-            Native.Library.Given(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), true))
+            Native.Library.NotNull(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), true))
             {
                 var mesh = Create(packed, joints, name);
                 AddBlendShapes(mesh, surface);
@@ -71,9 +71,9 @@ namespace Anthronet
         /// </summary>
         public static void Update(Mesh mesh, AnthroSurface surface, AnthroJoint[] joints)
         {
-            Native.Library.Given(mesh, "mesh");
-            Native.Library.Given(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), false))
+            Native.Library.NotNull(mesh, "mesh");
+            Native.Library.NotNull(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), false))
             {
                 Update(mesh, packed, joints);
                 AddBlendShapes(mesh, surface);

@@ -81,10 +81,7 @@ namespace Anthronet
         /// <exception cref="AnthroException">They are none.</exception>
         public static AnthroModel Open(byte[] bytes)
         {
-            if (bytes == null)
-            {
-                throw new ArgumentNullException("bytes");
-            }
+            Library.NotNull(bytes, "bytes");
             Library.Ensure();
             anthronet_model* made;
             anthronet_error error;
@@ -102,14 +99,8 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint size;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_model_latent_size(
-                        (anthronet_model*)held.Pointer, &size, &error), &error);
-                    return (int)size;
-                }
+                return Library.Number(handle, (pointer, size, error) =>
+                    NativeMethods.anthronet_model_latent_size((anthronet_model*)pointer, size, error));
             }
         }
 
@@ -118,14 +109,8 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_model_info(
-                        (anthronet_model*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_model_info((anthronet_model*)pointer, bytes, error));
             }
         }
 
@@ -147,11 +132,7 @@ namespace Anthronet
         /// <exception cref="AnthroException">The request is refused; the message says why.</exception>
         public AnthroBody Generate(AnthroRequest request)
         {
-            if (request == null)
-            {
-                throw new ArgumentNullException("request");
-            }
-            using (var asked = request.Make())
+            using (var asked = Library.NotNull(request, "request").Make())
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
@@ -166,12 +147,8 @@ namespace Anthronet
         /// <summary>Makes the body at the share `t`, 0 to 1, of the way between two requests.</summary>
         public AnthroBody Interpolate(AnthroRequest from, AnthroRequest to, double t)
         {
-            if (from == null || to == null)
-            {
-                throw new ArgumentNullException(from == null ? "from" : "to");
-            }
-            using (var first = from.Make())
-            using (var second = to.Make())
+            using (var first = Library.NotNull(from, "from").Make())
+            using (var second = Library.NotNull(to, "to").Make())
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
@@ -186,18 +163,14 @@ namespace Anthronet
         /// <summary>Starts to make the bodies of requests, in order, on threads of the library.</summary>
         public AnthroJob Start(IList<AnthroRequest> requests)
         {
-            if (requests == null)
-            {
-                throw new ArgumentNullException("requests");
-            }
-            var asked = new RequestHandle[requests.Count];
+            var asked = new RequestHandle[Library.NotNull(requests, "requests").Count];
             try
             {
                 // One more: an empty array has no first entry to point at.
                 var pointers = new IntPtr[requests.Count + 1];
                 for (var i = 0; i < asked.Length; i++)
                 {
-                    asked[i] = Library.Given(requests[i], "requests").Make();
+                    asked[i] = Library.NotNull(requests[i], "requests").Make();
                     pointers[i] = asked[i].DangerousGetHandle();
                 }
                 using (var held = new Held(handle))

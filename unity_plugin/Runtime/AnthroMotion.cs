@@ -32,10 +32,7 @@ namespace Anthronet
         /// <exception cref="AnthroException">They are not such a file's.</exception>
         public static AnthroMotion Open(byte[] bytes, string name)
         {
-            if (bytes == null)
-            {
-                throw new ArgumentNullException("bytes");
-            }
+            Library.NotNull(bytes, "bytes");
             Library.Ensure();
             ulong length;
             fixed (byte* text = Utf8.Bytes(name, "name", out length))
@@ -54,28 +51,17 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint count;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_motion_clip_count(
-                        (anthronet_motion*)held.Pointer, &count, &error), &error);
-                    return (int)count;
-                }
+                return Library.Number(handle, (pointer, count, error) =>
+                    NativeMethods.anthronet_motion_clip_count((anthronet_motion*)pointer, count, error));
             }
         }
 
         /// <summary>The name of a clip.</summary>
         public string ClipName(int clip)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_motion_clip_name(
-                    (anthronet_motion*)held.Pointer, checked((uint)clip), &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)clip);
+            return Library.Text(handle, (pointer, name, error) =>
+                NativeMethods.anthronet_motion_clip_name((anthronet_motion*)pointer, index, name, error));
         }
 
         /// <summary>How the file was understood, as JSON.</summary>
@@ -83,14 +69,8 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_motion_report(
-                        (anthronet_motion*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_motion_report((anthronet_motion*)pointer, bytes, error));
             }
         }
 
@@ -100,7 +80,7 @@ namespace Anthronet
         {
             ulong length;
             var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
-            using (var wearer = new Held(Library.Given(body, "body").Handle))
+            using (var wearer = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* json = mapping)
             {

@@ -10,10 +10,7 @@ namespace Anthronet
         /// <exception cref="AnthroException">A line is no request; the message names it, counted from 1.</exception>
         public static AnthroRequest[] Read(string lines)
         {
-            if (lines == null)
-            {
-                throw new ArgumentNullException("lines");
-            }
+            Native.Library.NotNull(lines, "lines");
             var requests = new List<AnthroRequest>();
             var number = 0;
             foreach (var line in lines.Split('\n'))

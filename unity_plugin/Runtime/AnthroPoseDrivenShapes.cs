@@ -42,12 +42,11 @@ namespace Anthronet
     /// that was not measured. These are not learned pose correctives.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Pose-Driven Shapes")]
-    [RequireComponent(typeof(AnthroCharacter))]
     [DisallowMultipleComponent]
     // After the animators, which set the pose in their own `LateUpdate`.
     [DefaultExecutionOrder(100)]
     [MovedFrom(true, null, null, "AnthroCorrectives")]
-    public sealed class AnthroPoseDrivenShapes : MonoBehaviour
+    public sealed class AnthroPoseDrivenShapes : AnthroCharacterBehaviour
     {
         [FormerlySerializedAs("correctives")]
         [Tooltip("The blend shapes and the joints that drive them.")]
@@ -66,7 +65,6 @@ namespace Anthronet
         }
 
         readonly List<Driver> drivers = new List<Driver>();
-        AnthroCharacter character;
         AnthroBody madeFor;
 
         /// <summary>The shapes; after changing them call `Rebuild`.</summary>
@@ -75,43 +73,26 @@ namespace Anthronet
             get { return shapes; }
         }
 
-        AnthroCharacter Character()
+        internal override void OnBody(AnthroBody body)
         {
-            if (character == null)
+            if (ReferenceEquals(body, madeFor) && HasBlendShapes())
             {
-                character = GetComponent<AnthroCharacter>();
+                return;
             }
-            return character;
-        }
-
-        void OnEnable()
-        {
-            Character().OnReport += Made;
-            if (Character().Body != null && !ReferenceEquals(Character().Body, madeFor))
-            {
-                Made(Character().Body);
-            }
-        }
-
-        void OnDisable()
-        {
-            if (Character() != null)
-            {
-                Character().OnReport -= Made;
-            }
-        }
-
-        // Nobody could catch an exception here, and the character works without the shapes.
-        void Made(AnthroBody body)
-        {
             try
             {
                 Rebuild();
             }
             catch (Exception error)
             {
+                // Nobody could catch an exception here, and the character works without the shapes.
                 Debug.LogException(error, this);
             }
+        }
+
+        bool HasBlendShapes()
+        {
+            return drivers.TrueForAll(driver => Character.HasBlendShape(driver.blendShape));
         }
 
         /// <summary>Makes the blend shapes for the character's current body. Removes all blend shapes that the character had.
@@ -121,25 +102,20 @@ namespace Anthronet
         /// <exception cref="InvalidOperationException">The character is not generated yet.</exception>
         public void Rebuild()
         {
-            var body = Character().Body;
-            if (body == null)
-            {
-                throw new InvalidOperationException(
-                    "generate the character before its pose-driven shapes: " + gameObject.name);
-            }
+            var body = RequireBody();
             var next = new List<Driver>();
             foreach (var shape in shapes)
             {
-                next.Add(CreateDriver(shape, character.Rig, next.Count));
+                next.Add(CreateDriver(shape, Character.Rig, next.Count));
             }
             drivers.Clear();
             madeFor = null;
-            character.ClearBlendShapes();
+            Character.ClearBlendShapes();
             foreach (var driver in next)
             {
                 using (var target = TargetBody(body, driver.shape))
                 {
-                    character.AddBlendShape(driver.blendShape, target);
+                    Character.AddBlendShape(driver.blendShape, target);
                 }
             }
             drivers.AddRange(next);
@@ -149,7 +125,7 @@ namespace Anthronet
 
         static Driver CreateDriver(AnthroPoseDrivenShape shape, AnthroRig rig, int index)
         {
-            var joint = Array.FindIndex(rig.Bones, bone => bone.name == shape.joint);
+            var joint = rig.IndexOf(shape.joint);
             if (joint < 0)
             {
                 throw new ArgumentException(
@@ -200,7 +176,7 @@ namespace Anthronet
         /// </summary>
         public void Apply()
         {
-            if (madeFor == null || !ReferenceEquals(madeFor, Character().Body))
+            if (madeFor == null || !ReferenceEquals(madeFor, Character.Body))
             {
                 return;
             }
@@ -210,7 +186,7 @@ namespace Anthronet
                 var shape = driver.shape;
                 var angle = DegreesBetween(driver.bindRotation, driver.bone.localRotation);
                 var weight = (angle - shape.startDegrees) / (shape.endDegrees - shape.startDegrees);
-                character.SetBlendShapeWeight(driver.blendShape, 100f * Mathf.Clamp01(weight));
+                Character.SetBlendShapeWeight(driver.blendShape, 100f * Mathf.Clamp01(weight));
             }
         }
 

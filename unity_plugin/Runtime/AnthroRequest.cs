@@ -105,7 +105,7 @@ namespace Anthronet
         /// <summary>Makes this request ask for what another does.</summary>
         public void Take(AnthroRequest other)
         {
-            Library.Given(other, "other");
+            Library.NotNull(other, "other");
             sex = other.sex;
             metres = (double[])other.metres.Clone();
             given = (bool[])other.given.Clone();

@@ -106,7 +106,13 @@ namespace Anthronet
             }
         }
 
-        /// <summary>The transform of a joint by its name in the rig; null where there is none.</summary>
+        /// <summary>The index of a joint by its name in the rig; −1 where the rig has no such joint.</summary>
+        public int IndexOf(string joint)
+        {
+            return Array.FindIndex(bones, bone => bone.name == joint);
+        }
+
+        /// <summary>The transform of a joint by its name in the rig; null where the rig has no such joint.</summary>
         public Transform Find(string joint)
         {
             return Array.Find(bones, bone => bone.name == joint);

@@ -29,10 +29,7 @@ namespace Anthronet
         /// <returns>The spawn.</returns>
         public static AnthroSpawn Run(AnthroSpawn spawn)
         {
-            if (spawn == null)
-            {
-                throw new ArgumentNullException("spawn");
-            }
+            Native.Library.NotNull(spawn, "spawn");
             spawns.Add(spawn);
             if (Application.isPlaying)
             {

@@ -11,7 +11,7 @@ namespace Anthronet
         /// <summary>Makes a part of a surface ready; the surface is not needed afterwards.</summary>
         public AnthroSkinner(AnthroSurface surface, int part = 0)
         {
-            using (var held = new Held(Library.Given(surface, "surface").Handle))
+            using (var held = new Held(Library.NotNull(surface, "surface").Handle))
             {
                 anthronet_skinner* made;
                 anthronet_error error;

@@ -257,10 +257,13 @@ namespace Anthronet
             var build = new AnthroBuild(body, settings.skinTone, settings.bodyOnly);
             try
             {
-                var last = Math.Max(settings.finestLod, settings.coarsestLod);
-                for (var lod = Math.Min(settings.finestLod, settings.coarsestLod); lod <= last && !stopped; lod++)
+                foreach (var lod in AnthroFigure.LodRange(settings.finestLod, settings.coarsestLod))
                 {
-                    // One of a pool needs less, but whether there will be one in it nobody knows yet.
+                    if (stopped)
+                    {
+                        break;
+                    }
+                    // A pooled character needs less, but whether the pool will have one is not known yet.
                     build.Pack(lod, true);
                 }
                 return build;

@@ -48,10 +48,6 @@ namespace Anthronet
         /// <param name="bodyOnly">Leaves out eyes, teeth, tongue and lashes.</param>
         public AnthroSurface(AnthroBody body, int lod, int skinTone = 0, bool bodyOnly = false)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
             var options = new anthronet_mesh_options();
             options.struct_size = (uint)sizeof(anthronet_mesh_options);
             options.lod = checked((uint)lod);
@@ -61,7 +57,7 @@ namespace Anthronet
             options.body_only = bodyOnly ? 1u : 0u;
             options.skin_tone = checked((uint)skinTone);
             anthronet_error error;
-            using (var held = new Held(body.Handle))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
             {
                 anthronet_mesh* made;
                 Library.Check(NativeMethods.anthronet_mesh_new(
@@ -118,11 +114,7 @@ namespace Anthronet
         /// <summary>Makes it the surface of another body, without blend shapes.</summary>
         public void Update(AnthroBody body)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
-            using (var other = new Held(body.Handle))
+            using (var other = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             {
                 anthronet_error error;
@@ -135,12 +127,8 @@ namespace Anthronet
         /// <exception cref="AnthroException">The name is empty or taken.</exception>
         public void AddBlendShape(string name, AnthroBody body)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
             ulong length;
-            using (var other = new Held(body.Handle))
+            using (var other = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
@@ -155,28 +143,17 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint count;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_mesh_blend_shape_count(
-                        (anthronet_mesh*)held.Pointer, &count, &error), &error);
-                    return (int)count;
-                }
+                return Library.Number(handle, (pointer, count, error) =>
+                    NativeMethods.anthronet_mesh_blend_shape_count((anthronet_mesh*)pointer, count, error));
             }
         }
 
         /// <summary>The name of a blend shape.</summary>
         public string BlendShapeName(int shape)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_mesh_blend_shape_name(
-                    (anthronet_mesh*)held.Pointer, checked((uint)shape), &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)shape);
+            return Library.Text(handle, (pointer, name, error) =>
+                NativeMethods.anthronet_mesh_blend_shape_name((anthronet_mesh*)pointer, index, name, error));
         }
 
         /// <summary>Writes rows of one part to memory, `stride` bytes apart.</summary>

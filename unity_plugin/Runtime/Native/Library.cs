@@ -73,15 +73,58 @@ namespace Anthronet.Native
             }
         }
 
-        /// <summary>What is given, which may not be null.</summary>
-        /// <exception cref="ArgumentNullException">It is.</exception>
-        internal static T Given<T>(T value, string name) where T : class
+        /// <summary>Returns the argument after checking it.</summary>
+        /// <exception cref="ArgumentNullException">It is null.</exception>
+        internal static T NotNull<T>(T value, string name) where T : class
         {
             if (value == null)
             {
                 throw new ArgumentNullException(name);
             }
             return value;
+        }
+
+        /// <summary>A native function that writes a number.</summary>
+        internal delegate int NumberCall(void* handle, uint* number, anthronet_error* error);
+
+        /// <summary>A native function that writes a text, valid as long as the handle.</summary>
+        internal delegate int TextCall(void* handle, anthronet_text* text, anthronet_error* error);
+
+        /// <summary>A native function that creates bytes, such as JSON.</summary>
+        internal delegate int BytesCall(void* handle, anthronet_bytes** bytes, anthronet_error* error);
+
+        internal static int Number(AnthroHandle handle, NumberCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                uint number;
+                anthronet_error error;
+                Check(call(held.Pointer, &number, &error), &error);
+                return (int)number;
+            }
+        }
+
+        internal static string Text(AnthroHandle handle, TextCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_text text;
+                anthronet_error error;
+                Check(call(held.Pointer, &text, &error), &error);
+                return Utf8.Text(text);
+            }
+        }
+
+        /// <summary>The text of bytes that a native function creates; they are freed.</summary>
+        internal static string BytesText(AnthroHandle handle, BytesCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_bytes* bytes;
+                anthronet_error error;
+                Check(call(held.Pointer, &bytes, &error), &error);
+                return Utf8.TakeText(bytes);
+            }
         }
 
         /// <summary>Throws what a call says.</summary>
