@@ -28,7 +28,7 @@ namespace Anthronet.Tests
             var own = animator.Clip;
             animator.Play((AnthroClip)null);
             Expect.Throws<ObjectDisposedException>(() => own.Bake(), "its own clip is freed");
-            character.Rig.ToBindPose();
+            character.Rig.ApplyBindPose();
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
@@ -115,7 +115,7 @@ namespace Anthronet.Tests
                 Expect.That(UnityEditor.AssetDatabase.Contains(saved) && !saved.Loops, "not saved");
                 UnityEditor.AssetDatabase.DeleteAsset(path);
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "a quaternion that changes its sign is baked without a jump")]
@@ -131,14 +131,14 @@ namespace Anthronet.Tests
                     var q = frames[i].rotation;
                     frames[i].rotation = i / walk.JointCount % 2 == 0 ? q : new Quaternion(-q.x, -q.y, -q.z, -q.w);
                 }
-                using (var flipped = AnthroClip.Of(character.Body, "walk", walk.FramesPerSecond, frames))
+                using (var flipped = AnthroClip.FromPoses(character.Body, "walk", walk.FramesPerSecond, frames))
                 {
                     var made = flipped.ToAnimationClip(character.Rig);
                     Compare(made, walk, character.Rig, "l");
                     UnityEngine.Object.Destroy(made);
                 }
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "when the character becomes another its own clip is made anew and goes on at the same time")]
@@ -158,7 +158,7 @@ namespace Anthronet.Tests
             {
                 var pose = new AnthroTransform[fresh.JointCount];
                 fresh.Sample((double)0.4f, AnthroWrap.Loop, pose, true);
-                var hips = Scene.At(character.Rig.Find("pelvis"));
+                var hips = Scene.WorldPosition(character.Rig.Find("pelvis"));
                 var expected = pose[Scene.Joint(character, "pelvis")].translation;
                 Expect.That((hips - expected).magnitude < 1e-5, "not in the pose of the clip at once: " + hips + ", " + expected);
             }
@@ -180,7 +180,7 @@ namespace Anthronet.Tests
             Expect.That(animator.Clip != null && animator.Clip.Name == "walk", "it stands still");
             Expect.Near(0.3, animator.Time, 1e-6, "time");
             animator.Advance(0.1f);
-            Scene.End(character);
+            Scene.Destroy(character);
             var bare = new GameObject("bare");
             bare.SetActive(false);
             var nobody = bare.AddComponent<AnthroAnimator>();

@@ -53,7 +53,7 @@ namespace Anthronet.Tests
                     AvatarBuilder.BuildHumanAvatar(
                         character.gameObject, AnthroHumanoid.Describe(character.Rig, character.transform));
                     Expect.That(AvatarBuilder.Why == null, sex + " " + seed + ": " + AvatarBuilder.Why);
-                    Scene.End(character);
+                    Scene.Destroy(character);
                 }
             }
         }
@@ -77,8 +77,8 @@ namespace Anthronet.Tests
             var arm = character.Rig.Find("upperarm_l");
             arm.localRotation = new Quaternion(0.1f, 0f, 0.1f, 0.9899495f);
             refused("is not level", human => human);
-            character.Rig.ToBindPose();
-            Scene.End(character);
+            character.Rig.ApplyBindPose();
+            Scene.Destroy(character);
         }
 
         static HumanBone[] Swapped(HumanBone[] human, string first, string second)
@@ -118,7 +118,7 @@ namespace Anthronet.Tests
             Expect.Equal(1.5f, animator.GetFloat(Animator.StringToHash("speed")), "speed");
             Expect.Equal(3, animator.GetInteger(Animator.StringToHash("weapon")), "weapon");
             Expect.That(animator.GetBool(Animator.StringToHash("armed")), "armed");
-            Scene.End(character);
+            Scene.Destroy(character);
         }
     }
 }

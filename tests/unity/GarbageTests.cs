@@ -71,7 +71,7 @@ namespace Anthronet.Tests
                 var jobs = crowd.Jobs;
                 Nothing("skinning as Burst calls it", 300, () => Skin(jobs));
             }
-            using (var job = AnthroModel.Default.Start(new[] { new AnthroRequest() }))
+            using (var job = AnthroModel.Default.StartJob(new[] { new AnthroRequest() }))
             {
                 int done;
                 Nothing("polling", 2000, () => job.Poll(out done));

@@ -15,7 +15,7 @@ namespace Anthronet.Tests
         public static void Handedness()
         {
             var character = Scene.Character();
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             var left = character.Rig.Find("hand_l").localToWorldMatrix;
             var right = character.Rig.Find("hand_r").localToWorldMatrix;
             Expect.That(left.m03 < -0.4 && right.m03 > 0.4, "hands at x " + left.m03 + " and " + right.m03);
@@ -41,8 +41,8 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        /// How many triangles of a part go round so that their front is where their normals point, and how many do not. In
-        /// Unity's left-handed space the front is where Cross(b - a, c - a) points.
+        /// How many triangles of a part go round so that their front is where their normals point, and how many do not.
+        /// In Unity's left-handed space the front is where Cross(b - a, c - a) points.
         static void Count(Mesh mesh, int part, out int along, out int against, out double volume)
         {
             var of = mesh.GetSubMesh(part);
@@ -78,7 +78,8 @@ namespace Anthronet.Tests
                         Expect.That(against * 25 <= along, name + ": " + against + " against, " + along + " along their normals");
                         if (part == 0)
                         {
-                            // Closed but for the mouth and eyes, so near the body's volume, with the sign of outward faces.
+                            // Closed but for the mouth and eyes, so near the body's volume, with the sign of outward
+                            // faces.
                             Expect.Near(body.Volume, volume, 0.05 * body.Volume, name + ": volume");
                         }
                     }
@@ -91,7 +92,7 @@ namespace Anthronet.Tests
         public static void Eyes()
         {
             var character = Scene.Character();
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             var names = new List<string>();
             using (var surface = new AnthroSurface(character.Body, 1))
             {
@@ -103,7 +104,7 @@ namespace Anthronet.Tests
             var found = 0;
             foreach (var side in new[] { "eye_l", "eye_r" })
             {
-                var middle = Scene.At(character.Rig.Find(side));
+                var middle = Scene.WorldPosition(character.Rig.Find(side));
                 var bone = Scene.Joint(character, side);
                 Expect.That(side == "eye_l" ? middle.x < -0.02 : middle.x > 0.02, side + " is at " + middle);
                 int at = 0, outward = 0, count = 0;
@@ -123,7 +124,7 @@ namespace Anthronet.Tests
                 Expect.That(count > 20 && outward > 0.8 * count, side + ": " + outward + " of " + count + " look outwards");
             }
             Expect.That(found > 0, "no eyes among " + string.Join(", ", names));
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "bind pose x vertex = vertex, weights are sorted and of sum 1")]
@@ -132,7 +133,7 @@ namespace Anthronet.Tests
             foreach (var lod in new[] { 0, 1, 2, 3 })
             {
                 var character = Scene.Character(lod, lod);
-                var mesh = character.MeshOf(lod);
+                var mesh = character.GetMesh(lod);
                 var matrices = character.Rig.Bones
                     .Select((bone, i) => bone.localToWorldMatrix * mesh.bindposes[i]).ToArray();
                 var at = 0;

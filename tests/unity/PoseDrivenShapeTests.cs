@@ -14,7 +14,7 @@ namespace Anthronet.Tests
     {
         static float Weight(AnthroCharacter character, int lod, int shape)
         {
-            return character.RendererOf(lod).GetBlendShapeWeight(shape);
+            return character.GetRenderer(lod).GetBlendShapeWeight(shape);
         }
 
         static void Bend(AnthroCharacter character, string joint, float degrees)
@@ -32,22 +32,22 @@ namespace Anthronet.Tests
             var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
             foreach (var lod in new[] { 1, 2 })
             {
-                Expect.Equal(2, character.MeshOf(lod).blendShapeCount, "shapes of LOD" + lod);
+                Expect.Equal(2, character.GetMesh(lod).blendShapeCount, "shapes of LOD" + lod);
             }
             foreach (var step in new[] { new[] { 0f, 0f }, new[] { 15f, 0f }, new[] { 67.5f, 50f }, new[] { 120f, 100f }, new[] { 150f, 100f } })
             {
                 Bend(character, "lowerarm_l", step[0]);
-                MonoBehaviour.Tell(poseDriven, "LateUpdate");
+                MonoBehaviour.Send(poseDriven, "LateUpdate");
                 foreach (var lod in new[] { 1, 2 })
                 {
                     Expect.That(Math.Abs(Weight(character, lod, 0) - step[1]) < 0.01, step[0] + " degrees, LOD" + lod + ": " + Weight(character, lod, 0));
                     Expect.Equal(0f, Weight(character, lod, 1), "the other arm");
                 }
             }
-            character.Rig.ToBindPose();
+            character.Rig.ApplyBindPose();
             poseDriven.Apply();
             Expect.Equal(0f, Weight(character, 1, 0), "in the bind pose");
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "pose-driven shapes: a shape moves the measured part of its side and hardly anything else")]
@@ -55,7 +55,7 @@ namespace Anthronet.Tests
         {
             var character = Scene.Character();
             character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             var offsets = mesh.Shapes[mesh.Shapes.Keys.First()];
             Func<string, Vector3> joint =
                 name => character.Rig.Joints[Scene.Joint(character, name)].modelFromJoint.MultiplyPoint3x4(Vector3.zero);
@@ -73,7 +73,7 @@ namespace Anthronet.Tests
             // 5 % of 0.3 m around are 2.4 mm of radius.
             Expect.That(arm > 0.0015f && arm < 0.008f, "arm " + arm);
             Expect.That(other < 0.35f * arm && legs < 0.35f * arm, "arm " + arm + ", other arm " + other + ", legs " + legs);
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "pose-driven shapes: rebuilt when the character changes, and errors name the culprit")]
@@ -83,7 +83,7 @@ namespace Anthronet.Tests
             var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
             character.Request = Scene.Request(1.6);
             character.Generate();
-            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "shapes of the next body");
+            Expect.Equal(2, character.GetMesh(3).blendShapeCount, "shapes of the next body");
             Bend(character, "lowerarm_r", 120f);
             poseDriven.Apply();
             Expect.That(Math.Abs(Weight(character, 3, 1) - 100f) < 0.01, "weight on the next body");
@@ -96,11 +96,11 @@ namespace Anthronet.Tests
             poseDriven.Shapes[0].measure = "arm_circumference";
             poseDriven.Shapes[0].endDegrees = 10f;
             Expect.That(Expect.Throws<ArgumentException>(poseDriven.Rebuild, "angles").Message.Contains("15 and 10"), "says the angles");
-            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after errors");
+            Expect.Equal(2, character.GetMesh(3).blendShapeCount, "after errors");
             poseDriven.Shapes[0].endDegrees = 90f;
             poseDriven.Rebuild();
-            Expect.Equal(2, character.MeshOf(3).blendShapeCount, "after a change");
-            Scene.End(character);
+            Expect.Equal(2, character.GetMesh(3).blendShapeCount, "after a change");
+            Scene.Destroy(character);
         }
 
         [Test(Description = "pose-driven shapes: Unity finds types and fields that were renamed by their former names")]

@@ -16,12 +16,12 @@ namespace Anthronet.Tests
         public static void Single()
         {
             var single = new GameObject("single").AddComponent<SingleCharacter>();
-            MonoBehaviour.Tell(single, "Start");
+            MonoBehaviour.Send(single, "Start");
             single.height = 1.9f;
-            MonoBehaviour.Tell(single, "Update");
+            MonoBehaviour.Send(single, "Update");
             var person = single.transform.GetChild(0).gameObject.GetComponent<AnthroCharacter>();
             Expect.Near(1.9, person.Body.Measures()[3].obtained, 1e-3, "height");
-            MonoBehaviour.Tell(person.GetComponent<AnthroAnimator>(), "LateUpdate");
+            MonoBehaviour.Send(person.GetComponent<AnthroAnimator>(), "LateUpdate");
             UnityEngine.Object.Destroy(single.gameObject);
         }
 
@@ -53,7 +53,7 @@ namespace Anthronet.Tests
             Expect.Equal(7, Crowd.Requests(Population, 7).Length, "as many as asked for");
             Expect.That(requests.All(request => request.IsGiven(3) && request.Fill == AnthroFill.Sample), "statures");
             Expect.Equal(100, requests.Count(request => request.Sex == AnthroSex.Female), "women");
-            using (var job = AnthroModel.Default.Start(requests))
+            using (var job = AnthroModel.Default.StartJob(requests))
             {
                 int done;
                 while (job.Poll(out done) == AnthroJobState.Running)
@@ -76,12 +76,12 @@ namespace Anthronet.Tests
             var crowd = new GameObject("crowd").AddComponent<Crowd>();
             crowd.population = new TextAsset(Population);
             crowd.count = 12;
-            MonoBehaviour.Tell(crowd, "Start");
+            MonoBehaviour.Send(crowd, "Start");
             for (var frame = 0; AnthroRunner.Count > 0; frame++)
             {
                 Expect.That(frame < 30000, "never done");
                 System.Threading.Thread.Sleep(1);
-                MonoBehaviour.Tell((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
+                MonoBehaviour.Send((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
             }
             var people = Enumerable.Range(0, crowd.transform.childCount).Select(i => crowd.transform.GetChild(i).gameObject).ToArray();
             Expect.Equal(12, people.Length, "people");
@@ -116,36 +116,36 @@ namespace Anthronet.Tests
         public static void Editor()
         {
             var editor = new GameObject("editor").AddComponent<MeasureEditor>();
-            MonoBehaviour.Tell(editor, "Start");
+            MonoBehaviour.Send(editor, "Start");
             var person = editor.transform.GetChild(0).gameObject.GetComponent<AnthroCharacter>();
             try
             {
                 var before = person.Body;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(ReferenceEquals(before, person.Body), "made anew although nothing was done");
                 var row = -1;
-                User.Does = (label, value) => label == "slider" && ++row == 3 ? (object)1.61f : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "slider" && ++row == 3 ? (object)1.61f : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.Near(1.61, person.Body.Measures()[3].obtained, 1e-3, "height");
                 Expect.That(person.Body.Measures()[3].Given && !person.Body.Measures()[0].Given, "given");
-                User.Does = (label, value) => label == "waist circumference" ? (object)true : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "waist circumference" ? (object)true : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(person.Body.Measures()[0].Given, "the waist is not given");
-                User.Does = (label, value) => label == "waist circumference" ? (object)false : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "waist circumference" ? (object)false : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(!person.Body.Measures()[0].Given, "the waist is still given");
-                User.Does = (label, value) => label == "Somebody else" ? (object)true : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "Another person" ? (object)true : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.Equal(1ul, person.Body.Seed, "seed");
                 before = person.Body;
                 row = -1;
-                User.Does = (label, value) => label == "slider" && ++row == 3 ? (object)9f : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "slider" && ++row == 3 ? (object)9f : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(ReferenceEquals(before, person.Body), "a refused request changes the person");
             }
             finally
             {
-                User.Does = null;
+                User.Answer = null;
                 UnityEngine.Object.Destroy(editor.gameObject);
             }
         }
@@ -159,20 +159,20 @@ namespace Anthronet.Tests
             player.file = file;
             try
             {
-                MonoBehaviour.Tell(player, "Start");
+                MonoBehaviour.Send(player, "Start");
                 var animator = player.transform.GetChild(0).gameObject.GetComponent<AnthroAnimator>();
                 Expect.That(animator.Clip != null && animator.Clip.FrameCount == 3, "the file does not play");
-                User.Does = (label, value) => label == "walk" ? (object)true : null;
-                MonoBehaviour.Tell(player, "OnGUI");
+                User.Answer = (label, value) => label == "walk" ? (object)true : null;
+                MonoBehaviour.Send(player, "OnGUI");
                 Expect.Equal("walk", animator.Clip.Name, "clip");
-                User.Does = (label, value) => label == "Pause" ? (object)true : label == "slider" ? (object)0.25f : null;
-                MonoBehaviour.Tell(player, "OnGUI");
+                User.Answer = (label, value) => label == "Pause" ? (object)true : label == "slider" ? (object)0.25f : null;
+                MonoBehaviour.Send(player, "OnGUI");
                 Expect.Equal(0f, animator.Speed, "speed");
                 Expect.Near(0.25, animator.Time, 1e-6, "time");
             }
             finally
             {
-                User.Does = null;
+                User.Answer = null;
                 UnityEngine.Object.Destroy(player.gameObject);
                 File.Delete(file);
             }

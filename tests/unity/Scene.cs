@@ -27,7 +27,7 @@ namespace Anthronet.Tests
             return place;
         }
 
-        internal static Vector3 At(Transform transform)
+        internal static Vector3 WorldPosition(Transform transform)
         {
             var m = transform.localToWorldMatrix;
             return new Vector3(m.m03, m.m13, m.m23);
@@ -56,7 +56,7 @@ namespace Anthronet.Tests
                 }
             }
             part.Enabled = false;
-            MonoBehaviour.Tell(part, "OnEnable");
+            MonoBehaviour.Send(part, "OnEnable");
             part.Enabled = true;
         }
 
@@ -83,7 +83,7 @@ namespace Anthronet.Tests
             return type.GetField(name, Hidden).GetValue(null);
         }
 
-        internal static void End(AnthroCharacter character)
+        internal static void Destroy(AnthroCharacter character)
         {
             if (Application.isPlaying)
             {

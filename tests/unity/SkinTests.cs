@@ -41,7 +41,7 @@ namespace Anthronet.Tests
         public static void Skinning()
         {
             var character = Scene.Character(1, 1);
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             using (var clip = AnthroClip.Builtin("walk", character.Body))
             using (var surface = new AnthroSurface(character.Body, 1))
             {
@@ -55,7 +55,7 @@ namespace Anthronet.Tests
                     crowd.Run();
                     var pose = new AnthroTransform[clip.JointCount];
                     clip.Sample(Seconds, AnthroWrap.Loop, pose);
-                    character.Rig.ToPose(pose);
+                    character.Rig.ApplyPose(pose);
                     for (var part = 0; part < skinners.Length; part++)
                     {
                         var count = skinners[part].VertexCount;
@@ -74,7 +74,7 @@ namespace Anthronet.Tests
                 }
                 Array.ForEach(skinners, skinner => skinner.Dispose());
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
         [Test(Description = "the entry for Burst writes what the crowd's does: from a job, into one vertex buffer, and with its errors")]

@@ -86,7 +86,7 @@ namespace Anthronet.Tests
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
             // The materials are kept for the next ones: make them first.
-            Scene.End(Scene.Character(3, 3));
+            Scene.Destroy(Scene.Character(3, 3));
             var alive = UnityEngine.Object.Alive;
             using (var spawn = AnthroFactory.CreateAsync(
                 Enumerable.Range(1, 4).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray(), settings))
@@ -103,7 +103,7 @@ namespace Anthronet.Tests
                 // A budget of nothing takes one step: while the third is made its object is taken away.
                 while (!spawn.Advance(0))
                 {
-                    if (spawn.Done == 2 && half[2] != null)
+                    if (spawn.DoneCount == 2 && half[2] != null)
                     {
                         UnityEngine.Object.Destroy(half[2].gameObject);
                     }
@@ -146,7 +146,7 @@ namespace Anthronet.Tests
             {
                 Expect.That(frame < 30000, "never done");
                 System.Threading.Thread.Sleep(1);
-                MonoBehaviour.Tell((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
+                MonoBehaviour.Send((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
             }
         }
 
@@ -164,7 +164,7 @@ namespace Anthronet.Tests
             Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the one that throws is not told");
             Debug.Errors.Clear();
             Expect.Throws<ObjectDisposedException>(first.Cancel, "it is not freed");
-            Scene.End(first.Character(0));
+            Scene.Destroy(first.Character(0));
         }
 
         [Test(Description = "the runner ends with the play mode, and in edit mode the editor drives it")]
@@ -185,15 +185,15 @@ namespace Anthronet.Tests
                     UnityEditor.EditorApplication.update();
                 }
                 Expect.That(UnityEditor.EditorApplication.update == null, "the editor still calls it");
-                Scene.End(edited.Character(0));
+                Scene.Destroy(edited.Character(0));
                 var left = AnthroRunner.Run(AnthroFactory.CreateAsync(requests, settings));
                 UnityEditor.EditorApplication.update();
-                UnityEditor.EditorApplication.Tell(UnityEditor.PlayModeStateChange.ExitingEditMode);
+                UnityEditor.EditorApplication.Raise(UnityEditor.PlayModeStateChange.ExitingEditMode);
                 Expect.Throws<ObjectDisposedException>(left.Cancel, "not freed before the play mode");
                 Expect.Equal(0, AnthroRunner.Count, "spawns");
                 foreach (var i in Enumerable.Range(0, 50).Where(i => left.Character(i) != null))
                 {
-                    Scene.End(left.Character(i));
+                    Scene.Destroy(left.Character(i));
                 }
                 UnityEditor.EditorApplication.update();
             }
@@ -209,7 +209,7 @@ namespace Anthronet.Tests
             var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount);
             var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), 50).ToArray());
             System.Runtime.CompilerServices.RuntimeHelpers.RunClassConstructor(typeof(Editor.AnthroReload).TypeHandle);
-            UnityEditor.AssemblyReloadEvents.Tell();
+            UnityEditor.AssemblyReloadEvents.Raise();
             Expect.Throws<ObjectDisposedException>(() => body.Joints(), "body");
             Expect.Throws<ObjectDisposedException>(() => clip.Bake(), "clip");
             Expect.Throws<ObjectDisposedException>(() => crowd.Run(), "crowd");
@@ -230,14 +230,14 @@ namespace Anthronet.Tests
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3, pool = pool };
             var first = AnthroFactory.Create(new AnthroRequest { Seed = 1 }, settings);
             var told = 0;
-            first.OnReport += body => told++;
+            first.OnGenerated += body => told++;
             var animator = first.gameObject.AddComponent<AnthroAnimator>();
             animator.Play("walk");
             pool.Release(first);
             pool.Release(first);
             Expect.Equal(1, pool.Count, "in the pool");
             Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "awake, or still walking");
-            var taken = pool.Take();
+            var taken = pool.Get();
             Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "the old person is awake");
             pool.Release(taken);
             var second = AnthroFactory.Create(new AnthroRequest { Seed = 2 }, settings);
@@ -248,13 +248,13 @@ namespace Anthronet.Tests
             Expect.That(second.gameObject.AddComponent<AnthroAnimator>() == null && Debug.Errors.Count == 1, "two animators");
             Debug.Errors.Clear();
             animator.Play("idle");
-            var joint = Scene.At(second.Rig.Find("hand_l"));
+            var joint = Scene.WorldPosition(second.Rig.Find("hand_l"));
             second.Request.Set("height", 1.55);
             second.Generate();
-            Expect.That((Scene.At(second.Rig.Find("hand_l")) - joint).magnitude > 0.01f, "it does not follow");
+            Expect.That((Scene.WorldPosition(second.Rig.Find("hand_l")) - joint).magnitude > 0.01f, "it does not follow");
             pool.Release(second);
             UnityEngine.Object.Destroy(second.gameObject);
-            Expect.That(pool.Take() == null, "a destroyed one is not given");
+            Expect.That(pool.Get() == null, "a destroyed one is not given");
             var third = AnthroFactory.Create(new AnthroRequest { Seed = 3 }, settings);
             pool.Release(third);
             pool.Clear();

@@ -82,8 +82,8 @@ namespace Anthronet.Tests
             Expect.Equal(avatars, whole, "characters");
         }
 
-        /// The longest step that `Advance` takes for a character, median of many, milliseconds. The stand-ins copy meshes as
-        /// Unity does; what else Unity does with them comes on top.
+        /// The longest step that `Advance` takes for a character, median of many, milliseconds. The stand-ins copy meshes
+        /// as Unity does; what else Unity does with them comes on top.
         static double Longest(int finest)
         {
             var requests = Enumerable.Range(1, 20).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
@@ -94,7 +94,7 @@ namespace Anthronet.Tests
                 {
                     // Packing, which is beside the main thread, gets on meanwhile.
                     System.Threading.Thread.Sleep(2);
-                    var at = spawn.Done;
+                    var at = spawn.DoneCount;
                     longest[at] = Math.Max(longest[at], Milliseconds(() => spawn.Advance(0)));
                 }
                 for (var i = 0; i < spawn.Count; i++)

@@ -2,7 +2,7 @@ using UnityEditor;
 
 namespace Anthronet.Editor
 {
-    /// <summary>The inspector of a request as an asset.</summary>
+    /// <summary>Inspector of a request asset.</summary>
     [CustomEditor(typeof(AnthroRequestAsset))]
     public sealed class AnthroRequestAssetEditor : UnityEditor.Editor
     {

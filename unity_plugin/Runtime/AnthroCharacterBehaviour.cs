@@ -36,13 +36,14 @@ namespace Anthronet
             return Character.Body;
         }
 
-        /// <summary>Called when the character has a new body, and when the component is enabled on one that has a body.</summary>
+        /// <summary>Called when the character has a new body, and when the component is enabled on one that has a
+        /// body.</summary>
         internal abstract void OnBody(AnthroBody body);
 
         /// <summary>Unity's message.</summary>
         protected void OnEnable()
         {
-            Character.OnReport += OnBody;
+            Character.OnGenerated += OnBody;
             if (Character.Body != null)
             {
                 OnBody(Character.Body);
@@ -54,7 +55,7 @@ namespace Anthronet
         {
             if (Character != null)
             {
-                Character.OnReport -= OnBody;
+                Character.OnGenerated -= OnBody;
             }
         }
     }

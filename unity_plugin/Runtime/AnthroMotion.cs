@@ -3,7 +3,7 @@ using Anthronet.Native;
 
 namespace Anthronet
 {
-    /// <summary>A motion file as it was read, of its own skeleton. Immutable; may be used by many threads.</summary>
+    /// <summary>A motion file with its own skeleton, before retargeting. Immutable; any thread may use it.</summary>
     public sealed unsafe class AnthroMotion : IDisposable
     {
         readonly MotionHandle handle;
@@ -13,8 +13,8 @@ namespace Anthronet
             handle = new MotionHandle(pointer);
         }
 
-        /// <summary>Reads a file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.</summary>
-        /// <exception cref="AnthroException">It is not such a file.</exception>
+        /// <summary>Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.</summary>
+        /// <exception cref="AnthroException">The file is not valid.</exception>
         public static AnthroMotion Open(string path)
         {
             Library.Ensure();
@@ -28,8 +28,8 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Reads the bytes of a file; the ending of its name tells the format.</summary>
-        /// <exception cref="AnthroException">They are not such a file's.</exception>
+        /// <summary>Reads a motion file from memory; the extension of `name` says the format.</summary>
+        /// <exception cref="AnthroException">The bytes are not a valid motion file.</exception>
         public static AnthroMotion Open(byte[] bytes, string name)
         {
             Library.NotNull(bytes, "bytes");
@@ -46,7 +46,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Number of clips: at least one.</summary>
+        /// <summary>Number of clips, at least one.</summary>
         public int ClipCount
         {
             get
@@ -64,7 +64,7 @@ namespace Anthronet
                 NativeMethods.anthronet_motion_clip_name((anthronet_motion*)pointer, index, name, error));
         }
 
-        /// <summary>How the file was understood, as JSON.</summary>
+        /// <summary>How the file was interpreted, as JSON.</summary>
         public string ReportJson
         {
             get
@@ -74,9 +74,9 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Brings one of its clips onto a body.</summary>
-        /// <exception cref="AnthroException">Joints that a person needs are not found.</exception>
-        public AnthroClip Onto(AnthroBody body, int clip = 0, AnthroRetarget options = default(AnthroRetarget))
+        /// <summary>Retargets a clip to a body.</summary>
+        /// <exception cref="AnthroException">Joints of a humanoid were not found in the file.</exception>
+        public AnthroClip Retarget(AnthroBody body, int clip = 0, AnthroRetargetOptions options = default(AnthroRetargetOptions))
         {
             ulong length;
             var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
@@ -103,7 +103,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees it. Clips made of it stay whole.</summary>
+        /// <summary>Frees the native memory. Clips made from the motion stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

@@ -36,8 +36,8 @@ namespace Anthronet
     }
 
     /// <summary>
-    /// Sets blend-shape weights from joint angles. Each blend shape leads to the same person with one measure changed; its
-    /// weight follows the angle of one joint from the bind pose, where it is exactly 0. The shapes are made when the
+    /// Sets blend-shape weights from joint angles. Each blend shape leads to the same person with one measure changed;
+    /// its weight follows the angle of one joint from the bind pose, where it is exactly 0. The shapes are made when the
     /// character is generated, about 10 ms each. By default upper arms swell by 5 % as elbows bend, a conservative value
     /// that was not measured. These are not learned pose correctives.
     /// </summary>
@@ -95,8 +95,8 @@ namespace Anthronet
             return drivers.TrueForAll(driver => Character.HasBlendShape(driver.blendShape));
         }
 
-        /// <summary>Makes the blend shapes for the character's current body. Removes all blend shapes that the character had.
-        /// </summary>
+        /// <summary>Makes the blend shapes for the character's current body. Removes all blend shapes that the character
+        /// had.</summary>
         /// <exception cref="AnthroException">A measure does not exist.</exception>
         /// <exception cref="ArgumentException">A joint does not exist, or the angles are not in order.</exception>
         /// <exception cref="InvalidOperationException">The character is not generated yet.</exception>
@@ -139,7 +139,7 @@ namespace Anthronet
             }
             // Reports an unknown measure before any blend shape is removed.
             int first, second;
-            AnthroMeasures.Sides(shape.measure, out first, out second);
+            AnthroMeasures.IndicesOf(shape.measure, out first, out second);
             return new Driver
             {
                 shape = shape,
@@ -149,8 +149,8 @@ namespace Anthronet
             };
         }
 
-        /// <summary>The same person with one measure changed; the nearest possible one where no person has all 36 measures.
-        /// </summary>
+        /// <summary>The same person with one measure changed; the nearest possible one where no person has all 36
+        /// measures.</summary>
         static AnthroBody TargetBody(AnthroBody body, AnthroPoseDrivenShape shape)
         {
             var latent = new double[AnthroModel.Default.LatentSize];
@@ -158,7 +158,7 @@ namespace Anthronet
             var request = new AnthroRequest { Sex = body.Sex, Seed = body.Seed, Latent = latent, Nearest = true };
             var measures = body.Measures();
             int first, second;
-            AnthroMeasures.Sides(shape.measure, out first, out second);
+            AnthroMeasures.IndicesOf(shape.measure, out first, out second);
             for (var i = 0; i < measures.Length; i++)
             {
                 var factor = i == first || i == second ? 1.0 + shape.relativeChange : 1.0;
@@ -172,8 +172,8 @@ namespace Anthronet
             Apply();
         }
 
-        /// <summary>Sets the weights from the current pose. `LateUpdate` calls it every frame; it allocates no managed memory.
-        /// </summary>
+        /// <summary>Sets the weights from the current pose. `LateUpdate` calls it every frame; it allocates no managed
+        /// memory.</summary>
         public void Apply()
         {
             if (madeFor == null || !ReferenceEquals(madeFor, Character.Body))

@@ -20,7 +20,7 @@ namespace UnityEditor
         public delegate void CallbackFunction();
         public static CallbackFunction update;
         public static event Action<PlayModeStateChange> playModeStateChanged;
-        internal static void Tell(PlayModeStateChange change) { playModeStateChanged(change); }
+        internal static void Raise(PlayModeStateChange change) { playModeStateChanged(change); }
     }
 
     public static class EditorUtility
@@ -65,7 +65,7 @@ namespace UnityEditor
     {
         public delegate void AssemblyReloadCallback();
         public static event AssemblyReloadCallback beforeAssemblyReload;
-        internal static void Tell() { beforeAssemblyReload(); }
+        internal static void Raise() { beforeAssemblyReload(); }
     }
 
     [AttributeUsage(AttributeTargets.Class)]

@@ -1,4 +1,5 @@
-// Stand-ins for Unity's immediate GUI: controls give back what they are given, or what `User` says. See ../signatures.txt.
+// Stand-ins for Unity's immediate GUI: controls give back what they are given, or what `User` says. See
+// ../signatures.txt.
 using System;
 
 namespace UnityEngine
@@ -9,12 +10,12 @@ namespace UnityEngine
     static class User
     {
         /// From what a control says and its value to its new value; null where nothing is done to it.
-        internal static Func<string, object, object> Does = null;
+        internal static Func<string, object, object> Answer = null;
         internal static bool Changed;
 
         internal static T Ask<T>(string label, T value)
         {
-            var answer = Does == null ? null : Does(label, value);
+            var answer = Answer == null ? null : Answer(label, value);
             if (answer == null || answer.Equals(value))
             {
                 return value;

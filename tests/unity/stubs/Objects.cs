@@ -115,7 +115,7 @@ namespace UnityEngine
         internal bool Awoken, Enabled;
 
         /// Calls what Unity calls.
-        internal static void Tell(Component part, string message)
+        internal static void Send(Component part, string message)
         {
             var method = part.GetType().GetMethod(
                 message, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public, null, Type.EmptyTypes, null);
@@ -148,12 +148,12 @@ namespace UnityEngine
             if (!Awoken)
             {
                 Awoken = true;
-                Tell(this, "Awake");
+                Send(this, "Awake");
             }
             if (!Enabled && enabled)
             {
                 Enabled = true;
-                Tell(this, "OnEnable");
+                Send(this, "OnEnable");
             }
         }
 
@@ -162,7 +162,7 @@ namespace UnityEngine
             if (Enabled)
             {
                 Enabled = false;
-                Tell(this, "OnDisable");
+                Send(this, "OnDisable");
             }
         }
 
@@ -172,7 +172,7 @@ namespace UnityEngine
             FallAsleep();
             if (Awoken)
             {
-                Tell(this, "OnDestroy");
+                Send(this, "OnDestroy");
             }
         }
     }

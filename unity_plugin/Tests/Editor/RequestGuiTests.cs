@@ -11,7 +11,7 @@ namespace Anthronet.Tests
         [Test(Description = "labels are the measures in words, the same for both sides")]
         public static void Labels()
         {
-            Expect.Equal("Waist circumference", AnthroRequestGui.Label(0), "label");
+            Expect.Equal("Waist circumference (m)", AnthroRequestGui.Label(0), "label");
             for (var i = AnthroRequestGui.GroupSize; i < 2 * AnthroRequestGui.GroupSize; i++)
             {
                 Expect.Equal(AnthroRequestGui.Label(i), AnthroRequestGui.Label(i + AnthroRequestGui.GroupSize), "sides of " + i);
@@ -23,8 +23,8 @@ namespace Anthronet.Tests
         public static void Told()
         {
             var report = new AnthroMeasureReport { obtained = 1.7, residual = -0.0004, low90 = 1.6, high90 = 1.8, percentile = 61.7 };
-            Expect.Equal("-0.4 mm, percentile 62", AnthroRequestGui.Told(report, true), "given");
-            Expect.Equal("1.700 m (90 %: 1.600 to 1.800), percentile 62", AnthroRequestGui.Told(report, false), "open");
+            Expect.Equal("residual -0.4 mm, percentile 62", AnthroRequestGui.ReportText(report, true), "given");
+            Expect.Equal("1.700 m (90 %: 1.600 to 1.800), percentile 62", AnthroRequestGui.ReportText(report, false), "open");
         }
     }
 }

@@ -27,9 +27,9 @@ namespace Anthronet.Tests
                         Expect.Equal("walk", motion.ClipName(0), "its name");
                         Expect.That(motion.ReportJson.StartsWith("{"), "report");
                     }
-                    using (var again = AnthroClip.Open(file, body, new AnthroRetarget { inPlace = true }))
+                    using (var again = AnthroClip.Open(file, body, new AnthroRetargetOptions { inPlace = true }))
                     using (var memory = AnthroMotion.Open(File.ReadAllBytes(file), "person.glb"))
-                    using (var third = memory.Onto(body, 0, new AnthroRetarget { mappingJson = "{}", framesPerSecond = 10 }))
+                    using (var third = memory.Retarget(body, 0, new AnthroRetargetOptions { mappingJson = "{}", framesPerSecond = 10 }))
                     {
                         Expect.Equal(walk.JointCount, again.JointCount, "joints");
                         Expect.Near(10, third.FramesPerSecond, 1e-9, "rate");
@@ -55,11 +55,11 @@ namespace Anthronet.Tests
             using (var body = NativeTests.Body())
             using (var walk = AnthroClip.Builtin("walk", body))
             using (var idle = AnthroClip.Builtin("idle", body))
-            using (var slow = walk.Resampled(10))
+            using (var slow = walk.Resample(10))
             using (var here = walk.InPlace())
             using (var round = walk.Looped(0.2))
-            using (var both = walk.Blended(idle, 0.5f))
-            using (var then = walk.Then(idle, 0.2))
+            using (var both = walk.Blend(idle, 0.5f))
+            using (var then = walk.Crossfade(idle, 0.2))
             {
                 var frames = walk.Bake();
                 var pose = new AnthroTransform[walk.JointCount];
@@ -69,7 +69,7 @@ namespace Anthronet.Tests
                 Expect.That(then.Duration > walk.Duration && both.FrameCount > 1 && round.FrameCount > 1, "durations");
                 here.Sample(here.Duration, AnthroWrap.Once, pose, true);
                 Expect.That(Math.Abs(pose[1].translation.z) < 0.2, "in place, yet at z " + pose[1].translation.z);
-                using (var copy = AnthroClip.Of(body, "copy \u00fc", walk.FramesPerSecond, frames))
+                using (var copy = AnthroClip.FromPoses(body, "copy \u00fc", walk.FramesPerSecond, frames))
                 {
                     Expect.Equal("copy \u00fc", copy.Name, "name");
                     Expect.Equal(walk.FrameCount, copy.FrameCount, "frames");
@@ -133,7 +133,7 @@ namespace Anthronet.Tests
         {
             using (var body = NativeTests.Body())
             using (var motion = AnthroMotion.Open(System.Text.Encoding.ASCII.GetBytes(Bvh), "arm.bvh"))
-            using (var clip = motion.Onto(body))
+            using (var clip = motion.Retarget(body))
             {
                 Expect.Equal(3, clip.FrameCount, "frames");
                 Expect.Near(30, clip.FramesPerSecond, 0.01, "rate");

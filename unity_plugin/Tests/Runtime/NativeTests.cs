@@ -49,7 +49,7 @@ namespace Anthronet.Tests
                 Library.Check(NativeMethods.anthronet_measure_name(i, &name, &error), &error);
                 Expect.Equal(Utf8.Text(name), AnthroMeasures.Names[(int)i], "measure " + i);
                 double min, max;
-                AnthroModel.Default.Range((int)i, out min, out max);
+                AnthroModel.Default.MeasureRange((int)i, out min, out max);
                 Expect.That(0 < min && min < max && max < 3, AnthroMeasures.Names[(int)i] + ": " + min + " to " + max);
             }
         }
@@ -73,7 +73,7 @@ namespace Anthronet.Tests
             Expect.That(again.IsGiven(AnthroMeasures.IndexOf("arm_length_right")), "right arm");
             Expect.That(!again.IsGiven(AnthroMeasures.IndexOf("foot_width_left")), "left foot");
             Expect.That(again.Latent.SequenceEqual(latent), "latent");
-            Expect.That(!again.Open("height").Copy().IsGiven(3), "opened");
+            Expect.That(!again.Unset("height").Copy().IsGiven(3), "opened");
             Expect.Equal(1.83, request[3], "the first is another one");
             Expect.That(new AnthroRequest().Latent == null, "no latent");
         }
@@ -93,22 +93,22 @@ namespace Anthronet.Tests
             Expect.Code(AnthroError.Io, "nowhere", () => AnthroModel.Open("/nowhere/model\u20ac"), "model");
             Expect.Code(AnthroError.Model, "", () => AnthroModel.Open(new byte[0]), "empty model");
             Expect.Code(AnthroError.Enum, "sex", () => model.Generate(new AnthroRequest { Sex = (AnthroSex)9 }), "sex");
-            Expect.Code(AnthroError.Index, "", () => { double a, b; model.Range(36, out a, out b); }, "range");
+            Expect.Code(AnthroError.Index, "", () => { double a, b; model.MeasureRange(36, out a, out b); }, "range");
             Expect.Throws<ArgumentNullException>(() => model.Generate(null), "no request");
             Expect.Throws<ArgumentNullException>(() => AnthroModel.Open((string)null), "no path");
             foreach (var given in new Action[]
             {
                 () => AnthroClip.Builtin("walk", null), () => new AnthroSkinner(null), () => new AnthroSurface(null, 0),
                 () => new AnthroCrowdSkin(null, 1), () => new AnthroCrowdSkin(new AnthroSkinner[1], 1),
-                () => model.Start(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
+                () => model.StartJob(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
                 () => AnthroFactory.CreateAsync(new AnthroRequest[1]), () => AnthroMeshes.Create((AnthroSurface)null, new AnthroJoint[0], "x"),
-                () => new AnthroRequest().Take(null), () => AnthroRequest.FromJson(null),
+                () => new AnthroRequest().CopyFrom(null), () => AnthroRequest.FromJson(null),
             })
             {
                 var missing = Expect.Throws<ArgumentNullException>(() => given(), "nothing given");
                 Expect.That(!string.IsNullOrEmpty(missing.ParamName) && missing.ParamName != "handle", "which one: " + missing);
             }
-            Expect.Throws<OverflowException>(() => { double a, b; model.Range(-1, out a, out b); }, "negative index");
+            Expect.Throws<OverflowException>(() => { double a, b; model.MeasureRange(-1, out a, out b); }, "negative index");
             using (var body = Body())
             {
                 Expect.Code(AnthroError.Size, "36", () => body.Measures(new AnthroMeasureReport[2]), "few reports");
