@@ -32,7 +32,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        /// Compares the keys of curves, and what lies between them, with the library's own sampling.
+        /// Compares curves with the library's own sampling, at their keys and between them.
         static void Compare(AnimationClip made, AnthroClip clip, AnthroRig rig, string prefix)
         {
             Expect.Equal(clip.Name, made.name, "name");
@@ -68,7 +68,7 @@ namespace Anthronet.Tests
                         : rig.Joints[joint].local.translation;
                     Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " is elsewhere");
                 }
-                // Half way between two frames: straight lines, whose quaternion is next to the one on the arc.
+                // Half way between two frames: linear interpolation, which is close to the quaternion on the arc.
                 var half = 1.5 / clip.FramesPerSecond;
                 clip.Sample(half, AnthroWrap.Once, pose);
                 var between = rotation.Select(name => (double)made.Curves[path + name].Evaluate((float)half)).ToArray();
@@ -89,7 +89,7 @@ namespace Anthronet.Tests
             return names.Skip(1).Aggregate(at, (parent, name) => parent.Find(name));
         }
 
-        [Test(Description = "clips become Unity's with the keys that the library samples: legacy at run time, not in the editor")]
+        [Test(Description = "animation clips have the keys that the library samples: legacy at run time, not in the editor")]
         public static void Baked()
         {
             var character = Scene.Character(3, 3);
@@ -118,14 +118,14 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "a quaternion that changes its sign is baked without a jump")]
+        [Test(Description = "quaternions that change sign are baked without a jump")]
         public static void Signs()
         {
             var character = Scene.Character(3, 3);
             using (var walk = AnthroClip.Builtin("walk", character.Body))
             {
                 var frames = walk.Bake();
-                // The same rotations, every other frame with the other sign.
+                // The same rotations, every other frame negated.
                 for (var i = 0; i < frames.Length; i++)
                 {
                     var q = frames[i].rotation;
@@ -141,7 +141,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "when the character becomes another its own clip is made anew and goes on at the same time")]
+        [Test(Description = "a built-in clip follows its character to another body and continues at the same time")]
         public static void Rebound()
         {
             var character = Scene.Character(3, 3);
@@ -162,7 +162,7 @@ namespace Anthronet.Tests
                 var expected = pose[Scene.Joint(character, "pelvis")].translation;
                 Expect.That((hips - expected).magnitude < 1e-5, "not in the pose of the clip at once: " + hips + ", " + expected);
             }
-            // A clip of the caller's stays.
+            // A clip of the caller's stays as it is.
             using (var mine = AnthroClip.Builtin("idle", character.Body))
             {
                 animator.Play(mine);
@@ -171,7 +171,7 @@ namespace Anthronet.Tests
                 animator.Play((AnthroClip)null);
                 Expect.That(mine.Bake().Length > 0, "it was freed");
             }
-            // After a reload of the code it goes on, too.
+            // Playback continues after a domain reload.
             animator.Play("walk");
             animator.Advance(0.3f);
             Editor.AnthroReload.Release();

@@ -6,11 +6,11 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// The humanoid.
+    /// The humanoid avatar.
     [TestFixture]
     public static class AvatarTests
     {
-        [Test(Description = "every bone that a humanoid requires is there, once, and the avatar is valid")]
+        [Test(Description = "every bone that a humanoid requires is mapped once, and the avatar is valid")]
         public static void Humanoid()
         {
             var traits = HumanTrait.BoneName;
@@ -31,7 +31,7 @@ namespace Anthronet.Tests
             var description = AnthroHumanoid.Describe(character.Rig, character.transform);
             Expect.Equal(character.Rig.Bones.Length + 1, description.skeleton.Length, "skeleton");
             Expect.That(description.human.All(bone => bone.limit.useDefaultValues), "limits");
-            // A name that stands twice is told.
+            // A duplicate name is reported.
             var clash = new GameObject("pelvis");
             clash.transform.SetParent(character.transform, false);
             Debug.Errors.Clear();
@@ -41,7 +41,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        [Test(Description = "every human parent is above its bone, UpperChest has its Chest, arms are level within a degree")]
+        [Test(Description = "every human parent is above its bone, UpperChest has a Chest, arms are horizontal within a degree")]
         public static void Demands()
         {
             foreach (var sex in new[] { AnthroSex.Female, AnthroSex.Male })
@@ -90,7 +90,7 @@ namespace Anthronet.Tests
             return human;
         }
 
-        [Test(Description = "a new avatar lets the animator go on in its states, with its parameters")]
+        [Test(Description = "a new avatar keeps the animator's states and parameters")]
         public static void KeepsState()
         {
             var character = Scene.Character(3, 3);

@@ -7,7 +7,7 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Characters: levels of detail, changing, reloading, copying, going.
+    /// Characters: levels of detail, updates, domain reloads, duplicates, lifetimes.
     [TestFixture]
     public static class CharacterTests
     {
@@ -30,7 +30,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        [Test(Description = "a character becomes another in place, as if it were new")]
+        [Test(Description = "a character that is updated in place equals a new one")]
         public static void Update()
         {
             var character = Scene.Character();
@@ -51,7 +51,7 @@ namespace Anthronet.Tests
             Expect.That(mesh.BonesPerVertex.SequenceEqual(other.BonesPerVertex), "numbers of bones");
             Expect.That(mesh.bindposes.SequenceEqual(other.bindposes), "bind poses");
             Expect.That(character.Rig.Joints.SequenceEqual(fresh.Rig.Joints), "joints");
-            // A refused request leaves it as it was.
+            // A refused request changes nothing.
             var body = character.Body;
             character.Request.Set("height", 9);
             Expect.Code(AnthroError.Request, "height", character.Generate, "too tall");
@@ -62,7 +62,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(fresh.gameObject);
         }
 
-        [Test(Description = "after a reload of the code a character is made anew of the same objects, and nothing is left over")]
+        [Test(Description = "after a domain reload a character is generated again with the same objects, and nothing leaks")]
         public static void Reload()
         {
             foreach (var playing in new[] { true, false })
@@ -91,7 +91,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "awake generates, destroying leaves nothing, in the editor's edit mode too")]
+        [Test(Description = "Awake generates, destroying leaves nothing behind, in edit mode too")]
         public static void Lifecycle()
         {
             foreach (var playing in new[] { true, false })
@@ -99,7 +99,7 @@ namespace Anthronet.Tests
                 Application.Playing = playing;
                 try
                 {
-                    // The materials are kept for the next ones: make them first.
+                    // Make the materials first: they stay cached.
                     Scene.Destroy(Scene.Character());
                     var before = UnityEngine.Object.Alive;
                     var home = new GameObject("person");
@@ -117,7 +117,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "in edit mode nothing that is generated is saved; in play mode nothing outlives its scene")]
+        [Test(Description = "in edit mode generated objects are not saved; in play mode they do not outlive their scene")]
         public static void Saved()
         {
             using (Scene.EditMode())
@@ -157,7 +157,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "a copy has meshes of its own and outlives the original, with the same joints and no child twice")]
+        [Test(Description = "a duplicate has its own meshes, outlives the original, and has every child once")]
         public static void Copies()
         {
             var original = Scene.Character(2, 3);
@@ -173,7 +173,7 @@ namespace Anthronet.Tests
             Scene.Destroy(copy);
         }
 
-        [Test(Description = "nobody is seen half made, and an interrupted change leaves the person before whole")]
+        [Test(Description = "nothing is visible half made, and an abandoned update leaves the previous body complete")]
         public static void Interrupted()
         {
             var home = new GameObject("person");
@@ -199,7 +199,7 @@ namespace Anthronet.Tests
                 }
             }
             Expect.That(character.Body == null && character.GetMesh(0) == null, "whole after 7 steps");
-            // Another one wins; the first, taken up again, changes nothing.
+            // A later body wins; resuming the first one changes nothing.
             var second = AnthroModel.Default.Generate(Scene.Request(1.6));
             character.SetBody(second);
             Expect.That(!steps.MoveNext() && ReferenceEquals(second, character.Body), "the first went on");
@@ -207,7 +207,7 @@ namespace Anthronet.Tests
             {
                 Expect.That(character.GetMesh(lod) != null && character.GetRenderer(lod).enabled, "LOD" + lod + " is missing");
             }
-            // One that is begun and forgotten: the person stays, with body and all.
+            // An update that is begun and abandoned: the character keeps its body.
             var streams = character.GetMesh(1).Streams[0].ToArray();
             var begun = character.SetBodyInSteps(AnthroModel.Default.Generate(Scene.Request(1.9)));
             begun.MoveNext();
@@ -216,11 +216,11 @@ namespace Anthronet.Tests
             Expect.That(streams.SequenceEqual(character.GetMesh(1).Streams[0]), "half changed");
             Expect.Equal(4 + 1, character.transform.childCount, "children");
             Scene.Destroy(character);
-            // The home with its transform and character is gone, too.
+            // The GameObject with its transform and character is destroyed, too.
             Expect.Equal(alive - 3, UnityEngine.Object.Alive, "objects that are alive");
         }
 
-        [Test(Description = "the bounds of the group of levels follow the body")]
+        [Test(Description = "the size of the LODGroup follows the body")]
         public static void Bounds()
         {
             var character = Scene.Character(1, 3);
@@ -235,7 +235,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "children of a prefab's instance are used again, and what cannot be is put to sleep")]
+        [Test(Description = "children of a prefab instance are reused, and those that are not needed are deactivated")]
         public static void Prefabs()
         {
             using (Scene.EditMode())
@@ -258,7 +258,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "a request may be an asset")]
+        [Test(Description = "a character can use a request asset")]
         public static void Asset()
         {
             var asset = ScriptableObject.CreateInstance<AnthroRequestAsset>();
@@ -274,7 +274,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(asset);
         }
 
-        [Test(Description = "eyes, teeth and the rest come and go with a change")]
+        [Test(Description = "eyes, teeth, tongue and eyelashes can be left out and added back")]
         public static void BodyOnly()
         {
             var character = Scene.Character(2, 2);
@@ -289,7 +289,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "a character that awakes with a request that is refused tells it and throws nothing")]
+        [Test(Description = "a character that awakes with a refused request logs one error and throws nothing")]
         public static void Refused()
         {
             var home = new GameObject("person");
@@ -301,7 +301,7 @@ namespace Anthronet.Tests
             Expect.That(character.Body == null && Debug.Errors.Single().Contains("height"), "not told, or twice");
             Debug.Errors.Clear();
             Scene.Destroy(character);
-            // One that is switched off is made all the same.
+            // A disabled component is generated all the same.
             home = new GameObject("person");
             home.SetActive(false);
             character = home.AddComponent<AnthroCharacter>();

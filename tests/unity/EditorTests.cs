@@ -9,7 +9,7 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Inspectors, menu, saving.
+    /// Inspectors, menu entries, saving.
     [TestFixture]
     public static class EditorTests
     {
@@ -45,7 +45,7 @@ namespace Anthronet.Tests
             User.Answer = null;
         }
 
-        [Test(Description = "menu: the entry makes a character below the object that it is for, selected and undone")]
+        [Test(Description = "menu: the entry adds a selected character below the context object, with undo")]
         public static void Menu()
         {
             var parent = new GameObject("parent");
@@ -56,7 +56,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.DestroyImmediate(parent);
         }
 
-        [Test(Description = "inspector: looking changes nothing, switches and sliders of both sides, percentiles and intervals")]
+        [Test(Description = "inspector: drawing changes nothing; toggles and sliders of both sides, percentiles and intervals")]
         public static void Looking()
         {
             var character = new GameObject("person").AddComponent<AnthroCharacter>();
@@ -89,7 +89,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "inspector: generate and randomise are undone, mark the object, and tell what is refused")]
+        [Test(Description = "inspector: Generate and Randomise can be undone, mark the object as changed, and show errors")]
         public static void Buttons()
         {
             var character = new GameObject("person").AddComponent<AnthroCharacter>();
@@ -105,7 +105,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "inspector: the request of an asset is drawn and written instead of the character's")]
+        [Test(Description = "inspector: with a request asset, the asset's request is shown and changed")]
         public static void OfAsset()
         {
             var asset = ScriptableObject.CreateInstance<AnthroRequestAsset>();
@@ -121,7 +121,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.DestroyImmediate(asset);
         }
 
-        [Test(Description = "saving: a prefab with meshes, avatar and materials as assets, which outlives its character and is not generated")]
+        [Test(Description = "saving: a prefab with meshes, avatar and materials as assets outlives its character and is not generated")]
         public static void Prefab()
         {
             var character = new GameObject("person").AddComponent<AnthroCharacter>();
@@ -142,7 +142,7 @@ namespace Anthronet.Tests
             var prefab = PrefabUtility.Prefabs["Assets/Person.prefab"];
             var drawn = prefab.transform.Find("LOD0").GetComponent<SkinnedMeshRenderer>();
             Expect.That(drawn.sharedMesh.Streams[0].Length > 0 && drawn.bones.All(bone => bone != null), "it went with the character");
-            // An instance awakes as it is, in play mode too; generating makes it one that is generated, of the same
+            // An instance awakes as saved, in play mode too; Generate turns it into a generated character with the same
             // objects.
             Application.Playing = true;
             var instance = UnityEngine.Object.Instantiate(prefab).GetComponent<AnthroCharacter>();
@@ -158,7 +158,7 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(prefab);
         }
 
-        [Test(Description = "saving: where Unity saves nothing no asset is left and the character is whole")]
+        [Test(Description = "saving: if Unity cannot save, no asset is left behind and the character is complete")]
         public static void NotSaved()
         {
             var character = new GameObject("person").AddComponent<AnthroCharacter>();
@@ -171,7 +171,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "inspector: what a missing library or one of another release says is shown, not thrown")]
+        [Test(Description = "inspector: the error of a missing library or one of another release is shown, not thrown")]
         public static void MissingLibrary()
         {
             var character = new GameObject("person").AddComponent<AnthroCharacter>();

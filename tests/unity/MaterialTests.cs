@@ -7,7 +7,7 @@ using UnityEngine.Rendering;
 
 namespace Anthronet.Tests
 {
-    /// Materials.
+    /// Default materials.
     [TestFixture]
     public static class MaterialTests
     {
@@ -15,7 +15,7 @@ namespace Anthronet.Tests
 
         sealed class HDRenderPipelineAsset : RenderPipelineAsset { }
 
-        [Test(Description = "materials are those of the pipeline, and shared")]
+        [Test(Description = "materials match the active render pipeline and are shared")]
         public static void Materials()
         {
             var part = new AnthroPart { name = "Lashes", roughness = 0.8f, doubleSided = true, baseColor = new Color(0.5f, 0, 0, 1) };
@@ -40,7 +40,7 @@ namespace Anthronet.Tests
                 part.doubleSided = false;
                 var oneSided = AnthroMaterials.Get(part);
                 Expect.That(!ReferenceEquals(definition, oneSided) && !oneSided.Values.ContainsKey("_DOUBLESIDED_ON"), "one side");
-                // A build without the pipeline's shader takes another one and says so; without any there is no material.
+                // Without the pipeline's shader a fallback is used and reported; without any shader there is no material.
                 known = Shader.Known["HDRP/Lit"];
                 Shader.Known.Remove("HDRP/Lit");
                 part.name = "Other";
@@ -51,7 +51,7 @@ namespace Anthronet.Tests
                 Shader.Known.Remove("Standard");
                 part.name = "Third";
                 Expect.That(AnthroMaterials.Get(part) == null, "no shader, yet a material");
-                // Characters do without it.
+                // Characters work without materials.
                 var character = Scene.Character(3, 3);
                 Expect.That(character.GetRenderer(3).sharedMaterials.All(material => material == null), "materials");
                 Scene.Destroy(character);

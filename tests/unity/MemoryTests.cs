@@ -10,7 +10,7 @@ using UnityEngine.Rendering;
 
 namespace Anthronet.Tests
 {
-    /// What a person costs in memory, from the counts of what its meshes hold.
+    /// Memory per character, from the sizes of its meshes.
     [TestFixture]
     public static class MemoryTests
     {
@@ -29,7 +29,7 @@ namespace Anthronet.Tests
             };
         }
 
-        [Test(Description = "memory per avatar is what the documentation's table says")]
+        [Test(Description = "memory per character is as in the documentation's table")]
         public static void Table()
         {
             var text = File.ReadAllText(Path.Combine(SampleTests.Root, "unity_plugin/Documentation~/index.md"));
@@ -58,7 +58,7 @@ namespace Anthronet.Tests
             Expect.Equal(all, said, "the table");
         }
 
-        [Test(Description = "a native body stays within what the documentation says of it")]
+        [Test(Description = "a native body needs no more memory than the documentation says")]
         public static void Bodies()
         {
             var text = File.ReadAllText(Path.Combine(SampleTests.Root, "unity_plugin/Documentation~/index.md"));

@@ -64,13 +64,13 @@ namespace Anthronet.Tests
             for (var v = 0; v < mesh.vertexCount; v++)
             {
                 var at = mesh.Position(v);
-                // A character's left is at -X in Unity.
+                // The character's left is at -X in Unity.
                 var between = at.x < 0.7f * shoulder.x + 0.3f * elbow.x && at.x > 0.3f * shoulder.x + 0.7f * elbow.x;
                 arm = between ? Math.Max(arm, offsets[v].magnitude) : arm;
                 other = -at.x < 0.7f * shoulder.x + 0.3f * elbow.x ? Math.Max(other, offsets[v].magnitude) : other;
                 legs = at.y < knee.y ? Math.Max(legs, offsets[v].magnitude) : legs;
             }
-            // 5 % of 0.3 m around are 2.4 mm of radius.
+            // 5 % of a circumference of 0.3 m is 2.4 mm of radius.
             Expect.That(arm > 0.0015f && arm < 0.008f, "arm " + arm);
             Expect.That(other < 0.35f * arm && legs < 0.35f * arm, "arm " + arm + ", other arm " + other + ", legs " + legs);
             Scene.Destroy(character);
@@ -103,7 +103,7 @@ namespace Anthronet.Tests
             Scene.Destroy(character);
         }
 
-        [Test(Description = "pose-driven shapes: Unity finds types and fields that were renamed by their former names")]
+        [Test(Description = "pose-driven shapes: renamed types and fields keep their former names for Unity")]
         public static void FormerNames()
         {
             Expect.Equal("AnthroCorrectives", FormerName(typeof(AnthroPoseDrivenShapes)), "component");

@@ -44,7 +44,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "crowd: the population file is 200 different requests, all of which the model takes")]
+        [Test(Description = "crowd: the population file has 200 different requests, and the model accepts all of them")]
         public static void PopulationFile()
         {
             var requests = Crowd.Requests(Population, 1000);
@@ -70,7 +70,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "crowd: people of the file stand apart, each with one animator, all walking at different times")]
+        [Test(Description = "crowd: people stand apart, each with one animator, all walking at different times")]
         public static void CrowdRuns()
         {
             var crowd = new GameObject("crowd").AddComponent<Crowd>();
@@ -112,7 +112,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "measure editor: a slider and a switch change the person, a refusal is shown")]
+        [Test(Description = "measure editor: slider and toggle change the character, errors are shown")]
         public static void Editor()
         {
             var editor = new GameObject("editor").AddComponent<MeasureEditor>();
@@ -150,7 +150,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "clip player: built-in clips, a file, pause and the bar")]
+        [Test(Description = "clip player: built-in clips, a motion file, pause and the time slider")]
         public static void Player()
         {
             var file = Path.Combine(Path.GetTempPath(), "anthronet-player-" + System.Diagnostics.Process.GetCurrentProcess().Id + ".bvh");

@@ -5,7 +5,7 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// What tests set up.
+    /// Shared set-up of tests.
     static class Scene
     {
         const BindingFlags Hidden = BindingFlags.Instance | BindingFlags.Static | BindingFlags.NonPublic;
@@ -33,7 +33,7 @@ namespace Anthronet.Tests
             return new Vector3(m.m03, m.m13, m.m23);
         }
 
-        /// What the editor is when nobody plays, until it is disposed of.
+        /// Switches to edit mode until it is disposed.
         internal static IDisposable EditMode()
         {
             Application.Playing = false;
@@ -45,7 +45,7 @@ namespace Anthronet.Tests
             public void Dispose() { Application.Playing = true; }
         }
 
-        /// What loading the code anew leaves of a component: that which Unity serialises.
+        /// Simulates a domain reload of a component: only serialised fields survive.
         internal static void Reload(MonoBehaviour part)
         {
             foreach (var field in Fields(part.GetType()))
@@ -60,7 +60,7 @@ namespace Anthronet.Tests
             part.Enabled = true;
         }
 
-        /// The fields of a component, private ones of its base classes too.
+        /// All fields of a component, including private ones of base classes.
         static IEnumerable<FieldInfo> Fields(Type type)
         {
             for (; type != typeof(MonoBehaviour); type = type.BaseType)

@@ -38,7 +38,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "blend shapes take their arrays from a pool, whichever levels they are for")]
+        [Test(Description = "blend shapes reuse pooled arrays for all levels of detail")]
         public static void Pooled()
         {
             using (var heavy = AnthroModel.Default.Generate(Scene.Request().Set("waist_circumference", 1.2)))

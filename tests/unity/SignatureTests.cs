@@ -8,13 +8,13 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// What the stand-ins have of Unity: nothing that is not on the list, each with the page that documents it.
+    /// Compares the API of the stand-ins with signatures.txt, which has a documentation page for every member.
     [TestFixture]
     public static class SignatureTests
     {
         const string Manual = "https://docs.unity3d.com/2021.3/Documentation/ScriptReference/";
         const string Burst = "https://docs.unity3d.com/Packages/com.unity.burst@1.8/api/";
-        /// Unity's own source, for what its manual has no page of.
+        /// Unity's own source, for members without a page in the manual.
         const string Source = "https://github.com/Unity-Technologies/UnityCsReference/blob/2021.3/";
         const BindingFlags Own = BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static | BindingFlags.DeclaredOnly;
 
@@ -54,7 +54,7 @@ namespace Anthronet.Tests
                 (p.IsDefined(typeof(ParamArrayAttribute)) ? "params " : "") + Name(p.ParameterType) + " " + p.Name)) + ")";
         }
 
-        /// The page of a type: its name without UnityEngine and UnityEditor, nested ones after a dot.
+        /// The documentation page of a type: its name without UnityEngine or UnityEditor, with a dot before nested types.
         static string Page(Type type)
         {
             if (type.Namespace == "Unity.Burst")
@@ -69,7 +69,7 @@ namespace Anthronet.Tests
             return Manual + name;
         }
 
-        /// The file of Unity's source that has a member without a page; null of one that has a page.
+        /// The file of Unity's source for a member without a documentation page; null if it has one.
         static string Undocumented(Type type, string member)
         {
             switch (type.Name)
@@ -89,7 +89,7 @@ namespace Anthronet.Tests
             }
         }
 
-        /// A line of the list: what a type or a member of it is, and where it is documented.
+        /// A line of the list: a type or member, and where it is documented.
         static string Line(string what, Type type, string member, string page)
         {
             var file = Undocumented(type, member);
@@ -159,7 +159,7 @@ namespace Anthronet.Tests
             }
         }
 
-        /// The list as it is to be.
+        /// The list as it should be.
         internal static string Text()
         {
             var text = new StringBuilder();
@@ -170,7 +170,7 @@ namespace Anthronet.Tests
             return text.ToString();
         }
 
-        [Test(Description = "the stand-ins have of Unity what signatures.txt lists, each member with its page, and nothing else")]
+        [Test(Description = "the stand-ins have exactly the API in signatures.txt, where each member has its documentation page")]
         public static void Listed()
         {
             var file = Path.Combine(SampleTests.Root, "tests/unity/signatures.txt");

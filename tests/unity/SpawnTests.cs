@@ -6,11 +6,11 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Characters that are made over frames, and pools.
+    /// Spawning over several frames, and pools.
     [TestFixture]
     public static class SpawnTests
     {
-        [Test(Description = "characters spawn over frames, some fail, some are cancelled")]
+        [Test(Description = "characters spawn over several frames, some fail, some are cancelled")]
         public static void Spawn()
         {
             var requests = Enumerable.Range(1, 6).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
@@ -50,7 +50,7 @@ namespace Anthronet.Tests
             many.Dispose();
         }
 
-        [Test(Description = "a spawn that is disposed of leaves nothing half made")]
+        [Test(Description = "disposing a spawn leaves nothing half made")]
         public static void Halfway()
         {
             var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 });
@@ -66,7 +66,7 @@ namespace Anthronet.Tests
             Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it goes on");
         }
 
-        [Test(Description = "as many jobs as there are cores, and no more than requests")]
+        [Test(Description = "one job per core, and no more than requests")]
         public static void Jobs()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
@@ -81,11 +81,11 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "what fails on the main thread is the error of that character, and handlers that throw stop nobody")]
+        [Test(Description = "an exception on the main thread is the error of that character alone, and handlers that throw stop nothing")]
         public static void Thrown()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
-            // The materials are kept for the next ones: make them first.
+            // Make the materials first: they stay cached.
             Scene.Destroy(Scene.Character(3, 3));
             var alive = UnityEngine.Object.Alive;
             using (var spawn = AnthroFactory.CreateAsync(
@@ -100,7 +100,7 @@ namespace Anthronet.Tests
                 };
                 Debug.Errors.Clear();
                 var half = (AnthroCharacter[])Scene.Field(spawn, "characters");
-                // A budget of nothing takes one step: while the third is made its object is taken away.
+                // A zero budget takes one step per call: destroys the third character while it is being made.
                 while (!spawn.Advance(0))
                 {
                     if (spawn.DoneCount == 2 && half[2] != null)
@@ -121,7 +121,7 @@ namespace Anthronet.Tests
             Expect.Equal(alive, UnityEngine.Object.Alive, "objects that are alive");
         }
 
-        [Test(Description = "nobody is seen before it is whole")]
+        [Test(Description = "nothing is visible before it is complete")]
         public static void Asleep()
         {
             using (var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 }))
@@ -150,13 +150,13 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "the runner advances spawns each frame, frees them, and goes on when one throws")]
+        [Test(Description = "the runner advances spawns every frame, disposes finished ones, and continues if one throws")]
         public static void Running()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
             var first = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, settings));
             var second = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest { Seed = 2 } }, settings));
-            // Its parts are gone: it cannot go on.
+            // Break it, so that it throws.
             typeof(AnthroSpawn).GetField("requests", System.Reflection.BindingFlags.Instance
                 | System.Reflection.BindingFlags.NonPublic).SetValue(second, null);
             Debug.Errors.Clear();
@@ -167,7 +167,7 @@ namespace Anthronet.Tests
             Scene.Destroy(first.Character(0));
         }
 
-        [Test(Description = "the runner ends with the play mode, and in edit mode the editor drives it")]
+        [Test(Description = "the runner ends with play mode, and in edit mode the editor drives it")]
         public static void RunnerEnds()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
@@ -199,7 +199,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "before the code is loaded anew threads stop and native memory is released")]
+        [Test(Description = "before a domain reload threads stop and native memory is released")]
         public static void ReleasedBeforeReload()
         {
             var body = AnthroModel.Default.Generate(new AnthroRequest());
@@ -216,14 +216,14 @@ namespace Anthronet.Tests
             Expect.Throws<ObjectDisposedException>(spawn.Cancel, "spawn");
             var packers = (System.Threading.Thread[])Scene.Field(spawn, "packers");
             Expect.That(packers.All(thread => !thread.IsAlive), "threads run on");
-            // What comes afterwards begins anew.
+            // New objects work afterwards.
             using (var again = AnthroModel.Default.Generate(new AnthroRequest()))
             {
                 Expect.Equal(0ul, again.Seed, "seed");
             }
         }
 
-        [Test(Description = "the pool gives characters again: asleep, silent, without their clip, and each once")]
+        [Test(Description = "the pool reuses characters: inactive, without handlers and clip, each of them once")]
         public static void Pool()
         {
             var pool = new AnthroPool();

@@ -1,4 +1,4 @@
-// Stand-ins for Unity's immediate GUI: controls give back what they are given, or what `User` says. See
+// Stand-ins for Unity's immediate-mode GUI: controls return the value that they get, or the answer of `User`. See
 // ../signatures.txt.
 using System;
 
@@ -6,10 +6,10 @@ namespace UnityEngine
 {
     public class GUILayoutOption { }
 
-    /// What somebody at the controls does.
+    /// Simulated input.
     static class User
     {
-        /// From what a control says and its value to its new value; null where nothing is done to it.
+        /// From a control's label and value to its new value; null leaves the value.
         internal static Func<string, object, object> Answer = null;
         internal static bool Changed;
 

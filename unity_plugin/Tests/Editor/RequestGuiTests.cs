@@ -4,11 +4,11 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// What the inspector says of measures.
+    /// Labels and reports in the inspector.
     [TestFixture]
     public static class RequestGuiTests
     {
-        [Test(Description = "labels are the measures in words, the same for both sides")]
+        [Test(Description = "labels are the measures in words with their unit, the same for both sides")]
         public static void Labels()
         {
             Expect.Equal("Waist circumference (m)", AnthroRequestGui.Label(0), "label");
@@ -19,7 +19,7 @@ namespace Anthronet.Tests
             Expect.Equal(24, Enumerable.Range(0, AnthroMeasures.Count).Select(AnthroRequestGui.Label).Distinct().Count(), "labels");
         }
 
-        [Test(Description = "a measure is told with its percentile, given with its residual, open with its interval")]
+        [Test(Description = "reports have the percentile, and the residual of a requested measure or the interval of another")]
         public static void Told()
         {
             var report = new AnthroMeasureReport { obtained = 1.7, residual = -0.0004, low90 = 1.6, high90 = 1.8, percentile = 61.7 };

@@ -7,11 +7,11 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// Lifetimes of what is native, threads, jobs.
+    /// Lifetimes of native objects, threads, jobs.
     [TestFixture]
     public static class LifetimeTests
     {
-        [Test(Description = "handles are freed once, in any order, and not under a call")]
+        [Test(Description = "native objects are freed once, in any order, and not during a call")]
         public static void Lifetimes()
         {
             var model = AnthroModel.OpenEmbedded();
@@ -50,7 +50,7 @@ namespace Anthronet.Tests
             var last = job.Take(0);
             job.Dispose();
             Expect.Equal(3ul, last.Seed, "a body outlives its job and model");
-            // Nobody disposes of these: the finalisers do.
+            // Nobody disposes these: the finalisers do.
             for (var i = 0; i < 20; i++)
             {
                 new AnthroSurface(last, 3);

@@ -8,7 +8,7 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// The wrappers without Unity: errors, lifetimes, jobs, the same bytes as everywhere.
+    /// The wrappers of the native library without Unity: errors, requests, bodies.
     [TestFixture]
     public static class NativeTests
     {
@@ -18,7 +18,7 @@ namespace Anthronet.Tests
             return AnthroModel.Default.Generate(request.Set("height", 1.7).Set("waist_circumference", 0.8));
         }
 
-        [Test(Description = "a missing or foreign library is told with its file")]
+        [Test(Description = "the error of a missing library or one of another release has the file")]
         public static void Missing()
         {
             var error = Library.Missing(new DllNotFoundException("anthronet"));
@@ -29,7 +29,7 @@ namespace Anthronet.Tests
             Expect.That(version.Message.Contains("99") && version.Message.Contains("1"), version.Message);
         }
 
-        [Test(Description = "the version of the library is the package's")]
+        [Test(Description = "library and package have the same version")]
         public static unsafe void Version()
         {
             anthronet_text version;
@@ -38,7 +38,7 @@ namespace Anthronet.Tests
             Expect.Equal(AnthroPackage.Version, Utf8.Text(version), "version");
         }
 
-        [Test(Description = "measures are the library's, in its order")]
+        [Test(Description = "measures have the library's names and order")]
         public static unsafe void Measures()
         {
             Expect.Equal((uint)AnthroMeasures.Count, NativeMethods.anthronet_measure_count(), "count");
@@ -54,7 +54,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "requests come through JSON as they were")]
+        [Test(Description = "requests survive a round trip through JSON")]
         public static void Requests()
         {
             var request = new AnthroRequest
@@ -125,7 +125,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "bodies have the measures that are asked for")]
+        [Test(Description = "bodies have the requested measures")]
         public static void Bodies()
         {
             using (var body = Body())
