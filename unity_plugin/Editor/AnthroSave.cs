@@ -75,12 +75,12 @@ namespace Anthronet.Editor
                     continue;
                 }
                 Add(character.GetMesh(lod), to);
-                var worn = renderer.sharedMaterials;
-                for (var i = 0; i < worn.Length; i++)
+                var materials = renderer.sharedMaterials;
+                for (var i = 0; i < materials.Length; i++)
                 {
-                    worn[i] = AsAsset(worn[i], copies, to);
+                    materials[i] = AsAsset(materials[i], copies, to);
                 }
-                renderer.sharedMaterials = worn;
+                renderer.sharedMaterials = materials;
             }
             if (character.Avatar != null)
             {

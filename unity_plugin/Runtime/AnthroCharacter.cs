@@ -239,10 +239,10 @@ namespace Anthronet
             try
             {
                 var lods = Lods();
-                var whole = figure == null || figure.BodyOnly != build.BodyOnly;
+                var complete = figure == null || figure.BodyOnly != build.BodyOnly;
                 foreach (var lod in lods)
                 {
-                    if (build.Pack(lod, whole))
+                    if (build.Pack(lod, complete))
                     {
                         yield return null;
                     }

@@ -76,12 +76,12 @@ namespace Anthronet
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
-                anthronet_error said;
+                anthronet_error nativeError;
                 var status = NativeMethods.anthronet_job_take(
-                    (anthronet_job*)held.Pointer, checked((uint)index), &made, &said);
+                    (anthronet_job*)held.Pointer, checked((uint)index), &made, &nativeError);
                 body = status == NativeMethods.ANTHRONET_OK ? new AnthroBody(made) : null;
                 error = status == NativeMethods.ANTHRONET_OK || status == NativeMethods.ANTHRONET_ERROR_BUSY
-                    ? null : new AnthroException((AnthroError)status, Utf8.ZeroTerminated(said.message, 512));
+                    ? null : new AnthroException((AnthroError)status, Utf8.ZeroTerminated(nativeError.message, 512));
                 return body != null;
             }
         }

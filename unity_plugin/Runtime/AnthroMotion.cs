@@ -80,7 +80,7 @@ namespace Anthronet
         {
             ulong length;
             var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
-            using (var wearer = new Held(Library.NotNull(body, "body").Handle))
+            using (var target = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* json = mapping)
             {
@@ -98,7 +98,7 @@ namespace Anthronet
                 anthronet_clip* made;
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_motion_retarget((anthronet_motion*)held.Pointer,
-                    checked((uint)clip), (anthronet_body*)wearer.Pointer, &retarget, &made, null, &error), &error);
+                    checked((uint)clip), (anthronet_body*)target.Pointer, &retarget, &made, null, &error), &error);
                 return AnthroClip.Wrap(made);
             }
         }
