@@ -45,11 +45,11 @@ namespace Anthronet.Tests
             for (var joint = 0; joint < clip.JointCount; joint++)
             {
                 var path = rig.Path(joint) + ":";
-                Expect.That(Find(rig, path) == rig.Bones[joint], path + " leads elsewhere");
+                Expect.That(Find(rig, path) == rig.Bones[joint], path + " leads to another joint");
                 var q = rotation.Select(name => made.Curves[path + name].keys).ToArray();
                 var moves = made.Curves.ContainsKey(path + position[0]);
                 moving += moves ? 1 : 0;
-                Expect.That(moves || joint > 1, "no places of " + path);
+                Expect.That(moves || joint > 1, "no positions of " + path);
                 Expect.Equal(clip.FrameCount, q[0].Length, "keys of " + path);
                 for (var frame = 0; frame < clip.FrameCount; frame++)
                 {
@@ -66,7 +66,7 @@ namespace Anthronet.Tests
                     var place = moves ? new Vector3(made.Curves[path + position[0]].keys[frame].value,
                         made.Curves[path + position[1]].keys[frame].value, made.Curves[path + position[2]].keys[frame].value)
                         : rig.Joints[joint].local.translation;
-                    Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " is elsewhere");
+                    Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " has another position");
                 }
                 // Half way between two frames: linear interpolation, which is close to the quaternion on the arc.
                 var half = 1.5 / clip.FramesPerSecond;
@@ -78,7 +78,7 @@ namespace Anthronet.Tests
                 Expect.Near(1, Math.Abs(dot), 1e-4, path + " between frames");
             }
             Expect.Equal(0, flips, "signs that change");
-            Expect.That(moving >= 2 && moving < clip.JointCount, moving + " joints have places");
+            Expect.That(moving >= 2 && moving < clip.JointCount, moving + " joints have positions");
         }
 
         static Transform Find(AnthroRig rig, string path)
@@ -177,7 +177,7 @@ namespace Anthronet.Tests
             Editor.AnthroReload.Release();
             Scene.Reload(character);
             Scene.Reload(animator);
-            Expect.That(animator.Clip != null && animator.Clip.Name == "walk", "it stands still");
+            Expect.That(animator.Clip != null && animator.Clip.Name == "walk", "it does not play");
             Expect.Near(0.3, animator.Time, 1e-6, "time");
             animator.Advance(0.1f);
             Scene.Destroy(character);

@@ -36,7 +36,7 @@ namespace Anthronet.Tests
             clash.transform.SetParent(character.transform, false);
             Debug.Errors.Clear();
             character.Generate();
-            Expect.That(character.Avatar == null && Debug.Errors.Any(error => error.Contains("pelvis")), "a clash is not told");
+            Expect.That(character.Avatar == null && Debug.Errors.Any(error => error.Contains("pelvis")), "a duplicate name is not reported");
             Debug.Errors.Clear();
             UnityEngine.Object.Destroy(character.gameObject);
         }

@@ -249,7 +249,7 @@ namespace Anthronet.Tests
                 character.CoarsestLod = 2;
                 Scene.Reload(character);
                 Expect.That(ReferenceEquals(lod, character.GetRenderer(0)), "another renderer");
-                Expect.That(character.GetMesh(3) == null && !character.transform.Find("LOD3").gameObject.activeSelf, "LOD3 is awake");
+                Expect.That(character.GetMesh(3) == null && !character.transform.Find("LOD3").gameObject.activeSelf, "LOD3 is active");
                 for (var i = 0; i < character.transform.childCount; i++)
                 {
                     character.transform.GetChild(i).gameObject.OfPrefab = false;
@@ -298,7 +298,7 @@ namespace Anthronet.Tests
             character.Request.Set("height", 9);
             Debug.Errors.Clear();
             home.SetActive(true);
-            Expect.That(character.Body == null && Debug.Errors.Single().Contains("height"), "not told, or twice");
+            Expect.That(character.Body == null && Debug.Errors.Single().Contains("height"), "not logged, or twice");
             Debug.Errors.Clear();
             Scene.Destroy(character);
             // A disabled component is generated all the same.

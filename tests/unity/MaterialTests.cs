@@ -46,7 +46,7 @@ namespace Anthronet.Tests
                 part.name = "Other";
                 Debug.Errors.Clear();
                 Expect.Equal("Standard", AnthroMaterials.Get(part).shader.name, "a missing shader");
-                Expect.That(Debug.Errors.Single().Contains("HDRP/Lit"), "not told");
+                Expect.That(Debug.Errors.Single().Contains("HDRP/Lit"), "not reported");
                 standard = Shader.Known["Standard"];
                 Shader.Known.Remove("Standard");
                 part.name = "Third";

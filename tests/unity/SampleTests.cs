@@ -122,7 +122,7 @@ namespace Anthronet.Tests
             {
                 var before = person.Body;
                 MonoBehaviour.Send(editor, "OnGUI");
-                Expect.That(ReferenceEquals(before, person.Body), "made anew although nothing was done");
+                Expect.That(ReferenceEquals(before, person.Body), "generated again without a change");
                 var row = -1;
                 User.Answer = (label, value) => label == "slider" && ++row == 3 ? (object)1.61f : null;
                 MonoBehaviour.Send(editor, "OnGUI");

@@ -131,9 +131,9 @@ namespace Anthronet.Tests
                 yield return Line("  " + (reader.IsStatic ? "static " : "") + Name(property.PropertyType) + " " + name + " {" + access + " }",
                     type, property.Name, page + place + ".html");
             }
-            foreach (var told in type.GetEvents(Own))
+            foreach (var raised in type.GetEvents(Own))
             {
-                yield return "  event " + Name(told.EventHandlerType) + " " + told.Name + " | " + page + "-" + told.Name + ".html";
+                yield return "  event " + Name(raised.EventHandlerType) + " " + raised.Name + " | " + page + "-" + raised.Name + ".html";
             }
             foreach (var method in type.GetMethods(Own).Where(method => !method.IsSpecialName || method.Name.StartsWith("op_")))
             {

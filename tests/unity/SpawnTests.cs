@@ -16,10 +16,10 @@ namespace Anthronet.Tests
             var requests = Enumerable.Range(1, 6).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
             requests[2].Set("height", 9);
             var settings = new AnthroSettings { finestLod = 2, coarsestLod = 3 };
-            var told = new List<int>();
+            var spawned = new List<int>();
             var spawn = AnthroFactory.CreateAsync(requests, settings);
             requests[0].Set("height", 9);
-            spawn.OnSpawned += (i, character) => told.Add(i);
+            spawn.OnSpawned += (i, character) => spawned.Add(i);
             var frames = 0;
             while (!spawn.Advance(0))
             {
@@ -28,11 +28,11 @@ namespace Anthronet.Tests
                 Expect.That(frames < 30000, "never done");
             }
             Expect.That(frames > 5 * 5, "only " + frames + " frames: a budget of nothing does one step a frame");
-            Expect.Equal("0 1 3 4 5", string.Join(" ", told), "spawned");
+            Expect.Equal("0 1 3 4 5", string.Join(" ", spawned), "spawned");
             Expect.Equal(AnthroError.Request, spawn.Error(2).Code, "its error");
             Expect.That(spawn.Character(2) == null && spawn.Character(5).Body.Seed == 6, "characters");
             spawn.Dispose();
-            foreach (var i in told)
+            foreach (var i in spawned)
             {
                 UnityEngine.Object.Destroy(spawn.Character(i).gameObject);
             }
@@ -63,7 +63,7 @@ namespace Anthronet.Tests
             spawn.Dispose();
             spawn.Dispose();
             Expect.Equal(before, UnityEngine.Object.Alive, "objects that are alive");
-            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it goes on");
+            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it continues");
         }
 
         [Test(Description = "one job per core, and no more than requests")]
@@ -109,7 +109,7 @@ namespace Anthronet.Tests
                     }
                     System.Threading.Thread.Sleep(1);
                 }
-                Expect.That(Debug.Errors.Any(error => error.Contains("a handler")), "the handler is not told");
+                Expect.That(Debug.Errors.Any(error => error.Contains("a handler")), "the handler's exception is not logged");
                 Debug.Errors.Clear();
                 for (var i = 0; i < 4; i++)
                 {
@@ -132,9 +132,9 @@ namespace Anthronet.Tests
                 {
                     while (!other.Advance(0))
                     {
-                        Expect.That(parent.childCount == 0 || !parent.GetChild(0).gameObject.activeSelf, "awake");
+                        Expect.That(parent.childCount == 0 || !parent.GetChild(0).gameObject.activeSelf, "active while unfinished");
                     }
-                    Expect.That(parent.GetChild(0).gameObject.activeSelf, "asleep when it is whole");
+                    Expect.That(parent.GetChild(0).gameObject.activeSelf, "inactive when finished");
                 }
                 UnityEngine.Object.Destroy(parent.gameObject);
             }
@@ -161,7 +161,7 @@ namespace Anthronet.Tests
                 | System.Reflection.BindingFlags.NonPublic).SetValue(second, null);
             Debug.Errors.Clear();
             Frames(() => first.IsDone && AnthroRunner.Count == 0);
-            Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the one that throws is not told");
+            Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the exception is not logged");
             Debug.Errors.Clear();
             Expect.Throws<ObjectDisposedException>(first.Cancel, "it is not freed");
             Scene.Destroy(first.Character(0));
@@ -229,21 +229,21 @@ namespace Anthronet.Tests
             var pool = new AnthroPool();
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3, pool = pool };
             var first = AnthroFactory.Create(new AnthroRequest { Seed = 1 }, settings);
-            var told = 0;
-            first.OnGenerated += body => told++;
+            var reports = 0;
+            first.OnGenerated += body => reports++;
             var animator = first.gameObject.AddComponent<AnthroAnimator>();
             animator.Play("walk");
             pool.Release(first);
             pool.Release(first);
             Expect.Equal(1, pool.Count, "in the pool");
-            Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "awake, or still walking");
+            Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "active, or still playing");
             var taken = pool.Get();
-            Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "the old person is awake");
+            Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "active with the old body");
             pool.Release(taken);
             var second = AnthroFactory.Create(new AnthroRequest { Seed = 2 }, settings);
-            Expect.That(ReferenceEquals(first, second) && second.gameObject.activeSelf, "the same, awake");
+            Expect.That(ReferenceEquals(first, second) && second.gameObject.activeSelf, "the same character, active");
             Expect.Equal(2ul, second.Body.Seed, "another person");
-            Expect.Equal(0, told, "reports of the other person");
+            Expect.Equal(0, reports, "events of the previous user");
             Debug.Errors.Clear();
             Expect.That(second.gameObject.AddComponent<AnthroAnimator>() == null && Debug.Errors.Count == 1, "two animators");
             Debug.Errors.Clear();

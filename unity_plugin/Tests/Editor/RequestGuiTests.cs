@@ -20,7 +20,7 @@ namespace Anthronet.Tests
         }
 
         [Test(Description = "reports have the percentile, and the residual of a requested measure or the interval of another")]
-        public static void Told()
+        public static void Reports()
         {
             var report = new AnthroMeasureReport { obtained = 1.7, residual = -0.0004, low90 = 1.6, high90 = 1.8, percentile = 61.7 };
             Expect.Equal("residual -0.4 mm, percentile 62", AnthroRequestGui.ReportText(report, true), "given");

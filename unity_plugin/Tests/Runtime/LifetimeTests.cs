@@ -106,7 +106,7 @@ namespace Anthronet.Tests
             {
                 Expect.That(watch.ElapsedMilliseconds < 1000, "the start waits");
                 Expect.Equal(300, job.Count, "count");
-                Expect.Code(AnthroError.Busy, "", () => job.Take(299), "not there yet");
+                Expect.Code(AnthroError.Busy, "", () => job.Take(299), "not finished");
                 AnthroBody body;
                 AnthroException error;
                 while (!job.TryTake(1, out body, out error))
