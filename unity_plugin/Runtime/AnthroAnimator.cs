@@ -63,6 +63,7 @@ namespace Anthronet
 
         /// <summary>Plays a built-in clip, such as `walk`, made for this character's body.</summary>
         /// <exception cref="AnthroException">There is no built-in clip of this name.</exception>
+        /// <exception cref="System.InvalidOperationException">The character is not generated yet.</exception>
         public void Play(string name)
         {
             Make(name);
