@@ -2,6 +2,7 @@ using System;
 using System.Collections.Generic;
 using System.IO;
 using System.Linq;
+using System.Runtime.CompilerServices;
 using NUnit.Framework;
 using UnityEngine;
 using Anthronet.Samples;
@@ -30,18 +31,15 @@ namespace Anthronet.Tests
             get { return File.ReadAllText(Path.Combine(Root, "unity_plugin/Samples~/Crowd/population.jsonl.txt")); }
         }
 
-        /// The repository: tests run below it.
+        /// The repository, from the path that this file was compiled from: Cargo's target folder may be elsewhere.
         internal static string Root
         {
-            get
-            {
-                var at = new DirectoryInfo(Path.GetDirectoryName(typeof(SampleTests).Assembly.Location));
-                while (at != null && !Directory.Exists(Path.Combine(at.FullName, "unity_plugin")))
-                {
-                    at = at.Parent;
-                }
-                return at == null ? Directory.GetCurrentDirectory() : at.FullName;
-            }
+            get { return Path.GetFullPath(Path.Combine(Path.GetDirectoryName(SourceFile()), "../..")); }
+        }
+
+        static string SourceFile([CallerFilePath] string path = "")
+        {
+            return path;
         }
 
         [Test(Description = "crowd: the population file has 200 different requests, and the model accepts all of them")]
