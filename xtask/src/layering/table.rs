@@ -1,4 +1,4 @@
-//! The table of who may use whom, as ARCHITECTURE.md has it in words.
+//! The table of who may use whom. ARCHITECTURE.md has it too, for readers, and a test compares the two.
 
 /// A room and the rooms it may use, each of which stands above it; `lib.rs` may use everybody.
 const TABLE: &[(&str, &[&str])] = &[
@@ -40,6 +40,7 @@ pub(super) fn may_use(room: &str, used: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tools;
 
     #[test]
     fn the_table_has_no_cycle_and_knows_its_rooms() {
@@ -52,6 +53,50 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// The names in backticks.
+    fn quoted(text: &str) -> Vec<&str> {
+        text.split('`').skip(1).step_by(2).collect()
+    }
+
+    /// The rows of the table for readers: a room each, and what it may use.
+    fn rows(text: &str) -> Vec<(&str, Vec<&str>)> {
+        let (_, section) = text.split_once("\n## Rooms of the library\n").unwrap();
+        let table = section
+            .lines()
+            .skip_while(|line| !line.starts_with('|'))
+            .take_while(|line| line.starts_with('|'));
+        let mut lines =
+            table.map(|line| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>());
+        assert_eq!(lines.next().unwrap(), ["Room", "Holds", "May use"]);
+        lines.next();
+        let rooms = lines.map(|columns| {
+            let [room, _, may_use] = columns[..] else { panic!("three columns are expected: {columns:?}") };
+            let granted = quoted(may_use);
+            let plain: Vec<String> = granted.iter().map(|name| format!("`{name}`")).collect();
+            let plain = if plain.is_empty() { "–".to_owned() } else { plain.join(", ") };
+            assert_eq!(may_use, plain, "{room} may use: rooms in backticks with commas between, or a dash");
+            (quoted(room)[0], granted)
+        });
+        rooms.collect()
+    }
+
+    #[test]
+    fn architecture_has_the_same_table() {
+        let text = tools::read(&tools::root().join("ARCHITECTURE.md")).unwrap();
+        let (theirs, here) = (rows(&text), "xtask/src/layering/table.rs");
+        for ((room, mut granted), (our_room, our_granted)) in theirs.iter().cloned().zip(TABLE) {
+            assert_eq!(room, *our_room, "ARCHITECTURE.md and {here} have another room in this row");
+            let mut our_granted = our_granted.to_vec();
+            granted.sort_unstable();
+            our_granted.sort_unstable();
+            assert_eq!(granted, our_granted, "ARCHITECTURE.md and {here} grant `{room}` different rooms");
+        }
+        assert_eq!(theirs.len(), TABLE.len(), "ARCHITECTURE.md and {here} have a different number of rooms");
+        let (_, rest) = text.split_once("\nEverybody may use ").unwrap();
+        let open = quoted(rest.split('.').next().unwrap());
+        assert_eq!(open, OPEN, "ARCHITECTURE.md and {here} open different rooms to everybody");
     }
 
     #[test]
