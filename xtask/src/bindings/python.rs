@@ -1,6 +1,6 @@
 //! The declarations that Python calls, in the words of ctypes.
 //!
-//! What is not known here is an error; `tests/python_declarations.py` compares what was made with what a C compiler makes
+//! What is not known here is an error; `tests/python/test_declarations.py` compares what was made with what a C compiler makes
 //! of the header.
 
 use super::declared::{Declared, Function, Type};
