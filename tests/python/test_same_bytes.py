@@ -1,16 +1,8 @@
-"""The same bytes from the Python package as from Rust, C and C++: the list that ffi/tests/same_bytes.rs leaves.
-
-python python_same_bytes.py FOLDER
-"""
+"""The same bytes from the Python package as from Rust, C and C++: the list that ffi/tests/same_bytes.rs leaves."""
 
 import hashlib
-import sys
-from pathlib import Path
 
 import anthronet
-from python_cases import main_module, run
-
-FOLDER = Path(sys.argv[1])
 
 
 def line(number, request):
@@ -22,13 +14,10 @@ def line(number, request):
         return f"error {error.code}"
 
 
-def test_same_bytes():
+def test_same_bytes(same_bytes):
     """Same bytes: 200 requests through Python"""
-    requests = (FOLDER / "requests.jsonl").read_text("utf-8").splitlines()
-    expected = (FOLDER / "sha256.txt").read_text("utf-8").splitlines()
+    requests = (same_bytes / "requests.jsonl").read_text("utf-8").splitlines()
+    expected = (same_bytes / "sha256.txt").read_text("utf-8").splitlines()
     assert len(requests) == len(expected) >= 200, f"{len(requests)} requests, {len(expected)} hashes"
     differ = [i for i, request in enumerate(requests) if line(i, request) != expected[i]]
     assert not differ, f"requests {differ[:10]} of {len(requests)} differ"
-
-
-run(main_module())

@@ -1,11 +1,9 @@
-"""The Python package's memory and threads: views, buffers, lifetimes, the interpreter's lock, the log.
-
-    python python_memory.py FOLDER
-"""
+"""Memory and threads: views, buffers, lifetimes, the interpreter's lock, the log."""
 
 import ctypes
 import gc
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,23 +13,19 @@ import warnings
 import weakref
 from pathlib import Path
 
-import numpy as np
-
 import anthronet
-from anthronet import _library
-from python_cases import main_module, raises, run
+import numpy as np
+import pytest
+from anthronet import _library, _native
+from support import ROOT, raises
 
-FOLDER = Path(sys.argv[1])
-WOMAN = anthronet.generate(sex="female", height=1.70)
-MAN = anthronet.generate(sex="male", height=1.85)
-MODEL = anthronet.default_model()
 ARRAYS = ("positions", "normals", "uvs", "triangles", "joints", "weights", "sources", "quads", "quad_uvs", "triangle_uvs")
 CONFLICT = {"height": 1.9, "torso_height_back": 0.35, "thigh_length": 0.32, "neck_length_midline": 0.06}
 
 
-def test_views():
+def test_views(woman):
     """views are the library's memory: not copied, read-only for good"""
-    part = WOMAN.mesh(lod=1)[0]
+    part = woman.mesh(lod=1)[0]
     for name in ARRAYS:
         view = getattr(part, name)
         assert not view.flags.writeable and not view.flags.owndata or len(view) == 0, name
@@ -43,32 +37,36 @@ def test_views():
     assert copy.flags.writeable and not np.shares_memory(copy, part.positions)
 
 
-def test_reading():
+@pytest.mark.parametrize("layout", ["render", "model"])
+def test_reading(woman, layout):
     """arrays are read into buffers of any stride, and nothing beside them is written"""
-    for layout in ("render", "model"):
-        part = WOMAN.mesh(lod=1, layout=layout)[0]
-        for name in ARRAYS:
-            view = getattr(part, name)
-            fresh = part.read(name)
-            assert np.array_equal(fresh, view) and fresh.dtype == view.dtype, name
-            if view.ndim == 1:
-                wide = np.full(3 * len(view), 7, view.dtype)
-                assert part.read(name, wide[1::3]) is not None and np.array_equal(wide[1::3], view)
-                assert (wide[0::3] == 7).all() and (wide[2::3] == 7).all()
-                back = np.zeros_like(view)[::-1]
-                assert np.array_equal(part.read(name, back), view)
-                continue
-            count, columns = view.shape
-            wide = np.full((count, columns + 3), 7, view.dtype)
-            part.read(name, wide[:, 1 : 1 + columns])
-            assert np.array_equal(wide[:, 1 : 1 + columns], view) and (wide[:, 0] == 7).all() and (wide[:, -1] == 7).all()
-            for odd in (np.zeros((columns, count), view.dtype).T, np.zeros((count, columns), view.dtype)[::-1],
-                        np.zeros((count, 2 * columns), view.dtype)[:, ::2], np.zeros((2 * count, columns), view.dtype)[::2]):
-                assert np.array_equal(part.read(name, odd), view), (name, odd.strides)
-            record = np.zeros(count, np.dtype({"names": ["a"], "formats": [(view.dtype, (columns,))], "offsets": [5],
-                                               "itemsize": 5 + view.itemsize * columns + 2}))
-            assert np.array_equal(part.read(name, record["a"]), view), "rows that are not aligned"
-    part = WOMAN.mesh(lod=3)[0]
+    part = woman.mesh(lod=1, layout=layout)[0]
+    for name in ARRAYS:
+        view = getattr(part, name)
+        fresh = part.read(name)
+        assert np.array_equal(fresh, view) and fresh.dtype == view.dtype, name
+        if view.ndim == 1:
+            wide = np.full(3 * len(view), 7, view.dtype)
+            assert part.read(name, wide[1::3]) is not None and np.array_equal(wide[1::3], view)
+            assert (wide[0::3] == 7).all() and (wide[2::3] == 7).all()
+            back = np.zeros_like(view)[::-1]
+            assert np.array_equal(part.read(name, back), view)
+            continue
+        count, columns = view.shape
+        wide = np.full((count, columns + 3), 7, view.dtype)
+        part.read(name, wide[:, 1 : 1 + columns])
+        assert np.array_equal(wide[:, 1 : 1 + columns], view) and (wide[:, 0] == 7).all() and (wide[:, -1] == 7).all()
+        for odd in (np.zeros((columns, count), view.dtype).T, np.zeros((count, columns), view.dtype)[::-1],
+                    np.zeros((count, 2 * columns), view.dtype)[:, ::2], np.zeros((2 * count, columns), view.dtype)[::2]):
+            assert np.array_equal(part.read(name, odd), view), (name, odd.strides)
+        record = np.zeros(count, np.dtype({"names": ["a"], "formats": [(view.dtype, (columns,))], "offsets": [5],
+                                           "itemsize": 5 + view.itemsize * columns + 2}))
+        assert np.array_equal(part.read(name, record["a"]), view), "rows that are not aligned"
+
+
+def test_reading_refusals(woman):
+    """buffers that an array does not fit into are refused"""
+    part = woman.mesh(lod=3)[0]
     shape = part.positions.shape
     for wrong, kind in ((np.zeros(shape), TypeError), (np.zeros(shape, "i4"), TypeError), (np.zeros(shape, ">f4"), TypeError),
                         ([], TypeError), (np.zeros((shape[0] - 1, 3), "f4"), ValueError), (np.zeros(3, "f4"), ValueError),
@@ -78,19 +76,19 @@ def test_reading():
     raises(TypeError, lambda: part.read(["positions"]), "attribute")
 
 
-def test_views_keep_memory():
+def test_views_keep_memory(woman, man):
     """views live on without mesh, part and body, and through updates"""
-    mesh = WOMAN.mesh(lod=1)
+    mesh = woman.mesh(lod=1)
     view, before = mesh[0].positions, mesh[0].read("positions")
     handle = weakref.ref(mesh._handle)
-    mesh.update(MAN)
+    mesh.update(man)
     assert np.array_equal(view, before), "the surface of before"
-    assert np.array_equal(mesh[0].positions, MAN.mesh(lod=1)[0].positions) and not np.array_equal(mesh[0].positions, before)
+    assert np.array_equal(mesh[0].positions, man.mesh(lod=1)[0].positions) and not np.array_equal(mesh[0].positions, before)
     mesh.close()
     del mesh
     gc.collect()
     for _ in range(20):
-        WOMAN.mesh(lod=1)  # What was freed by mistake would be overwritten.
+        woman.mesh(lod=1)  # What was freed by mistake would be overwritten.
     assert handle() is not None and np.array_equal(view, before)
     part_of_it = view[10:20]
     del view
@@ -100,10 +98,11 @@ def test_views_keep_memory():
     assert handle() is None, "the last view frees the memory"
 
 
-def test_freeing():
+def test_freeing(model):
     """every handle is freed once: by close, the end of with, the last reference"""
+    gc.collect()  # What other tests left.
     freed = []
-    names = [name for name in dir_of_library() if name.endswith("_free")]
+    names = [name for name in _native.FUNCTIONS if name.endswith("_free")]
     plain = {name: getattr(_library.lib, name) for name in names}
 
     def counting(name):
@@ -118,9 +117,9 @@ def test_freeing():
             setattr(_library.lib, name, counting(name))
         request = anthronet.Request(height=1.7)
         request["height"] = 1.71
-        body = MODEL.generate(request)
+        body = model.generate(request)
         mesh, clip = body.mesh(lod=3), anthronet.builtin_clip("idle", body)
-        skinner, job = mesh.skinner(), MODEL.start([request])
+        skinner, job = mesh.skinner(), model.start([request])
         body.report
         live = [mesh._handle.value, clip._handle.value, skinner._handle.value, job._handle.value, body._handle.value]
         body.close()
@@ -136,7 +135,7 @@ def test_freeing():
                             ("anthronet_clip_free", 1), ("anthronet_skinner_free", 1), ("anthronet_job_free", 1)):
             assert kinds.count(name) == count, (name, kinds)
         try:
-            MODEL.generate(anthronet.Request(height=17))
+            model.generate(anthronet.Request(height=17))
         except anthronet.RequestError:
             pass
         gc.collect()
@@ -146,15 +145,9 @@ def test_freeing():
             setattr(_library.lib, name, plain[name])
 
 
-def dir_of_library():
-    from anthronet import _native
-
-    return list(_native.FUNCTIONS)
-
-
-def test_closed():
+def test_closed(woman, model):
     """what is closed says so, and closing twice does nothing"""
-    body = MODEL.generate(anthronet.Request("male"))
+    body = model.generate(anthronet.Request("male"))
     mesh, clip = body.mesh(lod=3), anthronet.builtin_clip("walk", body)
     part, skinner = mesh[0], mesh.skinner()
     for thing in (body, mesh, clip, skinner):
@@ -162,15 +155,15 @@ def test_closed():
         thing.close()
         assert thing.closed and "closed" in f"{thing!r} closed"
     for use in (lambda: body.report, lambda: body.mesh(), lambda: body.joints(), lambda: body.to_bytes("glb"),
-                lambda: part.positions, lambda: part.read("normals"), lambda: mesh.update(WOMAN), lambda: mesh.skinner(),
-                lambda: mesh.blend_shapes, lambda: clip.sample(0), lambda: clip.bake(), lambda: WOMAN.to_bytes("glb", clips=[clip]),
+                lambda: part.positions, lambda: part.read("normals"), lambda: mesh.update(woman), lambda: mesh.skinner(),
+                lambda: mesh.blend_shapes, lambda: clip.sample(0), lambda: clip.bake(), lambda: woman.to_bytes("glb", clips=[clip]),
                 lambda: skinner.skin(np.zeros((body.joint_count, 7))), lambda: anthronet.builtin_clip("walk", body),
                 lambda: body.__enter__()):
         raises(ValueError, use, "closed")
     assert body.sex == "male" and body.mass_kg > 0, "numbers stay"
 
 
-def test_closing_under_a_call():
+def test_closing_under_a_call(woman, model):
     """closing a model, body or mesh that others are using harms nobody"""
     errors, stop = [], threading.Event()
 
@@ -192,9 +185,9 @@ def test_closing_under_a_call():
             errors.append(error)
 
     request = anthronet.Request("female")
-    jobs = [(lambda: MODEL.generate(request), lambda body: body.to_bytes("glb", lod=3)),
-            (lambda: WOMAN.mesh(lod=1), lambda mesh: mesh[0].read("positions")),
-            (lambda: anthronet.builtin_clip("walk", WOMAN), lambda clip: clip.bake("model"))]
+    jobs = [(lambda: model.generate(request), lambda body: body.to_bytes("glb", lod=3)),
+            (lambda: woman.mesh(lod=1), lambda mesh: mesh[0].read("positions")),
+            (lambda: anthronet.builtin_clip("walk", woman), lambda clip: clip.bake("model"))]
     threads = [threading.Thread(target=work, args=job) for job in jobs]
     for thread in threads:
         thread.start()
@@ -205,16 +198,16 @@ def test_closing_under_a_call():
     assert not errors, errors[:2]
 
 
-def test_threads():
+def test_threads(woman, model):
     """8 threads that generate, mesh, sample and skin have the results of one"""
-    walk = anthronet.builtin_clip("walk", WOMAN)
-    skinner, mesh = WOMAN.mesh(lod=1).skinner(), WOMAN.mesh(lod=1)
+    walk = anthronet.builtin_clip("walk", woman)
+    skinner, mesh = woman.mesh(lod=1).skinner(), woman.mesh(lod=1)
     shared = anthronet.Request("male")
 
     def one(i):
         request = shared.copy()
         request.seed, request["height"] = i % 4, 1.75 + i % 4 * 0.02
-        body = MODEL.generate(request)
+        body = model.generate(request)
         pose = walk.sample(i % 4 / 5, relative="model")
         return body.to_bytes("obj", lod=3), skinner.skin(pose)[0].tobytes(), mesh[0].read("normals").tobytes()
 
@@ -232,18 +225,18 @@ def test_threads():
     assert len(results) == 8 and all(len(r) == 6 and set(r) == {expected[i % 4]} for i, r in results.items())
 
 
-def test_one_request_of_many_threads():
+def test_one_request_of_many_threads(woman, man):
     """one request and one mesh changed and read by 8 threads stay whole"""
-    request, mesh, errors = anthronet.Request(height=1.7), WOMAN.mesh(lod=3), []
-    surfaces = {body.mesh(lod=3)[0].positions.tobytes() for body in (WOMAN, MAN)}
+    request, mesh, errors = anthronet.Request(height=1.7), woman.mesh(lod=3), []
+    surfaces = {body.mesh(lod=3)[0].positions.tobytes() for body in (woman, man)}
 
     def work(i):
         try:
             for round in range(60):
                 if i % 2:
                     request[anthronet.MEASURES[i]] = 0.5 + round / 1000
-                    mesh.update(MAN if round % 2 else WOMAN)
-                    mesh.add_blend_shape(f"{i} {round}", MAN)
+                    mesh.update(man if round % 2 else woman)
+                    mesh.add_blend_shape(f"{i} {round}", man)
                 else:
                     assert request["height"] == 1.7 and anthronet.Request.from_json(request.to_json())["height"] == 1.7
                     assert mesh[0].positions.tobytes() in surfaces
@@ -283,19 +276,19 @@ def progress_of_others(call):
     return seen
 
 
-def test_lock_is_released():
+def test_lock_is_released(model):
     """other threads of Python go on during a call"""
     request = anthronet.Request("female", height=1.71)
-    seen = progress_of_others(lambda: MODEL.generate(request))
+    seen = progress_of_others(lambda: model.generate(request))
     assert len(seen) == 5 and sum(seen) > 5, seen
     # The same call with the interpreter's lock held, so that this could have failed.
     held, body = ctypes.PyDLL(_library.lib._name).anthronet_generate, ctypes.c_void_p()
     held.argtypes = _library.lib.anthronet_generate.argtypes
-    seen = progress_of_others(lambda: held(MODEL._open, request._handle, ctypes.byref(body), None))
+    seen = progress_of_others(lambda: held(model._open, request._handle, ctypes.byref(body), None))
     assert seen == [0] * 5, seen
 
 
-def test_log():
+def test_log(model):
     """messages come to the callback, what it raises goes no further, and it must not call back"""
     heard = []
     anthronet.set_log_callback(lambda level, message: heard.append((level, message)))
@@ -318,7 +311,7 @@ def test_log():
     raises(TypeError, lambda: anthronet.set_log_callback(3), "callback", "int")
     other = []
     anthronet.set_log_callback(lambda level, message: other.append(threading.get_ident()))
-    with MODEL.start([anthronet.Request("female", nearest=True, **CONFLICT)]) as job:
+    with model.start([anthronet.Request("female", nearest=True, **CONFLICT)]) as job:
         job.wait()
     anthronet.set_log_callback(None)
     assert other and other[0] != threading.get_ident(), "a job speaks from its own thread"
@@ -358,22 +351,22 @@ def in_a_fork(work):
     return "hangs"
 
 
-def test_fork():
+def test_fork(woman, model):
     """a forked child, as of multiprocessing, has what its parent has and waits for none of its threads"""
     if not hasattr(os, "fork"):
-        return "there is no fork here"
+        pytest.skip("there is no fork here")
     warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of forks beside threads: this test is about them.
-    skinner, walk = WOMAN.mesh().skinner(), anthronet.builtin_clip("walk", WOMAN)
+    skinner, walk = woman.mesh().skinner(), anthronet.builtin_clip("walk", woman)
     pose = walk.sample(0.4, relative="model")
     expected = skinner.skin(pose)[0]  # On the threads of the pool, which the child has not.
-    body = MODEL.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
+    body = model.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
 
     def work():
-        made = MODEL.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
+        made = model.generate(anthronet.Request("male")).to_bytes("obj", lod=3)
         return np.array_equal(skinner.skin(pose)[0], expected) and made == body
 
     assert in_a_fork(work) == 0
-    job = MODEL.start([anthronet.Request(seed=i) for i in range(100)])
+    job = model.start([anthronet.Request(seed=i) for i in range(100)])
 
     def of_the_parent():
         try:
@@ -382,7 +375,7 @@ def test_fork():
             state = job.wait(60).state
             job.close()
             gc.collect()
-            with MODEL.start([anthronet.Request("male")]) as own:
+            with model.start([anthronet.Request("male")]) as own:
                 return state == "cancelled" and [b.to_bytes("obj", lod=3) for b in own.results()] == [body]
 
     assert in_a_fork(of_the_parent) == 0
@@ -394,39 +387,49 @@ def test_fork():
 def test_default_model_file():
     """ANTHRONET_MODEL names the default model, and a wrong one is an error that names it"""
     use = "import anthronet; print(anthronet.generate('male').sex)"
-    file = Path(__file__).resolve().parent.parent / "model" / "anthronet.safetensors"
+    file = ROOT / "model" / "anthronet.safetensors"
     assert script(use, ANTHRONET_MODEL=str(file)).stdout == "male\n"
     done = script(use, ANTHRONET_MODEL="no such model")
     assert done.returncode == 1 and "no such model" in done.stderr.splitlines()[-1], done.stderr
 
 
-def test_library_that_is_none():
-    """a library that is missing, no library, another's or of another version is an ImportError that says what to do"""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    text = FOLDER / "text.so"
-    text.write_text("no library", encoding="utf-8")
-    cases = [(FOLDER / "nowhere.so", "no such file"), (text, "does not load"),
-             (Path(np.__file__).parent.parent / "no", "no such file")]
-    if subprocess.run(["cc", "--version"], capture_output=True, check=False).returncode == 0:
-        for name, code, why in (("other", "int other(void) { return 0; }", "is not libanthronet"),
-                                ("young", "int anthronet_abi_version(void) { return 99; }", "version 99"),
-                                ("poor", f"int anthronet_abi_version(void) {{ return {anthronet.abi_version()}; }}", "lacks anthronet_")):
-            source = FOLDER / f"{name}.c"
-            source.write_text(code, encoding="utf-8")
-            subprocess.run(["cc", "-shared", "-fPIC", "-o", FOLDER / f"{name}.so", source], check=True)
-            cases.append((FOLDER / f"{name}.so", why))
-    for path, why in cases:
-        done = script("import anthronet", ANTHRONET_LIBRARY=str(path))
-        last = done.stderr.strip().splitlines()[-1]
-        assert last.startswith("ImportError: anthronet: ") and why in last and "ANTHRONET_LIBRARY" in last, last
-        assert str(path) in last, last
+SOURCES = {
+    "another": ("int other(void) { return 0; }", "is not libanthronet"),
+    "of another version": ("int anthronet_abi_version(void) { return 99; }", "version 99"),
+    "without functions": (f"int anthronet_abi_version(void) {{ return {anthronet.abi_version()}; }}", "lacks anthronet_"),
+}
+
+
+@pytest.fixture(params=["not there", "not there, without an ending", "text", *SOURCES])
+def wrong_library(request, tmp_path):
+    """The path of a library that is none of ours, and what is said of it."""
+    path = tmp_path / "wrong.so"
+    if request.param == "not there":
+        return path, "no such file"
+    if request.param == "not there, without an ending":
+        return Path(np.__file__).parent.parent / "no", "no such file"
+    if request.param == "text":
+        path.write_text("no library", encoding="utf-8")
+        return path, "does not load"
+    if shutil.which("cc") is None:
+        pytest.skip("no C compiler `cc`")
+    code, said = SOURCES[request.param]
+    source = tmp_path / "wrong.c"
+    source.write_text(code, encoding="utf-8")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", path, source], check=True)
+    return path, said
+
+
+def test_library_that_is_none(wrong_library):
+    """a library that is wrong is an ImportError that says what to do"""
+    path, said = wrong_library
+    done = script("import anthronet", ANTHRONET_LIBRARY=str(path))
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith("ImportError: anthronet: ") and said in last and "ANTHRONET_LIBRARY" in last, last
+    assert str(path) in last, last
 
 
 def test_raw_pointers():
     """handles that are NULL are errors, not crashes"""
     null = ctypes.c_void_p()
     raises(anthronet.ArgumentError, lambda: _library.json_of(_library.lib.anthronet_body_report, null), "NULL")
-
-
-if __name__ == "__main__":
-    run(main_module())
