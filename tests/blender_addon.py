@@ -21,10 +21,11 @@ from blender.guarding import failing, failing_whole, linking, refusing, sharing
 from blender.keeping import adjusting, keeping, undoing
 from blender.moving import following, layering, moving, rating, refitting, rigging, slicing
 from blender.picturing import picturing
-from blender.registering import registering
+from blender.registering import importing, registering
 
 PARTS = (
     installing,
+    importing,
     creating,
     unitising,
     editing,

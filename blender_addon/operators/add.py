@@ -4,8 +4,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import fields, library, measures
+from .. import library, measures
 from ..services import character
+from ..state import definitions
 from .base import reported
 from .job import ModalJob
 
@@ -40,7 +41,7 @@ class ANTHRONET_OT_character_add(AddsCharacters, bpy.types.Operator):
     bl_label = "AnthroNet Character"
     bl_options = {"REGISTER", "UNDO"}
 
-    __annotations__ = {**fields.person(), **fields.measure_properties(may_be_open=True)}
+    __annotations__ = {**definitions.request_properties(), **definitions.measure_properties(zero_is_unset=True)}
 
     @reported
     def execute(self, context):
@@ -96,7 +97,7 @@ class ANTHRONET_OT_crowd_add(AddsCharacters, ModalJob, bpy.types.Operator):
         unit="LENGTH",
         subtype="DISTANCE",
     )
-    lod: EnumProperty(name="Detail", description="How many vertices each has", items=fields.LODS, default="1")
+    lod: EnumProperty(name="Detail", description="How many vertices each has", items=definitions.LODS, default="1")
     skin_tones: BoolProperty(
         name="All Skin Tones", description="Skin tones in turn instead of the default", default=True
     )
@@ -107,7 +108,7 @@ class ANTHRONET_OT_crowd_add(AddsCharacters, ModalJob, bpy.types.Operator):
     def work(self, context):
         """Places people as they are made beside this thread."""
         request, sexes = library.anthronet().Request, ("female", "male")
-        seeds = [(self.seed + i - 1) % fields.LARGEST_SEED + 1 for i in range(self.count)]
+        seeds = [(self.seed + i - 1) % definitions.LARGEST_SEED + 1 for i in range(self.count)]
         requests = [request(sex=sexes[i % 2], seed=seed, fill="sample") for i, seed in enumerate(seeds)]
         placed = 0
         with library.model().start(requests) as job:

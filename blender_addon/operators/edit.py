@@ -8,15 +8,16 @@ import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import fields, library, measures, properties
+from .. import library, measures
 from ..services import character, live
+from ..state import definitions, requests
 from .base import ChangesCharacter, NeedsCharacter, reported
 
 
 def _change_selected(context, fields_of):
     """Gives the selected characters the requests whose JSON's fields ``fields_of`` tells of each one."""
     changed = [
-        (owner, properties.from_fields(fields_of(place, owner.anthronet)))
+        (owner, requests.from_fields(fields_of(place, owner.anthronet)))
         for place, owner in enumerate(character.selected(context))
     ]
     live.change(changed, context)
@@ -51,10 +52,10 @@ class ANTHRONET_OT_randomise(ChangesCharacter, bpy.types.Operator):
     def execute(self, context):
         if self.seed == 0:
             # Kept, so that Adjust Last Operation starts from the person that is seen.
-            self.seed = random.SystemRandom().randrange(1, fields.LARGEST_SEED)
+            self.seed = random.SystemRandom().randrange(1, definitions.LARGEST_SEED)
 
         def drawn(place, settings):
-            seed = (self.seed + place - 1) % fields.LARGEST_SEED + 1
+            seed = (self.seed + place - 1) % definitions.LARGEST_SEED + 1
             if self.what == "ALL":
                 described = settings.request_fields(seed=seed, fill="sample")
                 described.pop("z", None)

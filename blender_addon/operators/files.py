@@ -7,8 +7,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from .. import fields
 from ..services import action, character, pose
+from ..state import definitions
 from .base import NeedsCharacter
 from .job import ModalJob
 
@@ -54,7 +54,7 @@ class ANTHRONET_OT_character_export(NeedsCharacter, ModalJob, bpy.types.Operator
     )
     compress: BoolProperty(name="Compress", description="EXT_meshopt_compression, for .glb and .gltf")
     joint_names: EnumProperty(
-        name="Joint Names", description="What the joints are called", items=fields.NAMES, default="NATIVE"
+        name="Joint Names", description="What the joints are called", items=definitions.BONE_NAMES, default="NATIVE"
     )
 
     def check(self, context):

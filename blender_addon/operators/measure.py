@@ -4,8 +4,9 @@
 import bpy
 from bpy.props import BoolProperty
 
-from .. import properties, units
+from .. import units
 from ..services import character, live
+from ..state.requests import from_fields
 from .base import ChangesCharacter, NeedsCharacter, reported
 
 
@@ -57,7 +58,7 @@ class ANTHRONET_OT_fit_selected(ChangesCharacter, bpy.types.Operator):
         requests = []
         for owner in character.selected(context):
             found = {name: float(f"{value:.7g}") for name, value in character.measured(owner).measures.items()}
-            requests.append((owner, properties.from_fields(owner.anthronet.request_fields(measures=found))))
+            requests.append((owner, from_fields(owner.anthronet.request_fields(measures=found))))
         live.change(requests, context, forget_sculpting=True)
         return {"FINISHED"}
 

@@ -3,7 +3,9 @@
 
 import bpy
 
-from .. import library, properties
+from .. import library
+from ..state.properties import updates_suspended
+from ..state.requests import check_storable
 from . import material, mesh, rig
 
 _MESH = "anthronet_body"
@@ -46,7 +48,7 @@ def add(context, people, *, lod, accessories=True, names="blender", tones=None, 
     request that it came of and a place, ``tones`` their steps of the skin tone scale. All or none."""
     bodies = [body for body, _, _ in people]
     for _, request, _ in people:
-        properties.check(request)
+        check_storable(request)
     made = []
     try:
         rigs = rig.new(bodies, names, context, name, made)
@@ -64,7 +66,7 @@ def add(context, people, *, lod, accessories=True, names="blender", tones=None, 
             settings = owner.anthronet
             settings.set_request(request)
             settings.set_report(body)
-            with properties.silent():
+            with updates_suspended():
                 settings.is_character = True
                 settings.lod = str(lod)
                 settings.accessories = accessories

@@ -4,7 +4,9 @@ sculpting and selection stay. A change happens as a whole or not at all."""
 
 import bpy
 
-from .. import library, properties
+from .. import library
+from ..state import requests as stored_requests
+from ..state.properties import updates_suspended
 from . import carry, character, material, mesh, rig
 
 _MODES = ("OBJECT", "POSE")
@@ -43,7 +45,7 @@ def follow(owner, context, names):
     owners = [owner]
     if context.scene.anthronet_edit_together and owner == character.active(context):
         owners = character.selected(context)
-    with properties.silent():
+    with updates_suspended():
         for other in owners[1:]:
             for name in names:
                 setattr(other.anthronet, name, getattr(owner.anthronet, name))
@@ -73,7 +75,7 @@ def change(requests, context, forget_sculpting=False):
     ready = []
     for owner, request in requests:
         _refuse(owner, context)
-        properties.check(request)
+        stored_requests.check_storable(request)
         ready.append((owner, library.model().generate(request)))
     _commit(ready, context, forget_sculpting)
     for (owner, request), (_, body) in zip(requests, ready):

@@ -7,6 +7,8 @@ from functools import lru_cache
 
 import bpy
 
+from .. import library
+
 _SKIN = "Body"
 #: On materials: what they were made for, and what they were like then.
 _KEY, _STATE = "anthronet", "anthronet_state"
@@ -72,8 +74,6 @@ def set_tone(mesh_object, step):
 
 @lru_cache(maxsize=None)
 def _tone(step):
-    from .. import library
-
     # The library knows the colours; the smallest mesh that carries one is asked for it.
     body = library.model().generate(library.anthronet().Request())
     part = body.mesh(lod=3, body_only=True, skin_tone=step).parts[0]

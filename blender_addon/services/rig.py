@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import library
+
 #: The bone's joint in the library, on every bone.
 JOINT = "anthronet_joint"
 _KEY = "anthronet_template"
@@ -113,8 +115,6 @@ def is_transformed(rig):
 
 def rename(rig, names):
     """Calls the bones by another vocabulary; vertex groups and animation follow."""
-    from .. import library
-
     # Names are the same for every body.
     body = library.model().generate(library.anthronet().Request())
     table = dict(zip(body.joint_names(), body.joint_names(names)))
@@ -209,8 +209,6 @@ def _place(bones, body):
 
 def _describe(armature, body, names):
     """Which joint each bone is, which bone of the humanoid, and the collections."""
-    from .. import library
-
     joints = body.joint_names()
     collections = {title: armature.collections.new(title) for title, _ in reversed(_COLLECTIONS)}
     for bone_name, joint in zip(body.joint_names(names), joints):

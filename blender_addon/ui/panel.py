@@ -4,8 +4,8 @@
 import bpy
 
 from .. import measures, units
-from ..presets import ANTHRONET_PT_presets
 from ..services import action, character, live
+from .presets import ANTHRONET_PT_presets
 
 
 class _Panel:

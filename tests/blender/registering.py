@@ -1,8 +1,11 @@
 """What the extension leaves in Blender, and what it says of itself."""
 
+import zipfile
+
 import bpy
 
-from blender.harness import NAME, check, clean, module
+from blender import import_order
+from blender.harness import NAME, archive, check, clean, module
 
 _MENUS = ("VIEW3D_MT_mesh_add", "TOPBAR_MT_file_import", "TOPBAR_MT_file_export")
 
@@ -21,6 +24,16 @@ def _known():
         [len(getattr(bpy.types, menu).draw._draw_funcs) for menu in _MENUS],
         handlers,
     )
+
+
+def importing():
+    """The imports of the modules that are in the zip."""
+    missed = import_order.missed()
+    check("the check of imports finds what is planted", not missed, "; ".join(missed))
+    with zipfile.ZipFile(archive) as files:
+        sources = {name: files.read(name).decode() for name in files.namelist() if name.endswith(".py")}
+    faults = import_order.faults(sources)
+    check("imports have no cycle and go one way", len(sources) > 20 and not faults, "; ".join(faults))
 
 
 def registering():
@@ -54,7 +67,7 @@ def describing():
         own = {key for cls in operator.__mro__ for key in getattr(cls, "__annotations__", {})}
         silent += _silent(operator.bl_idname, rna, own)
     check("every operator has a poll, a description and undo", len(operators) >= 17 and not faults, "; ".join(faults))
-    properties = module("properties")
+    properties = module("state.properties")
     for group in (properties.AnthroCharacter, properties.AnthroMeasureReport):
         silent += _silent(group.__name__, group.bl_rna, set(group.bl_rna.properties.keys()) - {"name", "rna_type"})
     silent += _silent("Scene", bpy.types.Scene.bl_rna, {"anthronet_edit_together"})
