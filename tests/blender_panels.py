@@ -208,7 +208,7 @@ def read_panels(texts):
         cases.case(f"panel {panel}", not lost, f"{lost} not in {texts[f'ANTHRONET_PT_{panel}'][:300]}")
 
     has("start", "Add Character", "Add Crowd")
-    has("person", "Sex", "Seed", "Randomise", "Mirror", "anthronet_edit_together")
+    has("person", "Sex", "Seed", "Randomize", "Mirror", "anthronet_edit_together")
     has("identity", "Identity 1", "Identity 10")
     has("body", "lod", "skin_tone", "joint_names", "fine_render")
     has("motion", "clip_apply", "clip_builtin", "clip_from_armature", "metarig_add", "Export")
@@ -224,7 +224,7 @@ def read_panels(texts):
     )
     cases.case(
         "a given one its percentile and residual",
-        re.search(r"P\d+  off by [+-]0\.00 mm", groups["torso"]),
+        re.search(r"P\d+  error [+-]0\.00 mm", groups["torso"]),
         groups["torso"][:300],
     )
 

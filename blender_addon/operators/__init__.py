@@ -3,9 +3,9 @@
 
 import bpy
 
-from . import add, clip, edit, files, measure, presets, rigify
+from . import add, clip, edit, export, measure, presets, rigify
 
-_MODULES = (add, clip, edit, files, measure, presets, rigify)
+_MODULES = (add, clip, edit, export, measure, presets, rigify)
 
 
 def register():

@@ -5,9 +5,9 @@ import bpy
 from bl_operators.presets import AddPresetBase
 
 from .. import measures
-from ..services import character, live
+from ..services import character, regeneration
 from ..state.properties import updates_suspended
-from .base import ChangesCharacter, NeedsCharacter, reported
+from .base import ChangesCharacter, NeedsCharacter, reports_errors
 
 #: Folder of the presets, within Blender's folder of presets.
 SUBDIRECTORY = "anthronet"
@@ -53,7 +53,7 @@ class ANTHRONET_OT_preset_apply(ChangesCharacter, bpy.types.Operator):
         name="Menu", description="Menu that the preset was chosen from", options={"SKIP_SAVE", "HIDDEN"}
     )
 
-    @reported
+    @reports_errors
     def execute(self, context):
         settings = character.active(context).anthronet
         # A preset is a script that sets properties of the active character. They are read and then restored, so that the
@@ -68,7 +68,7 @@ class ANTHRONET_OT_preset_apply(ChangesCharacter, bpy.types.Operator):
             finally:
                 for name, value in before.items():
                     setattr(settings, name, value)
-        live.change([(owner, request) for owner in character.selected(context)], context)
+        regeneration.apply_requests([(rig, request) for rig in character.selected(context)], context)
         return {"FINISHED"}
 
 

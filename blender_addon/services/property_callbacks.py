@@ -7,7 +7,7 @@ from functools import partial
 
 from .. import measures
 from ..state.properties import NO_IDENTITY, are_updates_suspended, updates_suspended
-from . import character, live, material, rig
+from . import armature, character, material, regeneration
 
 
 def callback_for(name):
@@ -33,7 +33,7 @@ def _regenerate(*arguments):
     """Generates the body anew after a change of the named properties: ``(*names, settings, context)``."""
     *names, settings, context = arguments
     if settings.is_character:
-        live.follow(settings.id_data, context, names)
+        regeneration.apply_property_change(settings.id_data, context, names)
 
 
 def _measure_changed(name, index, settings, context):
@@ -67,17 +67,19 @@ def _identity_by_hand_changed(settings, context):
 
 def _mesh_changed(settings, context):
     if settings.is_character:
-        live.rebuild(settings.id_data, context)
+        regeneration.rebuild_mesh(settings.id_data, context)
 
 
 def _joint_names_changed(settings, _context):
     if settings.is_character:
-        rig.rename(settings.id_data, settings.joint_names.lower())
+        armature.rename_bones(settings.id_data, settings.joint_names.lower())
 
 
 def _skin_tone_changed(settings, _context):
-    if settings.is_character and not material.set_tone(character.mesh_of(settings.id_data), settings.skin_tone):
-        settings.error = "The skin's material was edited: it keeps its colour"
+    if settings.is_character and not material.set_skin_tone(
+        character.mesh_object(settings.id_data), settings.skin_tone
+    ):
+        settings.error = "The material of the skin was edited, so it keeps its color"
 
 
 def _fine_render_changed(settings, _context):

@@ -161,7 +161,7 @@ def unitising():
     told = {}
     for system, scale in (("METRIC", 1.0), ("IMPERIAL", 1.0), ("NONE", 1.0), ("METRIC", 0.1)):
         settings.system, settings.scale_length = system, scale
-        told[system, scale] = units.length(scene, 1.70), units.millimetres(scene, 0.0004), units.mass(scene, 70.0)
+        told[system, scale] = units.length(scene, 1.70), units.length_difference(scene, 0.0004), units.mass(scene, 70.0)
     check("metres", told["METRIC", 1.0] == ("1.7 m", "+0.40 mm", "70.0 kg"), str(told))
     check("feet and pounds", "'" in told["IMPERIAL", 1.0][0] and
           told["IMPERIAL", 1.0][1:] == ("+0.0157 in", "154.3 lb"), str(told))

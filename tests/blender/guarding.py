@@ -24,13 +24,13 @@ from blender.harness import (
 
 def _refused(name, character, expected):
     """A slider that is refused in words, and the operators with it; nothing moves."""
-    live = service("live")
+    regeneration = service("regeneration")
     settings = character.anthronet
     before = settings.height
     settings.height = before + 0.02
     told = settings.error
     check(f"{name}: a slider says why not", expected in told, told)
-    poll = live.refusal(character, bpy.context) or ""
+    poll = regeneration.reason_not_editable(character, bpy.context) or ""
     check(f"{name}: so do operators", expected in poll and not bpy.ops.anthronet.open_measures.poll(), poll)
     settings.height = before
 
@@ -112,10 +112,10 @@ def failing_whole():
     clean()
     character = add(sex="FEMALE", height=1.70)
     other = add(sex="MALE", height=1.80)
-    rig = service("rig")
+    armature = service("armature")
     counts = lambda: (len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.armatures))
-    before, move = counts(), rig.move
-    rig.move = lambda *_: (_ for _ in ()).throw(RuntimeError("no mode"))
+    before, set_rest_pose = counts(), armature.set_rest_pose
+    armature.set_rest_pose = lambda *_: (_ for _ in ()).throw(RuntimeError("no mode"))
     try:
         message = failure(lambda: bpy.ops.anthronet.character_add(sex="MALE"))
         check("a failed character leaves nothing behind", "no mode" in message and counts() == before, f"{counts()}")
@@ -124,7 +124,7 @@ def failing_whole():
         check("bones that cannot move keep the mesh in its place", character.anthronet.error == "no mode" and
               state(character)[4:] == kept[4:], character.anthronet.error)
     finally:
-        rig.move = move
+        armature.set_rest_pose = set_rest_pose
     character.anthronet.height = 1.70
 
     impossible = {"sex": "female", "measures": {"height": 1.5, "thigh_length_left": 0.69, "thigh_length_right": 0.69}}
@@ -254,7 +254,7 @@ def linking():
         bpy.context.collection.objects.link(thing)
     linked = people()[0]
     select(linked)
-    reason = service("live").refusal(linked, bpy.context) or ""
+    reason = service("regeneration").reason_not_editable(linked, bpy.context) or ""
     check("a linked character says so", "linked" in reason and "Make Local" in reason, reason)
     check("and cannot be changed", not bpy.ops.anthronet.mirror.poll() and not bpy.ops.anthronet.clip_builtin.poll())
     check("but be made local", bpy.ops.anthronet.make_local() == {"FINISHED"})
@@ -274,5 +274,5 @@ def linking():
         bpy.context.collection.objects.link(thing)
     override = people()[0].override_create(remap_local_usages=True)
     select(override)
-    reason = service("live").refusal(override, bpy.context) or ""
+    reason = service("regeneration").reason_not_editable(override, bpy.context) or ""
     check("a library override says so", "Make Local" in reason, reason)

@@ -59,7 +59,7 @@ def people():
 
 
 def mesh_of(character):
-    return service("character").mesh_of(character)
+    return service("character").mesh_object(character)
 
 
 def generated(character):
@@ -96,7 +96,7 @@ def evaluated(surface):
 def joints(character, body=None):
     """Where the joints are in the pose, in the armature's space: (joints, 3)."""
     bpy.context.view_layer.update()
-    bones = service("rig").joint_order(character, body or generated(character))
+    bones = service("armature").pose_bones(character, body or generated(character))
     return np.array([bone.head for bone in bones])
 
 

@@ -153,15 +153,15 @@ def refitting():
     action = service("action")
     bpy.ops.anthronet.clip_builtin(name="WALK", frame_start=3)
     played = character.animation_data.action
-    check("a clip is of its body", not action.is_of_another_body(character))
+    check("a clip is of its body", not action.is_outdated(character))
     character.anthronet.height = 1.50
-    check("after a change it is of another one", action.is_of_another_body(character))
+    check("after a change it is of another one", action.is_outdated(character))
     bpy.ops.anthronet.clip_refit()
     clip = anthronet.builtin_clip("walk", generated(character)).resample(30)
     off = _off(character, clip, (3, 12, 25), 30, start=3)
     check(
         "refitted, it is the clip of this one, in the same action",
-        off < 1e-4 and character.animation_data.action == played and not action.is_of_another_body(character),
+        off < 1e-4 and character.animation_data.action == played and not action.is_outdated(character),
         f"{1000 * off:.3f} mm",
     )
     path = home / "refit.glb"
@@ -172,14 +172,14 @@ def refitting():
     other = next(one for one in people() if one != character)
     other.anthronet.height = 1.80
     select(other)
-    before = [one.name for one in action.of(character)]
+    before = [one.name for one in action.used_by(character)]
     bpy.ops.anthronet.clip_refit()
     check(
         "a shared action is left to the other character",
-        [one.name for one in action.of(character)] == before
-        and not set(action.of(other)) & set(action.of(character))
-        and not action.is_of_another_body(other),
-        f"{before} {[one.name for one in action.of(other)]}",
+        [one.name for one in action.used_by(character)] == before
+        and not set(action.used_by(other)) & set(action.used_by(character))
+        and not action.is_outdated(other),
+        f"{before} {[one.name for one in action.used_by(other)]}",
     )
 
 
@@ -267,7 +267,7 @@ def following():
           rig.animation_data.action == other and scene.frame_current == 2)
     length = character.animation_data.action.frame_range[1]
     check("the motion is as long as the action", result == {"FINISHED"} and abs(length - 21) < 1e-3, f"{length}")
-    module("compat").assign(rig, action)
+    module("compat").assign_action(rig, action)
     scene.frame_set(31)
     worst = _compared(character, rig, names, (11, 20, 31), 11)
     check("a Mixamo rig in centimetres: limbs point the same way", worst < 1.0, f"{worst:.2f}°")
@@ -335,114 +335,129 @@ def rigging():
 
 
 def slicing():
-    """Long work in slices: what a window's timer does, by hand."""
+    """Long work in slices, as the timer of a window does them."""
+    _slices_of_a_crowd()
+    _ends_of_modal_operators()
+    _stopped_sampling()
+
+
+def _slices_of_a_crowd():
     clean()
-    job = module("operators.job")
+    modal = module("operators.modal")
     crowd = bpy.types.ANTHRONET_OT_crowd_add
-    asked = SimpleNamespace(count=40, seed=3, spacing=1.5, lod="3", skin_tones=True, changed=False)
-    asked._place = lambda context, index: crowd._place(asked, context, index)
-    steps = job.Steps(crowd.work(asked, bpy.context))
-    while not asked.changed:
-        steps.step(0.01)
-    some = len(people())
-    check("a slice makes some people", 0 < some < 40 and not steps.done and 0 < steps.progress < 1, f"{some}")
-    steps.close()
-    check("Esc keeps those that stand", len(people()) == some and steps.done and steps.step())
+    options = SimpleNamespace(count=40, seed=3, spacing=1.5, lod="3", skin_tones=True, changed=False)
+    options._location = lambda context, index: crowd._location(options, context, index)
+    work = modal.SlicedWork(crowd.work(options, bpy.context))
+    while not options.changed:
+        work.run_slice(0.01)
+    count = len(people())
+    check("a slice adds some characters", 0 < count < 40 and not work.done and 0 < work.progress < 1, f"{count}")
+    work.close()
+    check("after Esc they are still there", len(people()) == count and work.done and work.run_slice())
 
-    class Window:
-        """What a modal operator asks of Blender, counted."""
 
-        def __init__(self):
-            self.timers = self.bars = 0
-            self.text = ""
+class _Window:
+    """A window manager and workspace for a modal operator. Counts timers and progress bars."""
 
-        def event_timer_add(self, _time, window):
-            self.timers += 1
-            return object()
+    def __init__(self):
+        self.timers = self.bars = 0
+        self.text = ""
 
-        def event_timer_remove(self, _timer):
-            self.timers -= 1
+    def event_timer_add(self, _time, window):
+        self.timers += 1
+        return object()
 
-        def progress_begin(self, *_):
-            self.bars += 1
+    def event_timer_remove(self, _timer):
+        self.timers -= 1
 
-        def progress_end(self):
-            self.bars -= 1
+    def progress_begin(self, *_):
+        self.bars += 1
 
-        def progress_update(self, _):
-            pass
+    def progress_end(self):
+        self.bars -= 1
 
-        def modal_handler_add(self, _):
-            pass
+    def progress_update(self, _):
+        pass
 
-        def status_text_set(self, text):
-            self.text = text or ""
+    def modal_handler_add(self, _):
+        pass
 
-    class Asked(job.ModalJob):
-        """An operator that counts, and breaks at a number."""
+    def status_text_set(self, text):
+        self.text = text or ""
 
-        bl_label = "Count"
-        options = SimpleNamespace(is_invoke=True, is_repeat=False)
 
-        def __init__(self, breaks_at, error):
-            self.breaks_at, self.error, self.said, self.closed = breaks_at, error, [], False
+class _CountingOperator:
+    """What a modal operator needs besides the mix-in: work that counts and raises an error at a number."""
 
-        def report(self, kinds, text):
-            self.said.append((next(iter(kinds)), text))
+    bl_label = "Count"
+    options = SimpleNamespace(is_invoke=True, is_repeat=False)
 
-        def work(self, _context):
-            try:
-                for number in range(1000):
-                    self.changed = number > 2
-                    if number == self.breaks_at:
-                        raise self.error
-                    yield number / 1000
-                    yield None
-            finally:
-                self.closed = True
+    def __init__(self, fails_at, error):
+        self.fails_at, self.error, self.reports, self.closed = fails_at, error, [], False
 
+    def report(self, kinds, text):
+        self.reports.append((next(iter(kinds)), text))
+
+    def work(self, _context):
+        try:
+            for number in range(1000):
+                self.changed = number > 2
+                if number == self.fails_at:
+                    raise self.error
+                yield number / 1000
+                yield None
+        finally:
+            self.closed = True
+
+
+def _run_modal(fails_at, error, events):
+    """Sends events to a modal operator until it ends: operator, window, result."""
+    modal = module("operators.modal")
+    operator = type("Operator", (_CountingOperator, modal.ModalOperator), {})(fails_at, error)
+    window = _Window()
+    context = SimpleNamespace(window_manager=window, workspace=window, window=None)
+    operator._work = modal.SlicedWork(operator.work(context))
+    operator._start_modal(context)
+    for event in events:
+        result = operator.modal(context, event)
+        if result != {"RUNNING_MODAL"}:
+            break
+    return operator, window, result
+
+
+def _ends_of_modal_operators():
     tick, escape, move = (SimpleNamespace(type=kind) for kind in ("TIMER", "ESC", "MOUSEMOVE"))
-
-    def run(breaks_at, error, events):
-        window = Window()
-        context = SimpleNamespace(window_manager=window, workspace=window, window=None)
-        asked = Asked(breaks_at, error)
-        asked._steps = job.Steps(asked.work(context))
-        asked._start(context)
-        for event in events:
-            result = asked.modal(context, event)
-            if result != {"RUNNING_MODAL"}:
-                break
-        return asked, window, result
-
-    for name, breaks_at, error, events, expected, said in (
+    for name, fails_at, error, events, expected, reported in (
         ("Esc after some work", None, None, [tick, move, tick, escape], {"FINISHED"}, "INFO"),
         ("Esc before any", None, None, [move, escape], {"CANCELLED"}, "INFO"),
         ("the end", None, None, [tick] * 5000, {"FINISHED"}, None),
-        ("a failure", 0, ValueError("no such thing"), [tick], {"CANCELLED"}, "ERROR"),
-        ("a failure after some work", 5, ValueError("no such thing"), [tick] * 20, {"FINISHED"}, "ERROR"),
-        ("a fault of the program's", 5, KeyError("a"), [tick] * 20, {"FINISHED"}, "ERROR"),
+        ("an error", 0, ValueError("no such thing"), [tick], {"CANCELLED"}, "ERROR"),
+        ("an error after some work", 5, ValueError("no such thing"), [tick] * 20, {"FINISHED"}, "ERROR"),
+        ("a programming error", 5, KeyError("a"), [tick] * 20, {"FINISHED"}, "ERROR"),
     ):
         with contextlib.redirect_stderr(io.StringIO()):
-            asked, window, result = run(breaks_at, error, events)
+            operator, window, result = _run_modal(fails_at, error, events)
         left = (window.timers, window.bars, window.text)
-        kinds = [kind for kind, _ in asked.said]
+        kinds = [kind for kind, _ in operator.reports]
         check(
-            f"{name}: no timer, bar or text is left",
-            result == expected and left == (0, 0, "") and asked.closed == (name != "Esc before any")
-            and kinds == ([said] if said else []),
-            f"{result} {left} {asked.said}",
+            f"{name}: no timer, progress bar or text is left",
+            result == expected and left == (0, 0, "") and operator.closed == (name != "Esc before any")
+            and kinds == ([reported] if reported else []),
+            f"{result} {left} {operator.reports}",
         )
 
+
+def _stopped_sampling():
+    clean()
     character = add(sex="FEMALE")
     bpy.ops.anthronet.clip_builtin(name="WALK")
     scene = bpy.context.scene
     scene.frame_set(4)
-    work = service("action").to_clip(character, generated(character), scene, "walk", 1, 50)
+    work = service("sampling").sample_clip(character, generated(character), scene, "walk", 1, 50)
     next(work), next(work)
     shown = [modifier.show_viewport for modifier in mesh_of(character).modifiers]
     work.close()
     check(
-        "Esc while frames are read: the frame and the modifiers come back",
+        "Esc while frames are sampled: the frame and the modifiers are as before",
         scene.frame_current == 4 and not any(shown) and mesh_of(character).modifiers[0].show_viewport,
     )

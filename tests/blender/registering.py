@@ -58,8 +58,9 @@ def describing():
     for operator in operators:
         family, _, name = operator.bl_idname.partition(".")
         rna = getattr(getattr(bpy.ops, family), name).get_rna_type()
-        if not rna.description:
-            faults.append(f"{operator.bl_idname}: no description")
+        if not rna.description or "\n" in rna.description or rna.description.endswith("."):
+            # Blender does not join lines and adds the full stop itself.
+            faults.append(f"{operator.bl_idname}: its description is not one line without a full stop")
         if "poll" not in {key for cls in operator.__mro__ for key in vars(cls)}:
             faults.append(f"{operator.bl_idname}: no poll")
         if operator.bl_idname not in reads and "UNDO" not in getattr(operator, "bl_options", ()):
