@@ -94,7 +94,7 @@ class ANTHRONET_OT_crowd_add(AddsCharacters, ModalOperatorWithoutDialog, bpy.typ
     )
     spacing: FloatProperty(
         name="Spacing",
-        description="Distance between neighbours on the grid",
+        description="Distance between neighbors on the grid",
         default=1.5,
         min=0.1,
         unit="LENGTH",

@@ -136,8 +136,8 @@ class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, 
     clip: IntProperty(name="Clip", description="Index of the clip in the file. The first one has 0", min=0)
     up: EnumProperty(name="Up Axis", description="Axis of the file that points up", items=_UP_AXES)
     scale: FloatProperty(
-        name="Metres per Unit",
-        description="Length of the file's unit, metres. 0: as stored in the file, or else from the size of the skeleton",
+        name="Meters per Unit",
+        description="Length of the file's unit, meters. 0: as stored in the file, or else from the size of the skeleton",
         min=0.0,
     )
 

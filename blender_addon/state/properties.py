@@ -45,20 +45,20 @@ class AnthroMeasureReport(bpy.types.PropertyGroup):
     """The report on one measure. Lengths in metres."""
 
     low90: FloatProperty(
-        name="Low (m)", description="Lower end of the interval that holds 90 % of people, metres", options=set()
+        name="Low (m)", description="Lower end of the interval that holds 90 % of people, meters", options=set()
     )
     high90: FloatProperty(
-        name="High (m)", description="Upper end of the interval that holds 90 % of people, metres", options=set()
+        name="High (m)", description="Upper end of the interval that holds 90 % of people, meters", options=set()
     )
     percentile: FloatProperty(
         name="Percentile", description="Share of people of the same sex with a smaller value, 0 to 100", options=set()
     )
     residual: FloatProperty(
-        name="Residual (m)", description="Value of the generated body minus the given value, metres", options=set()
+        name="Residual (m)", description="Value of the generated body minus the given value, meters", options=set()
     )
     filled: FloatProperty(
         name="Predicted (m)",
-        description="Value that was predicted when the measure was last not given, metres. 0: never predicted",
+        description="Value that was predicted when the measure was last not given, meters. 0: never predicted",
         options=set(),
     )
 
@@ -182,7 +182,7 @@ def _properties_with_callbacks(update_for):
     properties["identity"] = FloatVectorProperty(
         name="Identity",
         description=(
-            "Shape of the body and the face that measures leave undetermined. 0 is average, most people are within ±1"
+            "Shape of the body and the face that measures leave undetermined. 0 is average, ±1 is common"
         ),
         size=IDENTITY_SIZE,
         soft_min=-3.0,

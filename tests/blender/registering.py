@@ -1,4 +1,4 @@
-"""What the extension leaves in Blender, and what it says of itself."""
+"""Registration, and descriptions of operators and properties."""
 
 import zipfile
 
@@ -11,7 +11,7 @@ _MENUS = ("VIEW3D_MT_mesh_add", "TOPBAR_MT_file_import", "TOPBAR_MT_file_export"
 
 
 def _known():
-    """Everything of ours, and everything that could be: types, operators, properties, menu entries, handlers."""
+    """What the extension registers: types, operators, properties, menu entries; and all handlers."""
     handlers = {
         name: len(getattr(bpy.app.handlers, name))
         for name in dir(bpy.app.handlers)
@@ -42,11 +42,15 @@ def registering():
     for _ in range(20):
         bpy.ops.preferences.addon_disable(module=NAME)
         bpy.ops.preferences.addon_enable(module=NAME)
-    check("20 times off and on leaves nothing", _known() == first)
+    check("disabling and enabling 20 times leaves nothing behind", _known() == first)
     bpy.ops.preferences.addon_disable(module=NAME)
     types, operators, properties, _, handlers = _known()
-    check("off is off", not types and not operators and not properties, f"{types} {operators} {properties}")
-    check("no handler is of the extension's", handlers == first[4])
+    check(
+        "a disabled extension has no types, operators and properties",
+        not types and not operators and not properties,
+        f"{types} {operators} {properties}",
+    )
+    check("the extension has no handlers", handlers == first[4])
     bpy.ops.preferences.addon_enable(module=NAME)
     describing()
 
@@ -72,13 +76,13 @@ def describing():
     for group in (properties.AnthroCharacter, properties.AnthroMeasureReport):
         silent += _silent(group.__name__, group.bl_rna, set(group.bl_rna.properties.keys()) - {"name", "rna_type"})
     silent += _silent("Scene", bpy.types.Scene.bl_rna, {"anthronet_edit_together"})
-    check("every property and choice has a tooltip", not silent, "; ".join(silent))
+    check("every property and enum item has a tooltip", not silent, "; ".join(silent))
 
 
 def _silent(owner, rna, names):
-    """Properties and choices that say nothing of themselves."""
+    """Properties and enum items without a description."""
     for one in rna.properties:
-        # Those of Blender's mixins for presets and files are Blender's to describe.
+        # Properties of Blender's mix-ins for presets and files.
         if one.identifier not in names or one.identifier in ("name", "remove_name", "remove_active"):
             continue
         if not one.description or not one.name:
