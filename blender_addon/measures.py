@@ -35,7 +35,8 @@ class Measure(NamedTuple):
     @property
     def label(self):
         """The name for the user interface, without the side."""
-        return self.name.removesuffix("_left").removesuffix("_right").replace("_", " ").capitalize()
+        words = self.name.removesuffix("_left").removesuffix("_right").split("_")
+        return " ".join(word if word == "to" else word.capitalize() for word in words)
 
     @property
     def side(self):

@@ -19,7 +19,7 @@ def callback_for(name):
         measure = name.removeprefix("given_")
         callback = partial(_given_changed, measure, measures.names().index(measure))
     if callback is None:
-        callback = partial(_regenerate, name)
+        callback = partial(_request_changed, name)
 
     # Blender accepts functions only, no callable objects.
     def update(settings, context):
@@ -29,11 +29,14 @@ def callback_for(name):
     return update
 
 
-def _regenerate(*arguments):
-    """Generates the body anew after a change of the named properties: ``(*names, settings, context)``."""
-    *names, settings, context = arguments
+def _regenerate(settings, context, *names):
+    """Generates a new body after a change of the named properties."""
     if settings.is_character:
         regeneration.apply_property_change(settings.id_data, context, names)
+
+
+def _request_changed(name, settings, context):
+    _regenerate(settings, context, name)
 
 
 def _measure_changed(name, index, settings, context):
@@ -42,27 +45,27 @@ def _measure_changed(name, index, settings, context):
     predicted = settings.report[index].filled if index < len(settings.report) else 0.0
     with updates_suspended():
         settings.set_given(name, getattr(settings, name) != predicted)
-    _regenerate(name, f"given_{name}", settings, context)
+    _regenerate(settings, context, name, f"given_{name}")
 
 
 def _given_changed(name, index, settings, context):
     if index < len(settings.report):
         # The user locked the predicted value: from now on it is a given one.
         settings.report[index].filled = 0.0
-    _regenerate(name, f"given_{name}", settings, context)
+    _regenerate(settings, context, name, f"given_{name}")
 
 
 def _identity_changed(settings, context):
     with updates_suspended():
         # As for measures: Esc restores the identity that the seed selected.
         settings.identity_by_hand = list(settings.identity) != list(settings.drawn)
-    _regenerate("identity", "identity_by_hand", settings, context)
+    _regenerate(settings, context, "identity", "identity_by_hand")
 
 
 def _identity_by_hand_changed(settings, context):
-    # No update callback of its own.
+    # Esc must not switch back to the seed.
     settings.drawn = NO_IDENTITY
-    _regenerate("identity_by_hand", settings, context)
+    _regenerate(settings, context, "identity_by_hand")
 
 
 def _mesh_changed(settings, context):

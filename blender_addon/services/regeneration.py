@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generating characters anew after their requests changed, in place: animation, materials, modifiers, shape keys, sculpting and
+"""Regenerating characters in place after their requests changed: animation, materials, modifiers, shape keys, sculpting and
 selection are kept. A change is applied completely or not at all."""
 
 import bpy
