@@ -137,7 +137,7 @@ pub unsafe extern "C" fn anthronet_body_report(
     })
 }
 
-/// The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+/// The report's measures: fills `count` entries, one per measure, in the order of `anthronet_measure_name`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_body_measures(
     body: *const anthronet_body,

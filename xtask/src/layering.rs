@@ -12,6 +12,7 @@ use std::path::Path;
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
+    ("side", &[]),
     ("space", &[]),
     ("math", &["space"]),
     ("mesh", &[]),
@@ -51,8 +52,8 @@ const TABLE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Rooms that everybody may use: those without a view of bodies, and what tests share.
-const OPEN: &[&str] = &["error", "random", "testing"];
+/// Rooms that everybody may use: those without a view of bodies, left and right, and what tests share.
+const OPEN: &[&str] = &["error", "random", "side", "testing"];
 
 /// One line per use of a room that the table does not grant: `path:line: …`.
 pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {
