@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use anthronet::Side;
 use anthronet::measure::{Definition, Kind, MeasureId, Point};
+use anthronet::skeleton::{RigJoint, SidedJoint};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -244,20 +245,24 @@ impl Surface {
     /// Edges of the torso that the nipple plane meets on some body, and two rings more.
     fn torso_cuts(&self, corpus: &Corpus, nipples: [u32; 2]) -> Result<Vec<[u32; 2]>> {
         let rig = &corpus.assets.rig;
-        let limb = |name: &str| {
-            [
-                "arm", "hand", "thumb", "index", "middle", "ring", "pinky", "thigh", "calf", "foot", "ball",
-                "head", "jaw", "neck",
-            ]
-            .iter()
-            .any(|part| name.contains(part))
+        let of_torso = |name: &str| {
+            use RigJoint as R;
+            // Eyes move no skin; that they are counted here makes no difference.
+            let sided = |joint| matches!(joint, SidedJoint::Clavicle | SidedJoint::Eye);
+            match RigJoint::from_name(name) {
+                Some(R::Root | R::Pelvis | R::Spine01 | R::Spine02 | R::Spine03) => true,
+                joint => joint.and_then(RigJoint::sided).is_some_and(sided),
+            }
         };
         // Torso share of each surface vertex, by refining the cage's.
         let share: Vec<Vec3> = rig.weights[..corpus.cage().vertex_count]
             .iter()
             .map(|w| {
-                let torso: f32 =
-                    w.iter().filter(|(j, _)| !limb(&rig.joints[usize::from(*j)].name)).map(|(_, w)| w).sum();
+                let torso: f32 = w
+                    .iter()
+                    .filter(|(j, _)| of_torso(&rig.joints[usize::from(*j)].name))
+                    .map(|(_, w)| w)
+                    .sum();
                 Vec3::splat(torso)
             })
             .collect();

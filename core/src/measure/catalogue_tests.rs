@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::super::definition::{Kind, read_list};
 use super::*;
+use crate::measure::definition::{Kind, read_list};
 
 /// The library's rows and two more, one in the middle and one on both sides.
 const LARGER_ROWS: [Row; ROWS.len() + 2] = {

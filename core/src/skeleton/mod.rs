@@ -8,6 +8,7 @@
 pub mod humanoid;
 mod kinematics;
 mod rest;
+mod rig_joint;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod skeleton;
 mod skin_weights;
@@ -15,5 +16,6 @@ pub(crate) mod written;
 
 pub use kinematics::{Pose, model_from_joints};
 pub use rest::{MAX_JOINTS, RestPose};
+pub use rig_joint::{Finger, RigJoint, SidedJoint};
 pub use skeleton::{Joint, Skeleton, SkeletonShape};
 pub use skin_weights::{Influences, SkinWeights};
