@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use anthronet::measure::Sex;
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 use anthronet::skeleton::humanoid::renamed;
 
 use crate::Result;
@@ -15,12 +15,12 @@ use crate::scene::Scene;
 
 pub(crate) struct Body {
     pub(crate) body: anthronet::Body,
-    pub(crate) rest: Arc<RestPose>,
+    pub(crate) rest: Arc<Skeleton>,
 }
 
 impl Body {
     pub(crate) fn new(body: anthronet::Body) -> Result<Box<Self>> {
-        let rest = Arc::new(RestPose::of_joints(body.joints())?);
+        let rest = Arc::new(RESTOF?);
         Ok(Box::new(Self { body, rest }))
     }
 
@@ -75,7 +75,7 @@ impl Body {
     pub(crate) fn joints(&self, space: ffi::Space) -> Result<Vec<ffi::Joint>> {
         let space = space.meaning()?;
         let joints =
-            self.body.joints().iter().zip(&self.rest.pose().locals).map(|(joint, rest)| ffi::Joint {
+            self.body.joints().iter().zip(&self.rest.rest_pose().locals).map(|(joint, rest)| ffi::Joint {
                 name: joint.name.clone(),
                 parent: joint.parent.map_or(-1, |parent| parent as i32),
                 length: joint.length,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anthronet::Body;
 use anthronet::condition::Filled;
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;
@@ -17,12 +17,12 @@ use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
 /// A person in the bind pose, with the report of how it was made. Immutable.
 pub struct anthronet_body {
     pub(crate) body: Body,
-    pub(crate) rest: Arc<RestPose>,
+    pub(crate) rest: Arc<Skeleton>,
 }
 
 impl anthronet_body {
     pub(crate) fn new(body: Body) -> Outcome<Self> {
-        let rest = Arc::new(RestPose::of_joints(body.joints())?);
+        let rest = Arc::new(RESTOF?);
         for warning in &body.report().warnings {
             crate::log::warning(warning);
         }

@@ -9,7 +9,7 @@ use anthronet::clip::{Clip, MAX_FRAMES, MAX_ROTATIONS};
 use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::math::RigidTransform;
 use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetSwitches};
-use anthronet::skeleton::{MAX_JOINTS, RestPose};
+use anthronet::skeleton::{MAX_JOINTS, Skeleton};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn anthronet_motion_new(
         });
         let parents = parents.collect::<Outcome<Vec<_>>>()?;
         let rest = locals(slice(source.rest, joints, "rest")?, &parents, space);
-        let rest = RestPose::new(
+        let rest = Skeleton::new(
             names.collect::<Outcome<_>>()?,
             parents,
             rest,

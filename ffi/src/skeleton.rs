@@ -74,7 +74,7 @@ pub unsafe extern "C" fn anthronet_body_joints(
         let joints = body.body.joints();
         exactly("count", joints.len(), count.into())?;
         let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
-        out.write(joints.iter().zip(&body.rest.pose().locals).map(|(joint, rest)| anthronet_joint {
+        out.write(joints.iter().zip(&body.rest.rest_pose().locals).map(|(joint, rest)| anthronet_joint {
             parent: joint.parent.map_or(-1, |parent| parent as i32),
             length: joint.length,
             parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),

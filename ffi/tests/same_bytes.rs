@@ -36,7 +36,7 @@ use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Layout, Scene, SceneOptions};
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 use anthronet::space::Space;
 use libloading::{Library, Symbol};
 use library::{ErrorOut, library};
@@ -94,7 +94,7 @@ fn direct(model: &Model, request: &Request, number: usize) -> anthronet::Result<
     let lod = Lod::ALL[number % 4];
     let mut scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() })?;
     if walks(number) {
-        scene.clips.push(builtin("walk", &Arc::new(RestPose::of_joints(body.joints())?))?);
+        scene.clips.push(builtin("walk", &Arc::new(RESTOF?))?);
     }
     let file = hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?);
     Ok([file, in_unity(&body, scene)?])
@@ -116,8 +116,8 @@ fn in_unity(body: &Body, scene: Scene) -> anthronet::Result<String> {
         sha.update(bytemuck::cast_slice(&used.collect::<Vec<_>>()));
         sha.update(bytemuck::cast_slice(weights));
     }
-    let rest = RestPose::of_joints(body.joints())?;
-    for (joint, local) in body.joints().iter().zip(&rest.pose().locals) {
+    let rest = RESTOF?;
+    for (joint, local) in body.joints().iter().zip(&rest.rest_pose().locals) {
         let bind = space.joint_from_model_matrix(joint.model_from_joint.inverse().into());
         let local = local.parent_from_joint_in(space, joint.parent);
         sha.update(bytemuck::cast_slice(&bind.to_cols_array()));

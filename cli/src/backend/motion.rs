@@ -10,7 +10,7 @@ use anthronet::format::{self, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
 use anthronet::retarget::{self, FingerMode, RetargetOptions};
 use anthronet::scene::Scene;
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 use anthronet::skeleton::humanoid::{native_name, renamed};
 use anthronet::space::{Axis, Unit};
 use serde_json::json;
@@ -54,7 +54,7 @@ pub(crate) fn animate(scene: &mut Scene, arguments: &MotionArguments) -> Result<
 /// The clips of one `--clip`, on the body, with their report.
 fn load(
     source: &str,
-    rest: &Arc<RestPose>,
+    rest: &Arc<Skeleton>,
     arguments: &MotionArguments,
 ) -> Result<(Vec<Clip>, serde_json::Value)> {
     if BUILTIN.contains(&source) {

@@ -13,7 +13,7 @@ use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::model::Model;
 use anthronet::pose::limits::JointLimits;
 use anthronet::retarget::{self, RetargetOptions, feet};
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -120,7 +120,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// A body as motion comes onto it.
 struct OnBody {
-    rest: Arc<RestPose>,
+    rest: Arc<Skeleton>,
     soles: Soles,
 }
 
@@ -133,7 +133,7 @@ fn bodies_of(count: usize) -> Result<Vec<OnBody>> {
             let mut request = Request::default();
             request.set("height", STATURES[0] + (STATURES[1] - STATURES[0]) * t)?;
             let body = model.generate(&request)?;
-            let rest = Arc::new(RestPose::of_joints(body.joints())?);
+            let rest = Arc::new(RESTOF?);
             Ok(OnBody { soles: Soles::of(&body, &rest)?, rest })
         })
         .collect()

@@ -7,7 +7,7 @@ use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
-use anthronet::skeleton::{Pose, RestPose, SidedJoint};
+use anthronet::skeleton::{Pose, SidedJoint, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::Vec3;
 
@@ -48,7 +48,7 @@ pub(crate) struct SkinMeasure {
 }
 
 impl Soles {
-    pub(crate) fn of(body: &Body, rest: &RestPose) -> Result<Self> {
+    pub(crate) fn of(body: &Body, rest: &Skeleton) -> Result<Self> {
         let scene = Scene::from_body(body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() })?;
         let mesh = scene.meshes.first().ok_or_else(|| Failure::failed("the scene has no body"))?;
         let model = rest.model_from_joints();
@@ -105,7 +105,7 @@ impl Soles {
         for frame in 0..clip.frame_count() {
             std::mem::swap(&mut now, &mut before);
             clip.pose_into(frame, &mut pose);
-            let model = pose.model_from_joints(clip.rest().parents());
+            let model = pose.model_from_joints(clip.skeleton().parents());
             self.skinner.skin(SkinMethod::Linear, &model, SurfaceMut::packed(&mut now, &mut normals))?;
             out.not_finite += now.iter().filter(|p| !p.iter().all(|x| x.is_finite())).count();
             let lowest = now.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);

@@ -14,7 +14,7 @@ use crate::condition::{
 };
 use crate::measure::{Definitions, MEASURE_COUNT, Measurements, Sex};
 use crate::network::{Decoder, Encoder};
-use crate::skeleton::SkeletonShape;
+use crate::skeleton::BonePositions;
 use crate::{Error, Result};
 
 /// Environment variable that names a model file to use instead of the embedded one.
@@ -285,7 +285,7 @@ impl Model {
     }
 
     /// Where the joints of the body with these coefficients begin and end, pelvis at the origin, metres.
-    pub fn joints_of(&self, coefficients: &[f64]) -> SkeletonShape {
+    pub fn joints_of(&self, coefficients: &[f64]) -> BonePositions {
         let k = self.shared.space.components();
         let at = |i: usize| {
             let row = &self.shared.joint_rows[i * k..(i + 1) * k];
@@ -294,7 +294,7 @@ impl Model {
         };
         let place = |j: usize| Vec3::new(at(3 * j), at(3 * j + 1), at(3 * j + 2));
         let joints = self.shared.character.skeleton().len();
-        SkeletonShape {
+        BonePositions {
             heads: (0..joints).map(place).collect(),
             tails: (joints..2 * joints).map(place).collect(),
         }

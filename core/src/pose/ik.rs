@@ -7,7 +7,7 @@
 use glam::{Quat, Vec3};
 
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose, RigJoint};
+use crate::skeleton::{Pose, RigJoint, Skeleton};
 use crate::{Error, Result};
 
 /// Which way the middle joint of a limb points when the limb bends.
@@ -47,7 +47,7 @@ impl Limb {
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
-    pub fn of(rest: &RestPose, chain: [RigJoint; 3], bend: Bend) -> Result<Self> {
+    pub fn of(rest: &Skeleton, chain: [RigJoint; 3], bend: Bend) -> Result<Self> {
         let mut joints = [0; 3];
         for (i, joint) in chain.iter().enumerate() {
             joints[i] = rest.require_rig_joint(*joint)?;
@@ -155,7 +155,7 @@ mod tests {
         [SidedJoint::Thigh.on(Side::Left), SidedJoint::Calf.on(Side::Left), SidedJoint::Foot.on(Side::Left)];
 
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
-    fn leg() -> (RestPose, Limb) {
+    fn leg() -> (Skeleton, Limb) {
         let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
         let local = |rotation, translation| RigidTransform { rotation, translation };
         let locals = vec![
@@ -165,14 +165,14 @@ mod tests {
         ];
         let parents = vec![None, Some(0), Some(1)];
         let names = LEG.map(|joint| joint.name().to_owned()).to_vec();
-        let rest = RestPose::new(names, parents, locals, vec![None; 3]).unwrap();
+        let rest = Skeleton::new(names, parents, locals, vec![None; 3]).unwrap();
         let limb = Limb::of(&rest, LEG, Bend::Forwards).unwrap();
         (rest, limb)
     }
 
     fn reached(target: Vec3, softness: f32) -> [RigidTransform; 3] {
         let (rest, limb) = leg();
-        let mut pose = rest.pose().clone();
+        let mut pose = rest.rest_pose().clone();
         let target = RigidTransform { rotation: Quat::from_rotation_y(0.3), translation: target };
         limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
         limb.model_from_joints(&pose, RigidTransform::IDENTITY)
@@ -215,7 +215,7 @@ mod tests {
             x in -1.2f32..1.2, y in -1.2f32..1.2, z in -1.2f32..1.2, bend in -2.0f32..0.2, turn in -1.5f32..1.5,
         ) {
             let (rest, limb) = leg();
-            let mut pose = rest.pose().clone();
+            let mut pose = rest.rest_pose().clone();
             pose.locals[0].rotation *= Quat::from_rotation_z(turn);
             pose.locals[1].rotation *= Quat::from_rotation_x(bend);
             let parent = RigidTransform { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 
 use super::ik::{Bend, Limb};
 use crate::math::RigidTransform;
-use crate::skeleton::{RestPose, SidedJoint};
+use crate::skeleton::{SidedJoint, Skeleton};
 use crate::{Result, Side};
 
 /// How far the heel reaches behind the ankle, in distances from the ankle to the ball: bodies of the model have a
@@ -64,11 +64,11 @@ impl Leg {
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) naming a joint that is missing.
-    pub(crate) fn both(rest: &RestPose) -> Result<[Self; 2]> {
+    pub(crate) fn both(rest: &Skeleton) -> Result<[Self; 2]> {
         Ok([Self::on(rest, Side::Left)?, Self::on(rest, Side::Right)?])
     }
 
-    fn on(rest: &RestPose, side: Side) -> Result<Self> {
+    fn on(rest: &Skeleton, side: Side) -> Result<Self> {
         let chain = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot].map(|joint| joint.on(side));
         let limb = Limb::of(rest, chain, Bend::Forwards)?;
         let ball = rest.require_rig_joint(SidedJoint::Ball.on(side))?;

@@ -18,7 +18,7 @@ use glam::{Quat, Vec2, Vec3};
 
 use super::SwingTwist;
 use crate::Side;
-use crate::skeleton::{Pose, RestPose, RigJoint, SidedJoint};
+use crate::skeleton::{Pose, RigJoint, SidedJoint, Skeleton};
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.
@@ -214,7 +214,7 @@ pub struct JointLimits {
 
 impl JointLimits {
     /// Those of the joints that bear our rig's names; joints of other names turn freely.
-    pub fn of_rig(rest: &RestPose) -> Self {
+    pub fn of_rig(rest: &Skeleton) -> Self {
         Self { limits: rest.rig_joints().map(|joint| JointLimit::of(joint?)).collect() }
     }
 
@@ -236,7 +236,7 @@ impl JointLimits {
 
     /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
     /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
-    pub fn clamp(&self, rest: &RestPose, pose: &mut Pose) {
+    pub fn clamp(&self, rest: &Skeleton, pose: &mut Pose) {
         for joint in 0..self.limits.len() {
             self.clamp_joint(rest, pose, joint);
         }
@@ -244,20 +244,20 @@ impl JointLimits {
 
     /// As [`clamp`](Self::clamp), frame after frame of a clip: a joint that twists on past half a turn from the middle
     /// of its range stays at the end that it left by, and goes over to the other in time, instead of jumping to and fro.
-    pub fn clamp_after(&self, rest: &RestPose, pose: &mut Pose, before: &mut TwistsBefore) {
+    pub fn clamp_after(&self, rest: &Skeleton, pose: &mut Pose, before: &mut TwistsBefore) {
         for (joint, before) in before.0.iter_mut().enumerate() {
             self.clamp_one(rest, pose, joint, before);
         }
     }
 
     /// Brings one joint within its limits; whether it had to be moved.
-    pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
+    pub fn clamp_joint(&self, rest: &Skeleton, pose: &mut Pose, joint: usize) -> bool {
         self.clamp_one(rest, pose, joint, &mut TwistBefore::default())
     }
 
-    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
+    fn clamp_one(&self, rest: &Skeleton, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
-            (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
+            (self.get(joint), rest.rest_pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
             return false;
         };
@@ -269,8 +269,8 @@ impl JointLimits {
     }
 
     /// Radians beyond the limit, a joint each: 0 within.
-    pub fn excess(&self, rest: &RestPose, pose: &Pose) -> Vec<f32> {
-        let from_rest = rest.pose().locals.iter().zip(&pose.locals);
+    pub fn excess(&self, rest: &Skeleton, pose: &Pose) -> Vec<f32> {
+        let from_rest = rest.rest_pose().locals.iter().zip(&pose.locals);
         self.limits
             .iter()
             .zip(from_rest)

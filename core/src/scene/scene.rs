@@ -12,7 +12,7 @@ use super::titles::Titles;
 use crate::clip::Clip;
 use crate::scene::SkinTone;
 use crate::skeleton::Joint;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
 /// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
@@ -245,8 +245,8 @@ impl Scene {
     /// The joints at rest, under the names that `name` makes of theirs: what clips for this scene rest in.
     ///
     /// # Errors
-    /// As [`RestPose::new`].
-    pub fn rest_pose(&self, name: impl Fn(&str) -> String) -> Result<RestPose> {
+    /// As [`Skeleton::new`].
+    pub fn rest_pose(&self, name: impl Fn(&str) -> String) -> Result<Skeleton> {
         let joints: Vec<Joint> = self
             .joints
             .iter()
@@ -257,7 +257,7 @@ impl Scene {
                 length: joint.bone_length.unwrap_or(0.0),
             })
             .collect();
-        let rest = RestPose::of_joints(&joints)?;
+        let rest = Skeleton::of_joints(&joints)?;
         if self.joints.iter().all(|joint| joint.bone_length.is_some()) {
             return Ok(rest);
         }
@@ -265,7 +265,7 @@ impl Scene {
         // are any.
         let mut ends: Vec<Option<Vec3>> =
             self.joints.iter().map(|joint| joint.bone_length.map(|length| Vec3::Y * length)).collect();
-        for (parent, local) in rest.parents().iter().zip(&rest.pose().locals) {
+        for (parent, local) in rest.parents().iter().zip(&rest.rest_pose().locals) {
             let at = local.translation;
             let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
             if let (Some(parent), true) = (*parent, on_axis)
@@ -275,7 +275,7 @@ impl Scene {
                 *end = Some(Vec3::Y * end.map_or(at.y, |e| e.y.max(at.y)));
             }
         }
-        RestPose::new(rest.names().to_vec(), rest.parents().to_vec(), rest.pose().locals.clone(), ends)
+        Skeleton::new(rest.names().to_vec(), rest.parents().to_vec(), rest.rest_pose().locals.clone(), ends)
     }
 
     /// Adds a motion. Its name loses control characters, and gets a number behind it where another has it already.
@@ -288,7 +288,7 @@ impl Scene {
         for clip in &self.clips {
             let fault =
                 |message: String| Err(Error::invalid("clip", format!("`{}`: {message}", clip.name())));
-            let rest = clip.rest();
+            let rest = clip.skeleton();
             if !rest.parents().iter().eq(self.joints.iter().map(|j| &j.parent)) {
                 let (got, expected) = (rest.len(), self.joints.len());
                 return fault(format!("its {got} joints are not the {expected} of the scene"));

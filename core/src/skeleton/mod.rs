@@ -1,7 +1,7 @@
 //! The skeleton: joints with their names and parents, the pose they rest in, skin weights, and what other programs call
 //! the joints.
 //!
-//! A [`RestPose`] is a hierarchy with the local transforms it rests in, of our rig or of any other; a [`Pose`] gives
+//! A [`Skeleton`] is a hierarchy with the local transforms it rests in, of our rig or of any other; a [`Pose`] gives
 //! every joint a local transform. Rotations are quaternions x, y, z, w, `parent_from_joint`; metres; joints stand
 //! after their parents.
 
@@ -15,7 +15,7 @@ mod skin_weights;
 pub(crate) mod written;
 
 pub use kinematics::{Pose, model_from_joints};
-pub use rest::{MAX_JOINTS, RestPose};
+pub use rest::{MAX_JOINTS, Skeleton};
 pub use rig_joint::{Finger, RigJoint, SidedJoint};
-pub use skeleton::{Joint, Skeleton, SkeletonShape};
+pub use skeleton::{BonePositions, Joint, Skeleton};
 pub use skin_weights::{Influences, SkinWeights};

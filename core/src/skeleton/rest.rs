@@ -12,14 +12,14 @@ pub const MAX_JOINTS: usize = 4096;
 
 /// A hierarchy of joints, ours or that of a motion file, with the local transforms it rests in.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RestPose {
+pub struct Skeleton {
     names: Vec<String>,
     parents: Vec<Option<u32>>,
     pose: Pose,
     ends: Vec<Option<Vec3>>,
 }
 
-impl RestPose {
+impl Skeleton {
     /// From parts, one entry per joint. `ends` are the far ends of bones in joint space, metres, where something says
     /// so: end sites of BVH, bone lengths of our rig. Several joints may have no parent.
     ///
@@ -170,7 +170,7 @@ mod tests {
         for (expected, spoil) in cases {
             let mut parts = joints();
             spoil(&mut parts);
-            let error = RestPose::new(parts.0, parts.1, parts.2, parts.3).unwrap_err().to_string();
+            let error = Skeleton::new(parts.0, parts.1, parts.2, parts.3).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         }
     }
@@ -191,7 +191,7 @@ mod tests {
                 length: 0.1,
             })
             .collect();
-        let rest = RestPose::of_joints(&joints).unwrap();
+        let rest = Skeleton::of_joints(&joints).unwrap();
         for (found, joint) in rest.model_from_joints().iter().zip(&joints) {
             assert!(found.to_affine().abs_diff_eq(joint.model_from_joint, 1e-5));
         }

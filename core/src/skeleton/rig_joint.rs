@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::LazyLock;
 
-use super::{RestPose, Skeleton};
+use super::{Skeleton};
 use crate::{Result, Side};
 
 /// A joint of our rig.
 ///
 /// The rig is MakeHuman's `game_engine` rig (Unreal-like names) with eyes, jaw and twist joints. A skeleton may lack joints
-/// and may have others: see [`RestPose::rig_joint`].
+/// and may have others: see [`Skeleton::rig_joint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RigJoint {
     /// On the ground, below the body.
@@ -329,7 +329,7 @@ impl Skeleton {
     }
 }
 
-impl RestPose {
+impl Skeleton {
     /// Where this joint of our rig stands among the joints, if it is one of them.
     pub fn rig_joint(&self, joint: RigJoint) -> Option<usize> {
         self.find(joint.name())

@@ -32,14 +32,14 @@ pub struct Joint {
 
 /// Where a body's joints begin and end, metres.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SkeletonShape {
+pub struct BonePositions {
     /// One place per joint.
     pub heads: Vec<Vec3>,
     /// The far ends of the bones.
     pub tails: Vec<Vec3>,
 }
 
-impl SkeletonShape {
+impl BonePositions {
     /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
     /// micrometres off it: the T-pose is exact.
     pub fn straighten(&mut self, skeleton: &Skeleton) {
@@ -114,7 +114,7 @@ impl Skeleton {
     ///
     /// # Errors
     /// [`Error::Invalid`] when the shape has another number of joints.
-    pub fn bind(&self, shape: &SkeletonShape) -> Result<Vec<Joint>> {
+    pub fn bind(&self, shape: &BonePositions) -> Result<Vec<Joint>> {
         if shape.heads.len() != self.len() || shape.tails.len() != self.len() {
             return Err(Error::invalid(
                 "skeleton shape",
@@ -171,10 +171,10 @@ fn orientation(bone: Vec3, lean: Vec3) -> Mat3 {
 mod tests {
     use super::*;
 
-    fn arm() -> (Skeleton, SkeletonShape) {
+    fn arm() -> (Skeleton, BonePositions) {
         let names = ["Root", "upperarm_l", "upperarm_r", "foot_l"].map(String::from).to_vec();
         let skeleton = Skeleton::new(names, vec![None, Some(0), Some(0), Some(0)]).unwrap();
-        let shape = SkeletonShape {
+        let shape = BonePositions {
             heads: vec![
                 Vec3::ZERO,
                 Vec3::new(0.2, 1.4, 0.0),

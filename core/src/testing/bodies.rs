@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::Side;
-use crate::skeleton::{RestPose, SidedJoint};
-use crate::skeleton::{Skeleton, SkeletonShape};
+use crate::skeleton::{BonePositions, Skeleton};
+use crate::skeleton::{SidedJoint, Skeleton};
 
 /// A joint of the middle or the left: name, parent, head, tail, in shares of the height.
 type Row = (&'static str, &'static str, [f32; 3], [f32; 3]);
@@ -38,7 +38,7 @@ const LEFT: [Row; 11] = [
 const LEG: [SidedJoint; 4] = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball];
 
 /// Short with short legs, tall with long legs, and wide with long arms and feet apart.
-pub(crate) fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
+pub(crate) fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
     [
         ("short", 1.49, Vec3::new(1.0, 0.93, 1.0), 1.0),
         ("tall", 1.99, Vec3::new(0.9, 1.05, 0.95), 0.95),
@@ -49,7 +49,7 @@ pub(crate) fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
 }
 
 /// Legs stretched by `legs`, and what stands on them lifted; the upper body made as wide as `width`.
-fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
+fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
     let lift = (legs.y - 1.0) * 0.515;
     let place = |name: &str, [x, y, z]: [f32; 3]| {
         let leg = LEG.iter().any(|joint| name.starts_with(joint.name()));
@@ -66,7 +66,7 @@ fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
         (name, parent, mirror(head), mirror(tail), Side::Right.joint_suffix())
     });
     let middle = MIDDLE.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
-    let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), SkeletonShape::default());
+    let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), BonePositions::default());
     for (name, parent, head, tail, side) in middle.into_iter().chain(left).chain(right) {
         let found = [format!("{parent}{side}"), parent.to_owned()]
             .iter()
@@ -77,5 +77,5 @@ fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
         shape.tails.push(if name == "Root" { Vec3::Y } else { place(name, tail) });
     }
     let joints = Skeleton::new(names, parents).unwrap().bind(&shape).unwrap();
-    RestPose::of_joints(&joints).unwrap()
+    Skeleton::of_joints(&joints).unwrap()
 }

@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use crate::Side;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{RestPose, RigJoint, SidedJoint, Skeleton, SkeletonShape, model_from_joints};
+use crate::skeleton::{BonePositions, RigJoint, SidedJoint, Skeleton, model_from_joints};
 
 /// Name, parent and place of the joints in the middle.
 const CENTRAL: [(&str, &str, [f32; 3]); 8] = [
@@ -69,7 +69,7 @@ fn tail(name: &str, head: Vec3) -> Vec3 {
 }
 
 /// The person at rest, all 68 joints.
-pub(crate) fn person() -> Arc<RestPose> {
+pub(crate) fn person() -> Arc<Skeleton> {
     let mut joints: Vec<(String, String, Vec3)> =
         CENTRAL.iter().map(|(n, p, at)| ((*n).to_owned(), (*p).to_owned(), Vec3::from_array(*at))).collect();
     for side in Side::ALL {
@@ -100,13 +100,13 @@ pub(crate) fn person() -> Arc<RestPose> {
     };
     let tails = joints.iter().map(|(name, _, at)| next(name).unwrap_or_else(|| tail(name, *at))).collect();
     let skeleton = Skeleton::new(joints.iter().map(|j| j.0.clone()).collect(), parents).unwrap();
-    let shape = SkeletonShape { heads: joints.iter().map(|j| j.2).collect(), tails };
-    Arc::new(RestPose::of_joints(&skeleton.bind(&shape).unwrap()).unwrap())
+    let shape = BonePositions { heads: joints.iter().map(|j| j.2).collect(), tails };
+    Arc::new(Skeleton::of_joints(&skeleton.bind(&shape).unwrap()).unwrap())
 }
 
 /// A pose by turns of joints about their own axes, degrees.
-pub(crate) fn posed(rest: &RestPose, turns: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
-    let mut locals = rest.pose().locals.clone();
+pub(crate) fn posed(rest: &Skeleton, turns: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
+    let mut locals = rest.rest_pose().locals.clone();
     for (name, turn) in turns {
         let turn = Vec3::from_array(*turn).map(f32::to_radians);
         locals[rest.find(name).unwrap()].rotation *= Quat::from_scaled_axis(turn);
@@ -115,7 +115,7 @@ pub(crate) fn posed(rest: &RestPose, turns: &[(&str, [f32; 3])]) -> Vec<RigidTra
 }
 
 /// Somebody who walks about, waves with the left arm and nods; elbows and knees only fold.
-pub(crate) fn motion(rest: &Arc<RestPose>, frames: usize) -> Clip {
+pub(crate) fn motion(rest: &Arc<Skeleton>, frames: usize) -> Clip {
     let mut rotations = Vec::new();
     let mut places = Vec::new();
     for frame in 0..frames {
@@ -164,7 +164,7 @@ pub(crate) struct Style<'a> {
 }
 
 pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
-    let ours = clip.rest();
+    let ours = clip.skeleton();
     let kept: Vec<usize> = (0..ours.len()).filter(|&j| (style.rename)(&ours.names()[j]).is_some()).collect();
     let place = |j: u32| kept.iter().position(|&k| k == j as usize).map(|k| k as u32);
     let parents: Vec<Option<u32>> = kept.iter().map(|&j| ours.parents()[j].and_then(place)).collect();
@@ -189,7 +189,7 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let ends =
         kept.iter().map(|&j| ours.ends()[j].map(|end| axes(j).conjugate() * end * style.scale)).collect();
     let facing = Quat::from_rotation_y(style.facing);
-    let rest = RestPose::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
+    let rest = Skeleton::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();
     let pelvis = place(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
     let mut values = Vec::new();

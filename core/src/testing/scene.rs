@@ -8,7 +8,7 @@ use crate::clip::{Clip, TranslationTrack};
 use crate::scene::{AlphaMode, SkinTone};
 use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
 use crate::skeleton::Joint;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 
 /// Sides of the sleeve.
 const SIDES: u32 = 5;
@@ -69,15 +69,15 @@ pub(crate) fn bent(scene: &Scene) -> Clip {
             length: 0.1,
         })
         .collect();
-    let rest = Arc::new(RestPose::of_joints(&joints).unwrap());
+    let rest = Arc::new(Skeleton::of_joints(&joints).unwrap());
     let turn = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
         Quat::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
     };
     let rotations = (0..3)
-        .flat_map(|f| rest.rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
+        .flat_map(|f| rest.rest_rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
         .collect();
-    let start = rest.pose().locals[0].translation;
+    let start = rest.rest_pose().locals[0].translation;
     let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
     Clip::new("bent".into(), rest, 25.0, rotations, vec![TranslationTrack { joint: 0, values }]).unwrap()
 }

@@ -7,7 +7,7 @@ use glam::{Quat, Vec2, Vec3};
 use crate::math::RigidTransform;
 use crate::pose::Leg;
 use crate::pose::ik::Reach;
-use crate::skeleton::{Finger, Pose, RestPose, RigJoint, SidedJoint, model_from_joints};
+use crate::skeleton::{Finger, Pose, RigJoint, SidedJoint, Skeleton, model_from_joints};
 use crate::{Error, Result, Side};
 
 /// What of a leg may be used, so that a knee never locks.
@@ -87,7 +87,7 @@ struct ArmJoints {
 
 /// A skeleton at rest with its joints found and its proportions.
 pub(super) struct Figure {
-    pub(super) rest: Arc<RestPose>,
+    pub(super) rest: Arc<Skeleton>,
     model: Vec<RigidTransform>,
     root: usize,
     pelvis: usize,
@@ -102,7 +102,7 @@ pub(super) struct Figure {
 }
 
 impl Figure {
-    pub(super) fn new(rest: &Arc<RestPose>) -> Result<Self> {
+    pub(super) fn new(rest: &Arc<Skeleton>) -> Result<Self> {
         let joint = |joint: RigJoint| rest.require_rig_joint(joint);
         let arm = |side: Side| -> Result<ArmJoints> {
             let of = |part: SidedJoint| joint(part.on(side));
@@ -125,14 +125,14 @@ impl Figure {
             })
         };
         let legs = Leg::both(rest)?;
-        let lengths = legs.map(|leg| leg.limb.length(rest.pose()));
+        let lengths = legs.map(|leg| leg.limb.length(rest.rest_pose()));
         if lengths.iter().any(|l| *l < 1e-3) {
             return Err(Error::invalid(
                 "skeleton",
                 format!("expected legs with a length, got {lengths:?} m"),
             ));
         }
-        let bone = |joint: usize| rest.pose().locals[joint].translation.length();
+        let bone = |joint: usize| rest.rest_pose().locals[joint].translation.length();
         Ok(Self {
             rest: rest.clone(),
             model: rest.model_from_joints(),
@@ -158,7 +158,7 @@ impl Figure {
     /// How much the pelvis would have to come down for legs to reach their feet with a slightly bent knee, metres;
     /// below 0 when there is room.
     pub(super) fn too_high(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         let mut model = Vec::new();
         model_from_joints(self.rest.parents(), &pose.locals, &mut model);
@@ -181,7 +181,7 @@ impl Figure {
 
     /// The pose of a stance.
     pub(super) fn pose(&self, stance: &Stance) -> Pose {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         for (f, side) in Side::ALL.into_iter().enumerate() {
             self.set_arm(&self.arms[f], &stance.arms[f], side, &mut pose);

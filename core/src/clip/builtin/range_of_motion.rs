@@ -102,13 +102,13 @@ fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let frames = (STEP * RATE as f32) as usize;
     let share = |frame: usize| smooth(frame as f32 / frames as f32);
-    let mut poses = vec![figure.rest.pose().clone()];
+    let mut poses = vec![figure.rest.rest_pose().clone()];
     for exercise in UPPER_BODY {
         let home = [0.0; 3];
         let stops: Vec<[f32; 3]> = [&[home][..], exercise.keys, &[home]].concat();
         for pair in stops.windows(2) {
             poses.extend((1..=frames).map(|frame| {
-                let mut pose = figure.rest.pose().clone();
+                let mut pose = figure.rest.rest_pose().clone();
                 let [x, y, z] =
                     std::array::from_fn(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * share(frame));
                 for (joint, part) in exercise.joints {
@@ -127,7 +127,7 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
         let stops = [&[lifted(figure, 0.0), up][..], LEG, &[up, lifted(figure, 0.0)]].concat();
         for (i, pair) in stops.windows(2).enumerate() {
             poses.extend((1..=frames).map(|frame| {
-                let mut pose = figure.rest.pose().clone();
+                let mut pose = figure.rest.rest_pose().clone();
                 let mix = |j: usize| pair[0][j] + (pair[1][j] - pair[0][j]) * share(frame);
                 let on_floor = i == 0 || i + 2 == stops.len();
                 let at = if on_floor { lifted(figure, mix(3)) } else { std::array::from_fn(mix) };

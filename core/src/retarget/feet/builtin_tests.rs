@@ -6,7 +6,7 @@ use crate::Side;
 use crate::clip::{BUILTIN, builtin};
 use crate::retarget::feet;
 use crate::retarget::feet::FeetOptions;
-use crate::skeleton::{RestPose, RigJoint, SidedJoint};
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 use crate::testing::bodies::bodies;
 
 #[test]
@@ -84,7 +84,7 @@ fn names_what_is_wrong() {
     let error = builtin("dance", &rest).unwrap_err().to_string();
     assert!(error.contains("idle, walk") && error.contains("`dance`"), "{error}");
     let root = crate::math::RigidTransform::IDENTITY;
-    let rest = RestPose::new(vec!["Root".into()], vec![None], vec![root], vec![None]).unwrap();
+    let rest = Skeleton::new(vec!["Root".into()], vec![None], vec![root], vec![None]).unwrap();
     let error = builtin("idle", &Arc::new(rest)).unwrap_err().to_string();
     assert!(error.contains("`thigh_l`"), "{error}");
 }

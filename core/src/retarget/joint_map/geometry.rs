@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::Slot;
 use crate::Side;
-use crate::skeleton::{Finger, RestPose, RigJoint, SidedJoint};
+use crate::skeleton::{Finger, RigJoint, SidedJoint, Skeleton};
 
 /// Upper arm and forearm as parts of thigh and calf together: 50th percentiles of adults (Winter, *Biomechanics and
 /// Motor Control of Human Movement*, table 4.1: 0.186 and 0.146 of height to 0.245 and 0.246).
@@ -19,7 +19,7 @@ const UPPER_ARM: f32 = 0.38;
 const FOREARM: f32 = 0.30;
 
 struct Tree<'a> {
-    rest: &'a RestPose,
+    rest: &'a Skeleton,
     places: Vec<Vec3>,
     children: Vec<Vec<usize>>,
     /// The child that the longest way down goes to; none where no way has a length.
@@ -30,7 +30,7 @@ struct Tree<'a> {
 const MAX_LIMB: usize = 24;
 
 /// Our joint to source joint, as far as it was found.
-pub(super) fn find(rest: &RestPose) -> BTreeMap<Slot, usize> {
+pub(super) fn find(rest: &Skeleton) -> BTreeMap<Slot, usize> {
     let tree = Tree::new(rest);
     let mut found = BTreeMap::new();
     let Some((hips, legs)) = tree.hips() else { return found };
@@ -64,7 +64,7 @@ struct Leg {
 }
 
 impl<'a> Tree<'a> {
-    fn new(rest: &'a RestPose) -> Self {
+    fn new(rest: &'a Skeleton) -> Self {
         let model = rest.model_from_joints();
         let mut children = vec![Vec::new(); rest.len()];
         for (joint, parent) in rest.parents().iter().enumerate() {

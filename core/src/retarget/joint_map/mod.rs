@@ -17,7 +17,7 @@ pub use overrides::{Overrides, read_overrides};
 pub(super) use slot::Slot;
 
 use crate::skeleton::humanoid::{humanoid_bones, native_name};
-use crate::skeleton::{RestPose, RigJoint, SidedJoint};
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
 /// What a source must have.
@@ -91,7 +91,7 @@ impl JointMap {
     /// # Errors
     /// [`Error::Invalid`] when `overrides` names a joint that does not exist, with those most like it, or when pelvis,
     /// thighs or calves are not found, with their names.
-    pub fn find(source: &RestPose, overrides: &Overrides) -> Result<Self> {
+    pub fn find(source: &Skeleton, overrides: &Overrides) -> Result<Self> {
         let (mapped, nothing) = overrides::check(source, overrides)?;
         let mut taken = vec![false; source.len()];
         for &joint in mapped.values().chain(&nothing) {
@@ -166,7 +166,7 @@ impl JointMap {
 }
 
 struct Builder<'a> {
-    source: &'a RestPose,
+    source: &'a Skeleton,
     taken: Vec<bool>,
     pairs: BTreeMap<Slot, (usize, MatchedBy)>,
 }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use super::Slot;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
 /// Source joint to our joint, or to nothing where it shall drive nothing.
@@ -20,7 +20,7 @@ pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
 }
 
 /// Checks both sides: our joint to source joint, and source joints that shall drive nothing.
-pub(super) fn check(source: &RestPose, overrides: &Overrides) -> Result<(BTreeMap<Slot, usize>, Vec<usize>)> {
+pub(super) fn check(source: &Skeleton, overrides: &Overrides) -> Result<(BTreeMap<Slot, usize>, Vec<usize>)> {
     let fail = |message| Err(Error::invalid("joint mapping", message));
     let mut mapped = BTreeMap::new();
     let mut nothing = Vec::new();

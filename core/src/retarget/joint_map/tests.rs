@@ -3,11 +3,11 @@ use crate::math::RigidTransform;
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
 /// A skeleton whose names alone matter: a tree that is no person.
-fn named(names: &[&str]) -> RestPose {
+fn named(names: &[&str]) -> Skeleton {
     let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
     let parents = (0..names.len() as u32).map(|j| j.checked_sub(1)).collect();
     let count = names.len();
-    RestPose::new(names, parents, vec![RigidTransform::IDENTITY; count], vec![None; count]).unwrap()
+    Skeleton::new(names, parents, vec![RigidTransform::IDENTITY; count], vec![None; count]).unwrap()
 }
 
 #[test]
@@ -159,10 +159,10 @@ fn a_person_without_names_is_known_by_its_shape() {
     let rest = person();
     let clip = motion(&rest, 1);
     let a_pose = posed(&rest, &[("upperarm_l", [0.0, 0.0, -60.0]), ("upperarm_r", [0.0, 0.0, 60.0])]);
-    for (pose, facing, scale) in [(rest.pose().locals.clone(), 0.0, 1.0), (a_pose, -1.6, 100.0)] {
+    for (pose, facing, scale) in [(rest.rest_pose().locals.clone(), 0.0, 1.0), (a_pose, -1.6, 100.0)] {
         let style = Style { rename: &scrambled, rest: pose, facing, frames: true, scale };
         let source = restyled(&clip, &style);
-        let map = JointMap::find(source.rest(), &BTreeMap::new()).unwrap();
+        let map = JointMap::find(source.skeleton(), &BTreeMap::new()).unwrap();
         let mut wrong = Vec::new();
         for (joint, name) in rest.names().iter().enumerate() {
             // Eyes and jaw look like any leaf of the head; the spine is a chain.
@@ -186,13 +186,13 @@ fn names_fill_in_what_they_do_not_say_by_shape() {
     let rest = person();
     let style = Style {
         rename: &|name| if name.starts_with("hand") { scrambled(name) } else { Some(name.to_owned()) },
-        rest: rest.pose().locals.clone(),
+        rest: rest.rest_pose().locals.clone(),
         facing: 0.0,
         frames: false,
         scale: 1.0,
     };
     let source = restyled(&motion(&rest, 1), &style);
-    let map = JointMap::find(source.rest(), &BTreeMap::new()).unwrap();
+    let map = JointMap::find(source.skeleton(), &BTreeMap::new()).unwrap();
     assert_eq!(source_of(&map, "hand_l"), rest.find("hand_l"));
     let hand = map.report().matched.iter().find(|m| m.target == "hand_l").unwrap();
     assert_eq!(hand.by, MatchedBy::Geometry);
@@ -206,7 +206,7 @@ fn chains_take_whatever_stands_between() {
     let names: Vec<String> = names.split_ascii_whitespace().map(str::to_owned).collect();
     let parents = [0, 0, 1, 2, 0, 4, 5, 0, 7, 8, 9, 10, 11, 12, 10, 14];
     let parents = parents.iter().enumerate().map(|(j, p)| (j > 0).then_some(*p)).collect();
-    let rest = RestPose::new(names, parents, vec![RigidTransform::IDENTITY; 16], vec![None; 16]).unwrap();
+    let rest = Skeleton::new(names, parents, vec![RigidTransform::IDENTITY; 16], vec![None; 16]).unwrap();
     let map = JointMap::find(&rest, &BTreeMap::new()).unwrap();
     assert_eq!(map.spine(), [7, 8, 9, 10]);
     assert_eq!(map.neck(), [11, 12]);

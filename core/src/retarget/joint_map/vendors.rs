@@ -200,7 +200,7 @@ fn every_joint_of_every_program_drives_what_it_should() {
     for (list, count) in lists.iter().zip([67, 83, 73, 55, 55, 55, 68, 85]) {
         let joints = joints(list);
         assert_eq!(joints.len(), count, "{}: {joints:?}", list.0);
-        let rest = RestPose::new(
+        let rest = Skeleton::new(
             joints.iter().map(|j| j.0.clone()).collect(),
             joints.iter().map(|j| j.1).collect(),
             vec![RigidTransform::IDENTITY; joints.len()],

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::super::JointMap;
 use super::super::joint_map::Slot;
 use crate::math::RigidTransform;
-use crate::skeleton::{RestPose, RigJoint, SidedJoint};
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 
 /// Below this two joints are one, metres: no direction can be read from them.
 const SHORTEST: f32 = 1e-4;
@@ -40,7 +40,7 @@ pub(super) const LIMBS: [(SidedJoint, SidedJoint); 6] = [
 
 impl Bone {
     /// The bone of this joint of a limb or finger, where both skeletons have it with a length.
-    pub(super) fn of(ours: RigJoint, map: &JointMap, source: &RestPose, target: &RestPose) -> Option<Self> {
+    pub(super) fn of(ours: RigJoint, map: &JointMap, source: &Skeleton, target: &Skeleton) -> Option<Self> {
         let RigJoint::Sided(stem, side) = ours else { return None };
         let tip = next(stem)?.on(side);
         let joint = map.source_of(ours)?;

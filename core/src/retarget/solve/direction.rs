@@ -49,7 +49,7 @@ pub fn direction_error(source: &Clip, target: &Clip, map: &JointMap) -> Directio
     let mut bones: Vec<(SidedJoint, Bone, BoneError)> = Vec::new();
     for side in Side::ALL {
         for (joint, _) in LIMBS {
-            if let Some(bone) = Bone::of(joint.on(side), map, source.rest(), target.rest()) {
+            if let Some(bone) = Bone::of(joint.on(side), map, source.skeleton(), target.skeleton()) {
                 let name = joint.on(side).name().to_owned();
                 bones.push((joint, bone, BoneError { bone: name, mean: 0.0, max: 0.0 }));
             }

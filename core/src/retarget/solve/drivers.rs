@@ -14,7 +14,7 @@ use crate::skeleton::{Finger, RigJoint, SidedJoint};
 /// One driver per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<Driver> {
     let target = reference.joints.target;
-    let mut drivers: Vec<Driver> = target.rotations().map(Driver::Still).collect();
+    let mut drivers: Vec<Driver> = target.rest_rotations().map(Driver::Still).collect();
     let mut set = |ours: RigJoint, alignment: Quat| {
         let pair = reference.map.source_of(ours).zip(target.rig_joint(ours));
         if let Some((source, joint)) = pair {

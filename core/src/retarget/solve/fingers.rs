@@ -18,5 +18,5 @@ pub(super) fn relaxed(joints: &Joints, joint: usize, finger: Finger, number: usi
     // towards the palm's middle, which is the way its tip already leans: about the same axis.
     let bone = rest.rotation * Vec3::Y;
     let axis = rest.rotation.conjugate() * bone.cross(Vec3::NEG_Y).try_normalize()?;
-    Some(joints.target.pose().locals[joint].rotation * Quat::from_axis_angle(axis, degrees.to_radians()))
+    Some(joints.target.rest_pose().locals[joint].rotation * Quat::from_axis_angle(axis, degrees.to_radians()))
 }

@@ -6,7 +6,7 @@ use super::super::JointMap;
 use super::bones::LIMBS;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose, SidedJoint};
+use crate::skeleton::{Pose, SidedJoint, Skeleton};
 
 /// What [`worst_jump`] finds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -26,12 +26,12 @@ pub fn worst_jump(source: &Clip, target: &Clip, map: &JointMap) -> Jump {
     let frames = source.frame_count().min(target.frame_count());
     let (theirs, ours) = (steps(source, frames), steps(target, frames));
     let mut worst = Jump::default();
-    for (joint, sources) in limbs(target.rest(), map) {
+    for (joint, sources) in limbs(target.skeleton(), map) {
         for (frame, step) in ours.iter().enumerate() {
             let around = &theirs[frame.saturating_sub(1)..(frame + 2).min(theirs.len())];
             let allowed = around.iter().flat_map(|step| sources.iter().map(|s| step[*s])).fold(0.0, f64::max);
             if step[joint] - allowed > worst.degrees {
-                let name = target.rest().names()[joint].clone();
+                let name = target.skeleton().names()[joint].clone();
                 worst = Jump { degrees: step[joint] - allowed, joint: Some(name), frame };
             }
         }
@@ -40,7 +40,7 @@ pub fn worst_jump(source: &Clip, target: &Clip, map: &JointMap) -> Jump {
 }
 
 /// The joints of arms and legs, each with the source's joints above and below it.
-fn limbs(target: &RestPose, map: &JointMap) -> Vec<(usize, Vec<usize>)> {
+fn limbs(target: &Skeleton, map: &JointMap) -> Vec<(usize, Vec<usize>)> {
     let above =
         |joint: usize| std::iter::successors(Some(joint), |j| target.parents()[*j].map(|p| p as usize));
     let ours: Vec<_> = target.rig_joints().collect();

@@ -30,7 +30,7 @@ use twist::Twist;
 use super::JointMap;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose, SidedJoint};
+use crate::skeleton::{Pose, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
 /// Who carries the way over the ground.
@@ -109,8 +109,8 @@ impl Default for TransferOptions {
 
 /// Both skeletons, and where their joints rest in model space.
 struct Joints<'a> {
-    source: &'a RestPose,
-    target: &'a RestPose,
+    source: &'a Skeleton,
+    target: &'a Skeleton,
     source_rest: Vec<RigidTransform>,
     target_rest: Vec<RigidTransform>,
 }
@@ -129,8 +129,8 @@ enum Driver {
 /// Carries clips of one skeleton over to another. Made once per pair, shared freely.
 #[derive(Clone, Debug)]
 pub struct Retargeter {
-    source: RestPose,
-    target: Arc<RestPose>,
+    source: Skeleton,
+    target: Arc<Skeleton>,
     drivers: Vec<Driver>,
     limbs: Vec<Limb>,
     twists: Vec<Twist>,
@@ -139,14 +139,14 @@ pub struct Retargeter {
 }
 
 impl Retargeter {
-    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`RestPose::of_joints`].
+    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`Skeleton::of_joints`].
     ///
     /// # Errors
     /// [`Error::Invalid`] when the target lacks pelvis or thighs, `map` is of another source, or the scale is not
     /// positive.
     pub fn new(
-        source: &RestPose,
-        target: Arc<RestPose>,
+        source: &Skeleton,
+        target: Arc<Skeleton>,
         map: &JointMap,
         options: &TransferOptions,
     ) -> Result<Self> {
@@ -197,7 +197,7 @@ impl Retargeter {
     /// # Errors
     /// As [`retarget`](Self::retarget).
     pub fn retarget_with(&self, clip: &Clip, mut finish: impl FnMut(usize, &mut Pose)) -> Result<Clip> {
-        if **clip.rest() != self.source {
+        if **clip.skeleton() != self.source {
             let message = format!("`{}` moves another skeleton than the retargeter's source", clip.name());
             return Err(Error::invalid("clip", message));
         }
@@ -212,7 +212,7 @@ impl Retargeter {
         let mut places = Vec::with_capacity(clip.frame_count());
         let (mut pose, mut source, mut model, mut locals) = (Pose::default(), vec![], vec![], vec![]);
         let mut rolls = vec![None; self.twists.len()];
-        let mut finished = self.target.pose().clone();
+        let mut finished = self.target.rest_pose().clone();
         for frame in 0..clip.frame_count() {
             clip.model_into(frame, &mut pose, &mut source);
             self.model_rotations(&source, &mut model);

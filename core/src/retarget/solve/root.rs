@@ -61,7 +61,7 @@ impl Root {
     /// frame by frame, in model space.
     pub(super) fn above_floor(&self, joints: &Joints, rotations: &[Quat], places: &[Vec3]) -> f32 {
         let parents = joints.target.parents();
-        let mut locals = joints.target.pose().locals.clone();
+        let mut locals = joints.target.rest_pose().locals.clone();
         let mut model = Vec::new();
         let mut lowest: Vec<f32> = Vec::with_capacity(places.len());
         for (frame, place) in rotations.chunks_exact(locals.len()).zip(places) {
@@ -136,6 +136,6 @@ impl Clip {
         model: &mut Vec<RigidTransform>,
     ) {
         self.pose_into(frame, pose);
-        model_from_joints(self.rest().parents(), &pose.locals, model);
+        model_from_joints(self.skeleton().parents(), &pose.locals, model);
     }
 }

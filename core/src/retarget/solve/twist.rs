@@ -30,7 +30,7 @@ pub(super) struct Twist {
 
 /// The twist joints of the target.
 pub(super) fn find(joints: &Joints) -> Vec<Twist> {
-    let rest = joints.target.pose();
+    let rest = joints.target.rest_pose();
     let twist = |(joint, ours): (usize, Option<RigJoint>)| {
         let RigJoint::Sided(helper, side) = ours.filter(|ours| ours.is_twist())? else { return None };
         let limb = helper.limb();
