@@ -24,7 +24,7 @@ pub(crate) enum JointNamesChoice {
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
-/// Any subset of the 36 measures will do. The body has exactly the given ones; the report says how the others were
+/// Any subset of the measures will do. The body has exactly the given ones; the report says how the others were
 /// filled in, with the interval that holds 90 % of such people. The same request gives the same bytes everywhere.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
@@ -73,7 +73,7 @@ pub(crate) struct Arguments {
     #[arg(long, help_heading = "File")]
     compress: bool,
 
-    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output; also when the request is
+    /// Write the report of all measures as JSON, to a file or with `-` to standard output; also when the request is
     /// refused because nobody can have such measures, with what conflicts.
     #[arg(long, value_name = "FILE", help_heading = "File")]
     report: Option<PathBuf>,

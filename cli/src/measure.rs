@@ -12,7 +12,7 @@ use crate::generate::CHARACTER_ENDINGS;
 use crate::progress::print;
 use crate::request::ending;
 
-/// Read all 36 measures, mass and body mass index off a character file.
+/// Read all measures, mass and body mass index off a character file.
 ///
 /// FILE is one of ours at any level of detail, or another whose body has our vertex order. The body is measured in its
 /// bind pose.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::backend::Side;
 use crate::failure::{Failure, Result};
 use crate::units::parse_measure;
 
@@ -69,19 +70,17 @@ impl RequestArguments {
             }
             measures.push((name, *value));
         }
-        measures.sort_by_key(|(name, _)| name.ends_with("_left") || name.ends_with("_right"));
+        measures.sort_by_key(|(name, _)| Side::part_measure_name(name).1.is_some());
         Ok(measures)
     }
 
     /// Whether a field of the request was typed, and not read from the request's file. Sides count as one: what is
     /// typed for one may be told of both.
     pub(crate) fn typed(&self, field: &str) -> bool {
-        fn stem(name: &str) -> &str {
-            name.trim_end_matches("_left").trim_end_matches("_right")
-        }
+        let base = |name| Side::part_measure_name(name).0;
         match field {
             "z" => self.z.is_some(),
-            _ => self.measures.iter().any(|(name, _)| stem(name) == stem(field)),
+            _ => self.measures.iter().any(|(name, _)| base(name) == base(field)),
         }
     }
 }

@@ -119,7 +119,7 @@ impl Body {
         &self.report
     }
 
-    /// The 36 measures, metres.
+    /// All measures, metres.
     pub fn measurements(&self) -> &Measurements {
         &self.measurements
     }

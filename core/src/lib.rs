@@ -67,6 +67,7 @@ pub mod pose;
 pub mod random;
 pub mod retarget;
 pub mod scene;
+mod side;
 pub mod skeleton;
 pub mod skin;
 pub mod space;
@@ -75,3 +76,4 @@ mod testing;
 
 pub use body::Body;
 pub use error::{Error, Infeasible, Result};
+pub use side::Side;

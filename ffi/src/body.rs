@@ -3,6 +3,7 @@
 use anthronet::Body;
 use anthronet::condition::Filled;
 use anthronet::measure::{MEASURE_COUNT, Sex};
+use anthronet::skeleton::Skeleton;
 
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;
@@ -132,7 +133,7 @@ pub unsafe extern "C" fn anthronet_body_report(
     })
 }
 
-/// The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+/// The report's measures: fills `count` entries, one per measure, in the order of `anthronet_measure_name`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_body_measures(
     body: *const anthronet_body,

@@ -7,6 +7,7 @@ mod soles;
 use std::path::Path;
 
 use anthronet::Error;
+pub(crate) use anthronet::Side;
 use anthronet::condition::{Fill, Request, refusal_json};
 use anthronet::format::{GltfOptions, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
@@ -280,7 +281,7 @@ fn tone(text: Option<&str>) -> Result<SkinTone> {
     }
 }
 
-/// Mean, deviation and correlation of height and waist. `covariance` is (36, 36), row by row.
+/// Mean, deviation and correlation of height and waist. `covariance` is square, row by row.
 fn usual(mean: &[f64], covariance: &[f64]) -> Usual {
     let (h, w) = (MeasureId::HEIGHT.index(), MeasureId::WAIST.index());
     let cov = |a: usize, b: usize| covariance.get(a * mean.len() + b).copied().unwrap_or(0.0);
@@ -317,17 +318,19 @@ fn figure_from_scene(scene: &Scene) -> Result<Figure> {
 
 #[cfg(test)]
 mod tests {
+    use anthronet::measure::MEASURE_COUNT;
+
     use super::*;
 
     #[test]
     fn usual_reads_the_covariance() {
-        let mut covariance = vec![0.0; 36 * 36];
-        let mut mean = vec![0.0; 36];
-        let (h, w) = (3, 0);
+        let mut covariance = vec![0.0; MEASURE_COUNT * MEASURE_COUNT];
+        let mut mean = vec![0.0; MEASURE_COUNT];
+        let (h, w) = (MeasureId::HEIGHT.index(), MeasureId::WAIST.index());
         (mean[h], mean[w]) = (1.7, 0.8);
-        covariance[h * 36 + h] = 0.01;
-        covariance[w * 36 + w] = 0.04;
-        covariance[h * 36 + w] = 0.01;
+        covariance[h * MEASURE_COUNT + h] = 0.01;
+        covariance[w * MEASURE_COUNT + w] = 0.04;
+        covariance[h * MEASURE_COUNT + w] = 0.01;
         let usual = usual(&mean, &covariance);
         assert_eq!((usual.height.0, usual.waist.0), (1.7, 0.8));
         assert!((usual.height.1 - 0.1).abs() < 1e-12 && (usual.waist.1 - 0.2).abs() < 1e-12);

@@ -1,12 +1,13 @@
 //! Feet as the floor meets them: the skin of the soles, posed frame by frame.
 
 use anthronet::Body;
+use anthronet::Side;
 use anthronet::clip::Clip;
 use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
-use anthronet::skeleton::{Pose, Skeleton};
+use anthronet::skeleton::{Pose, SidedJoint, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::Vec3;
 
@@ -53,10 +54,9 @@ impl Soles {
         let model = rest.model_from_joints();
         let mut feet = Vec::new();
         let mut kept: Vec<usize> = Vec::new();
-        for side in ["l", "r"] {
-            let [foot, ball] =
-                [format!("foot_{side}"), format!("ball_{side}")].map(|name| rest.require(&name));
-            let [foot, ball] = [foot?, ball?];
+        for side in Side::ALL {
+            let foot = rest.require_rig_joint(SidedJoint::Foot.on(side))?;
+            let ball = rest.require_rig_joint(SidedJoint::Ball.on(side))?;
             let first = kept.len();
             let follows = |v: &usize| {
                 mesh.influences(*v).any(|(joint, w)| w > 0.0 && [foot, ball].contains(&usize::from(joint)))

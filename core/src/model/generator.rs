@@ -164,7 +164,7 @@ impl Model {
             Measurements::try_from(data.as_slice())
                 .ok()
                 .filter(|_| usable)
-                .ok_or_else(|| fail("standardisation: expected 36 usable numbers".into()))
+                .ok_or_else(|| fail(format!("standardisation: expected {MEASURE_COUNT} usable numbers")))
         };
         let decoder = Decoder::from_tensors(&parts.config, &parts.networks).map_err(named)?;
         // A model may come without its encoder, but not with a broken one.
@@ -279,7 +279,7 @@ impl Model {
         solve(&shared.measured, coefficients, &shared.variances, given, &SolveOptions::default())
     }
 
-    /// The 36 measures of the body with these coefficients, metres.
+    /// The measures of the body with these coefficients, metres.
     pub fn measures_of(&self, coefficients: &[f64]) -> Measurements {
         self.shared.measured.measure(coefficients, None)
     }

@@ -7,7 +7,7 @@
 use glam::{Quat, Vec3};
 
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, Skeleton};
+use crate::skeleton::{Pose, RigJoint, Skeleton};
 use crate::{Error, Result};
 
 /// Which way the middle joint of a limb points when the limb bends.
@@ -47,12 +47,12 @@ impl Limb {
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
-    pub fn named(rest: &Skeleton, names: [&str; 3], bend: Bend) -> Result<Self> {
+    pub fn of(rest: &Skeleton, chain: [RigJoint; 3], bend: Bend) -> Result<Self> {
         let mut joints = [0; 3];
-        for (i, name) in names.iter().enumerate() {
-            joints[i] = rest.require(name)?;
+        for (i, joint) in chain.iter().enumerate() {
+            joints[i] = rest.require_rig_joint(*joint)?;
             if i > 0 && rest.parents()[joints[i]] != Some(joints[i - 1] as u32) {
-                let message = format!("expected joint `{name}` to be a child of `{}`", names[i - 1]);
+                let message = format!("expected joint `{joint}` to be a child of `{}`", chain[i - 1]);
                 return Err(Error::invalid("skeleton", message));
             }
         }
@@ -148,6 +148,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::Side;
+    use crate::skeleton::SidedJoint;
+
+    const LEG: [RigJoint; 3] =
+        [SidedJoint::Thigh.on(Side::Left), SidedJoint::Calf.on(Side::Left), SidedJoint::Foot.on(Side::Left)];
 
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
     fn leg() -> (Skeleton, Limb) {
@@ -158,10 +163,10 @@ mod tests {
             local(Quat::IDENTITY, Vec3::Y * 0.5),
             local(Quat::IDENTITY, Vec3::Y * 0.4),
         ];
-        let names = ["thigh_l", "calf_l", "foot_l"];
         let parents = vec![None, Some(0), Some(1)];
-        let rest = Skeleton::new(names.map(String::from).to_vec(), parents, locals, vec![None; 3]).unwrap();
-        let limb = Limb::named(&rest, names, Bend::Forwards).unwrap();
+        let names = LEG.map(|joint| joint.name().to_owned()).to_vec();
+        let rest = Skeleton::new(names, parents, locals, vec![None; 3]).unwrap();
+        let limb = Limb::of(&rest, LEG, Bend::Forwards).unwrap();
         (rest, limb)
     }
 
@@ -196,11 +201,11 @@ mod tests {
     #[test]
     fn a_missing_joint_is_named() {
         let (rest, _) = leg();
-        let error =
-            Limb::named(&rest, ["thigh_l", "knee", "foot_l"], Bend::Forwards).unwrap_err().to_string();
-        assert!(error.contains("`knee`"), "{error}");
-        let error =
-            Limb::named(&rest, ["thigh_l", "foot_l", "calf_l"], Bend::Forwards).unwrap_err().to_string();
+        let [hip, knee, ankle] = LEG;
+        let refused = |chain| Limb::of(&rest, chain, Bend::Forwards).unwrap_err().to_string();
+        let error = refused([hip, SidedJoint::Calf.on(Side::Right), ankle]);
+        assert!(error.contains("`calf_r`"), "{error}");
+        let error = refused([hip, ankle, knee]);
         assert!(error.contains("`foot_l` to be a child of `thigh_l`"), "{error}");
     }
 

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use glam::{Affine3A, Mat3, Vec3};
 
 use super::written::round_to_file;
-use super::{JointTree, Skeleton};
-use crate::{Error, Result};
+use super::{JointTree, RigJoint, SidedJoint, Skeleton};
+use crate::{Error, Result, Side};
 
 /// Where a body's joints begin and end, metres.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,18 +25,19 @@ impl BonePositions {
     /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
     /// micrometres off it: the T-pose is exact.
     pub fn straighten(&mut self, tree: &JointTree) {
-        for side in ["l", "r"] {
-            let Some(shoulder) = tree.find(&format!("upperarm_{side}")) else { continue };
+        for side in Side::ALL {
+            let Some(shoulder) = tree.rig_joint(SidedJoint::Upperarm.on(side)) else { continue };
             let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
-            let own = format!("_{side}");
             for (j, name) in tree.names().iter().enumerate() {
-                let of_arm = name.ends_with(&own)
-                    && ["upperarm", "lowerarm", "hand"].iter().any(|part| name.starts_with(part));
-                if !of_arm {
+                let of_side = RigJoint::from_name(name).filter(|joint| joint.side() == Some(side));
+                let Some(limb) = of_side.and_then(|joint| joint.sided()).map(SidedJoint::limb) else {
+                    continue;
+                };
+                if !matches!(limb, SidedJoint::Upperarm | SidedJoint::Lowerarm | SidedJoint::Hand) {
                     continue;
                 }
                 self.heads[j] = self.heads[j].with_y(y).with_z(z);
-                if !name.starts_with("hand") {
+                if limb != SidedJoint::Hand {
                     self.tails[j] = self.tails[j].with_y(y).with_z(z);
                 }
             }
@@ -75,8 +76,12 @@ impl BonePositions {
 
 /// Where a joint's +Z axis leans to.
 fn leaning(name: &str) -> Vec3 {
-    let forward_pointing = ["foot", "ball", "eye", "jaw"];
-    if forward_pointing.iter().any(|part| name.starts_with(part)) { Vec3::Y } else { Vec3::Z }
+    match RigJoint::from_name(name) {
+        Some(RigJoint::Jaw | RigJoint::Sided(SidedJoint::Foot | SidedJoint::Ball | SidedJoint::Eye, _)) => {
+            Vec3::Y
+        }
+        _ => Vec3::Z,
+    }
 }
 
 fn orientation(bone: Vec3, lean: Vec3) -> Mat3 {

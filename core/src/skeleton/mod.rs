@@ -8,6 +8,7 @@
 mod bones;
 pub mod humanoid;
 mod kinematics;
+mod rig_joint;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod skeleton;
 mod skin_weights;
@@ -16,6 +17,7 @@ pub(crate) mod written;
 
 pub use bones::BonePositions;
 pub use kinematics::{Pose, model_from_joints};
+pub use rig_joint::{Finger, RigJoint, SidedJoint};
 pub use skeleton::Skeleton;
 pub use skin_weights::{Influences, SkinWeights};
 pub use tree::{JointTree, MAX_JOINTS};

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::skeleton::{BonePositions, JointTree, Skeleton};
+use crate::Side;
+use crate::skeleton::{BonePositions, JointTree, SidedJoint, Skeleton};
 
 /// A joint of the middle or the left: name, parent, head, tail, in shares of the height.
 type Row = (&'static str, &'static str, [f32; 3], [f32; 3]);
@@ -33,6 +34,8 @@ const LEFT: [Row; 11] = [
     ("calf_twist_01", "calf", [0.115, 0.044, -0.003], [0.12, 0.02, -0.003]),
 ];
 
+const LEG: [SidedJoint; 4] = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball];
+
 /// Short with short legs, tall with long legs, and wide with long arms and feet apart.
 pub(crate) fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
     [
@@ -48,7 +51,7 @@ pub(crate) fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
 fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
     let lift = (legs.y - 1.0) * 0.515;
     let place = |name: &str, [x, y, z]: [f32; 3]| {
-        let leg = ["thigh", "calf", "foot", "ball"].iter().any(|part| name.starts_with(part));
+        let leg = LEG.iter().any(|joint| name.starts_with(joint.name()));
         let at = match (name, leg) {
             ("Root", _) => return Vec3::ZERO,
             (_, true) => Vec3::new(x, y, z) * legs,
@@ -56,10 +59,10 @@ fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
         };
         at * height
     };
-    let left = LEFT.map(|(name, parent, head, tail)| (name, parent, head, tail, "_l"));
+    let left = LEFT.map(|(name, parent, head, tail)| (name, parent, head, tail, Side::Left.joint_suffix()));
     let right = LEFT.map(|(name, parent, head, tail)| {
         let mirror = |[x, y, z]: [f32; 3]| [-x, y, z];
-        (name, parent, mirror(head), mirror(tail), "_r")
+        (name, parent, mirror(head), mirror(tail), Side::Right.joint_suffix())
     });
     let middle = MIDDLE.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
     let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), BonePositions::default());

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
+use crate::Side;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{BonePositions, JointTree, Skeleton, model_from_joints};
+use crate::skeleton::{BonePositions, JointTree, RigJoint, SidedJoint, Skeleton, model_from_joints};
 
 /// Name, parent and place of the joints in the middle.
 const CENTRAL: [(&str, &str, [f32; 3]); 8] = [
@@ -56,7 +57,7 @@ const LEFT: [(&str, &str, [f32; 3]); 30] = [
 
 /// Where a bone without a joint at its far end points, and how far.
 fn tail(name: &str, head: Vec3) -> Vec3 {
-    let side = if name.ends_with("_r") { -1.0 } else { 1.0 };
+    let side = Side::of_joint_name(name).map_or(1.0, Side::sign);
     head + match name {
         "pelvis" => Vec3::new(0.0, 0.07, -0.04),
         "head" => Vec3::new(0.0, 0.2, 0.0),
@@ -71,19 +72,25 @@ fn tail(name: &str, head: Vec3) -> Vec3 {
 pub(crate) fn person() -> Arc<Skeleton> {
     let mut joints: Vec<(String, String, Vec3)> =
         CENTRAL.iter().map(|(n, p, at)| ((*n).to_owned(), (*p).to_owned(), Vec3::from_array(*at))).collect();
-    for (side, sign) in [("l", 1.0), ("r", -1.0)] {
+    for side in Side::ALL {
+        let own = |name: &str| [name, side.joint_suffix()].concat();
         for (name, parent, [x, y, z]) in LEFT {
             let central = CENTRAL.iter().any(|(n, ..)| *n == parent);
-            let parent = if central { parent.to_owned() } else { format!("{parent}_{side}") };
-            joints.push((format!("{name}_{side}"), parent, Vec3::new(sign * x, y, z)));
+            let parent = if central { parent.to_owned() } else { own(parent) };
+            joints.push((own(name), parent, Vec3::new(side.sign() * x, y, z)));
         }
     }
     let index = |name: &str| joints.iter().position(|(n, ..)| n == name);
     let parents: Vec<Option<u32>> = joints.iter().map(|(_, p, _)| index(p).map(|p| p as u32)).collect();
     let next = |name: &str| -> Option<Vec3> {
-        let limb = name.find("_twist").map(|at| format!("{}{}", &name[..at], &name[name.len() - 2..]));
-        let limb = limb.as_deref().unwrap_or(name);
-        let main = |child: &str| !child.contains("twist") && !["jaw", "eye_l", "eye_r"].contains(&child);
+        let limb = match RigJoint::from_name(name).unwrap() {
+            RigJoint::Sided(joint, side) => joint.limb().on(side).name(),
+            joint => joint.name(),
+        };
+        let main = |child: &str| {
+            let child = RigJoint::from_name(child).unwrap();
+            !child.is_twist() && child != RigJoint::Jaw && child.sided() != Some(SidedJoint::Eye)
+        };
         let wanted = |child: &str| !limb.starts_with("hand") || child.starts_with("middle");
         let wanted = |child: &str| wanted(child) && (limb != "spine_03" || child == "neck_01");
         if limb == "pelvis" || limb == "Root" {
@@ -141,7 +148,7 @@ pub(crate) fn motion(rest: &Arc<Skeleton>, frames: usize) -> Clip {
         rotations.extend(posed(rest, &turns).iter().map(|local| local.rotation));
         places.push(Vec3::new(0.3 * s, 0.9 + 0.03 * c, 0.5 * t));
     }
-    let track = TranslationTrack { joint: rest.find("pelvis").unwrap() as u32, values: places };
+    let track = TranslationTrack { joint: rest.rig_joint(RigJoint::Pelvis).unwrap() as u32, values: places };
     Clip::new("motion".into(), rest.clone(), 30.0, rotations, vec![track]).unwrap()
 }
 
@@ -184,7 +191,7 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let facing = Quat::from_rotation_y(style.facing);
     let rest = Skeleton::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();
-    let pelvis = place(ours.find("pelvis").unwrap() as u32).unwrap();
+    let pelvis = place(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
     let mut values = Vec::new();
     for frame in 0..clip.frame_count() {
         let locals = locals_of(&clip.pose(frame).locals, Quat::IDENTITY);

@@ -5,6 +5,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
     ("space", &[]),
+    ("side", &[]),
     ("math", &["space"]),
     ("mesh", &[]),
     ("measure", &["mesh"]),
@@ -25,7 +26,7 @@ const TABLE: &[(&str, &[&str])] = &[
 ];
 
 /// Rooms without a view of bodies, open to everybody.
-const OPEN: &[&str] = &["error", "random"];
+const OPEN: &[&str] = &["error", "random", "side"];
 
 /// What tests share, where the library has such a room: it stands above and below all others, and so it is not in the
 /// table. Where it may be named is the compiler's to say, as the room is not there outside of tests.

@@ -17,7 +17,7 @@ use crate::pose::Leg;
 use crate::pose::SwingTwist;
 use crate::pose::ik::Reach;
 use crate::pose::limits::JointLimits;
-use crate::skeleton::{Pose, Skeleton, model_from_joints};
+use crate::skeleton::{Pose, RigJoint, Skeleton, model_from_joints};
 
 /// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
 const SOFTNESS: f32 = 0.001;
@@ -78,7 +78,7 @@ fn held(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetRepor
     let found = contacts(clip, options)?;
     let rest = clip.skeleton();
     let legs = Leg::both(rest)?;
-    let pelvis = rest.require("pelvis")?;
+    let pelvis = rest.require_rig_joint(RigJoint::Pelvis)?;
     let blend = libm::roundf(options.blend * clip.frames_per_second() as f32) as usize;
 
     let corrected = |floor: f32| -> [Vec<Correction>; 2] {

@@ -30,8 +30,8 @@ use twist::Twist;
 use super::JointMap;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, Skeleton};
-use crate::{Error, Result};
+use crate::skeleton::{Pose, SidedJoint, Skeleton};
+use crate::{Error, Result, Side};
 
 /// Who carries the way over the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -169,9 +169,9 @@ impl Retargeter {
         let root = Root::new(&reference, options.scale)
             .ok_or_else(|| Error::invalid("retargeting", "the target has no pelvis with thighs"))?;
         let mut limbs = Vec::new();
-        for side in ["l", "r"] {
-            limbs.extend(Limb::of(&reference, "upperarm", "lowerarm", side, 1.0));
-            limbs.extend(Limb::of(&reference, "thigh", "calf", side, -1.0));
+        for side in Side::ALL {
+            limbs.extend(Limb::of(&reference, [SidedJoint::Upperarm, SidedJoint::Lowerarm], side, 1.0));
+            limbs.extend(Limb::of(&reference, [SidedJoint::Thigh, SidedJoint::Calf], side, -1.0));
         }
         let drivers = drivers::drivers(&reference, options);
         let twists = twist::find(&joints);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::skeleton::RigJoint;
 use crate::skeleton::humanoid::{JointNames, renamed};
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
@@ -144,9 +145,9 @@ fn left_is_left() {
     };
     let found = retarget(&restyled(&clip, &style), &rest, &TransferOptions::default());
     let model = found.pose(0).model_from_joints(rest.parents());
-    let hand = |side| model[rest.find(&format!("hand_{side}")).unwrap()].translation;
-    assert!(hand("l").y > 1.8 && (hand("r").y - 1.39).abs() < 0.01, "{} {}", hand("l"), hand("r"));
-    assert!(hand("l").x > 0.1 && hand("r").x < -0.5);
+    let [left, right] = SidedJoint::Hand.both().map(|hand| model[rest.rig_joint(hand).unwrap()].translation);
+    assert!(left.y > 1.8 && (right.y - 1.39).abs() < 0.01, "{left} {right}");
+    assert!(left.x > 0.1 && right.x < -0.5);
 }
 
 #[test]
@@ -261,20 +262,20 @@ fn hands_without_fingers_are_at_ease() {
         scale: 1.0,
     };
     let source = restyled(&clip, &style);
-    let curl = |fingers, name: &str| {
+    let curl = |fingers, joint: RigJoint| {
         let found = retarget(&source, &rest, &TransferOptions { fingers, ..Default::default() });
-        let joint = rest.find(name).unwrap();
+        let joint = rest.rig_joint(joint).unwrap();
         let down = |q: Quat| (q * glam::Vec3::Y).y;
         // In the T-pose a curl lowers the finger's tip.
         let upright = rest.model_from_joints();
         let parent = upright[rest.parents()[joint].unwrap() as usize].rotation;
         down(parent * rest.rest_pose().locals[joint].rotation) - down(parent * found.rotations(0)[joint])
     };
-    for side in ["l", "r"] {
-        let [index, pinky] =
-            ["index_01", "pinky_01"].map(|f| curl(FingerMode::Source, &format!("{f}_{side}")));
+    for side in Side::ALL {
+        let fingers = [SidedJoint::Index01, SidedJoint::Pinky01];
+        let [index, pinky] = fingers.map(|finger| curl(FingerMode::Source, finger.on(side)));
         assert!(index > 0.1 && pinky > index + 0.05, "{index} {pinky}");
-        assert_eq!(curl(FingerMode::Rest, &format!("index_01_{side}")), 0.0);
+        assert_eq!(curl(FingerMode::Rest, SidedJoint::Index01.on(side)), 0.0);
     }
 }
 
