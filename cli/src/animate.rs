@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
 use crate::backend;
+use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
+use crate::generate::CHARACTER_ENDINGS;
 use crate::motion::MotionArguments;
 use crate::request::check_ending;
 
@@ -31,8 +33,8 @@ pub(crate) struct Arguments {
     output: PathBuf,
 
     /// What the joints are called; left out, as in the input.
-    #[arg(long)]
-    joint_names: Option<JointNamesChoice>,
+    #[arg(long, value_parser = choice::joint_names())]
+    joint_names: Option<JointNames>,
 
     /// Write a .glb or .gltf with EXT_meshopt_compression.
     #[arg(long)]

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use anthronet::condition::Fill;
+use anthronet::measure::Sex;
 use clap::Args;
 use glam::Vec3;
 
@@ -9,7 +11,7 @@ use crate::backend::{self, Model, Person, Random, Usual};
 use crate::failure::{Failure, Result};
 use crate::progress::bar;
 use crate::render::{Image, LitFigure, Picture, Tile, View, draw_text, text_width};
-use crate::request::{FillChoice, RequestArguments, SexChoice, check_ending};
+use crate::request::{RequestArguments, check_ending};
 
 /// Directions that the light is gathered from; fewer than for a single picture, as figures are small.
 const QUALITY: usize = 128;
@@ -125,7 +127,7 @@ fn close_ups(person: &Person) -> Vec<(Tile, usize)> {
 
 /// A Latin hypercube over height and waist for each sex: every stratum of either occurs once. The waist is drawn
 /// around what is usual for the height.
-fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<RequestArguments> {
+fn people(count: usize, seed: u64, usual: impl Fn(Sex) -> Usual) -> Vec<RequestArguments> {
     let mut random = Random::new(seed, STREAM);
     let mut targets: [Vec<(f64, f64)>; 2] = [count.div_ceil(2), count / 2].map(|n| {
         let mut columns = REACH.map(|[low, high]| {
@@ -141,7 +143,7 @@ fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<Re
     });
     (0..count)
         .map(|i| {
-            let sex = [SexChoice::Female, SexChoice::Male][i % 2];
+            let sex = [Sex::Female, Sex::Male][i % 2];
             let (h, w) = targets[i % 2].pop().unwrap_or_default();
             let usual = usual(sex);
             let rho = usual.correlation;
@@ -153,7 +155,7 @@ fn people(count: usize, seed: u64, usual: impl Fn(SexChoice) -> Usual) -> Vec<Re
                     ("waist_circumference".to_owned(), usual.waist.0 + w * usual.waist.1),
                 ],
                 seed: Some(seed.wrapping_mul(10_007).wrapping_add(i as u64 + 1).max(1)),
-                fill: Some(FillChoice::Sample),
+                fill: Some(Fill::Sample),
                 nearest: true,
                 ..RequestArguments::default()
             }
@@ -170,7 +172,7 @@ mod tests {
         let usual = |_| Usual { height: (0.0, 1.0), waist: (0.0, 1.0), correlation: 0.0 };
         let sheet = people(24, 1, usual);
         assert_eq!(sheet.len(), 24);
-        for sex in [SexChoice::Female, SexChoice::Male] {
+        for sex in [Sex::Female, Sex::Male] {
             for (k, [low, high]) in REACH.into_iter().enumerate() {
                 let mut strata: Vec<i64> = sheet
                     .iter()

@@ -2,25 +2,17 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use anthronet::skeleton::humanoid::JointNames;
+use clap::Args;
 
 use crate::backend::{self, Model};
+use crate::choice;
 use crate::failure::{Failure, Result};
 use crate::motion::MotionArguments;
 use crate::request::{RequestArguments, check_ending};
 
 /// Endings of the files that hold a character.
 pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
-
-/// What the file's joints are called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum JointNamesChoice {
-    Native,
-    Unity,
-    Mixamo,
-    Vrm,
-    Blender,
-}
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
@@ -54,8 +46,8 @@ pub(crate) struct Arguments {
     influences: String,
 
     /// What the joints are called.
-    #[arg(long, default_value = "native", help_heading = "File")]
-    joint_names: JointNamesChoice,
+    #[arg(long, default_value = "native", value_parser = choice::joint_names(), help_heading = "File")]
+    joint_names: JointNames,
 
     /// Skin colour: 1 (light) to 10 (dark) on the Monk scale, or #rrggbb.
     #[arg(long, value_name = "TONE", help_heading = "File")]
@@ -83,7 +75,7 @@ pub(crate) struct Arguments {
 pub(crate) struct FileChoice<'a> {
     pub(crate) lod: u8,
     pub(crate) influences: usize,
-    pub(crate) joint_names: JointNamesChoice,
+    pub(crate) joint_names: JointNames,
     pub(crate) skin_tone: Option<&'a str>,
 }
 

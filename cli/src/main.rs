@@ -6,6 +6,7 @@
 
 mod animate;
 mod backend;
+mod choice;
 mod contact_sheet;
 mod convert;
 mod failure;

@@ -2,42 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use anthronet::retarget::FingerMode;
+use anthronet::space::{Axis, Unit};
+use clap::Args;
 
 use crate::backend::motion::BUILTIN;
+use crate::choice;
 use crate::failure::Failure;
 use crate::request::ending;
-
-/// Length of one unit of a motion file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum UnitChoice {
-    /// Metres.
-    M,
-    /// Centimetres.
-    Cm,
-    /// Millimetres.
-    Mm,
-    /// Inches.
-    In,
-}
-
-/// The axis that points up in a motion file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum UpChoice {
-    Y,
-    Z,
-}
-
-/// Where the fingers' pose comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FingersChoice {
-    /// From the motion where it moves fingers, else relaxed.
-    Source,
-    /// Hanging, slightly curled.
-    Relaxed,
-    /// Straight, as in the bind pose.
-    Rest,
-}
 
 /// Options of motion.
 #[derive(Args, Clone, Debug, Default)]
@@ -49,12 +21,12 @@ pub(crate) struct MotionArguments {
     pub(crate) clips: Vec<String>,
 
     /// Length of one unit of the motion file; left out, the file says or the size of its skeleton.
-    #[arg(long, value_name = "UNIT")]
-    pub(crate) clip_unit: Option<UnitChoice>,
+    #[arg(long, value_name = "UNIT", value_parser = choice::unit())]
+    pub(crate) clip_unit: Option<Unit>,
 
     /// The axis that points up in the motion file; left out, the file says or the skeleton.
-    #[arg(long, value_name = "AXIS")]
-    pub(crate) clip_up: Option<UpChoice>,
+    #[arg(long, value_name = "AXIS", value_parser = choice::up_axis())]
+    pub(crate) clip_up: Option<Axis>,
 
     /// Frames per second of the motion file, instead of what it says.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
@@ -69,8 +41,8 @@ pub(crate) struct MotionArguments {
     pub(crate) fps: Option<f64>,
 
     /// Where the fingers' pose comes from, for motion files [default: source].
-    #[arg(long)]
-    pub(crate) fingers: Option<FingersChoice>,
+    #[arg(long, value_parser = choice::fingers())]
+    pub(crate) fingers: Option<FingerMode>,
 
     /// Stay in place: no motion over the ground.
     #[arg(long)]

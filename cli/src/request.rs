@@ -3,34 +3,21 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use anthronet::condition::Fill;
+use anthronet::measure::Sex;
+use clap::Args;
 
+use crate::choice;
 use crate::failure::{Failure, Result};
 use crate::units::parse_measure;
-
-/// Which of the two sexes the body is conditioned on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SexChoice {
-    Female,
-    Male,
-}
-
-/// How what is not given is filled in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FillChoice {
-    /// With the likeliest values beside the given ones.
-    Mean,
-    /// With a draw from what is plausible beside the given ones; `--seed` chooses which.
-    Sample,
-}
 
 /// Options that describe a person. They go before what the request file says.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Person")]
 pub(crate) struct RequestArguments {
     /// Sex of the body; left out, the measures decide.
-    #[arg(long)]
-    pub(crate) sex: Option<SexChoice>,
+    #[arg(long, value_parser = choice::sex())]
+    pub(crate) sex: Option<Sex>,
 
     /// A measure, such as height=1.7, height=170cm, waist_circumference=28in or height=5ft7in; a plain number is
     /// metres. May be repeated. `anthronet info` lists the names.
@@ -51,8 +38,8 @@ pub(crate) struct RequestArguments {
     pub(crate) z: Option<Vec<f64>>,
 
     /// How measures that are not given are filled in [default: mean].
-    #[arg(long)]
-    pub(crate) fill: Option<FillChoice>,
+    #[arg(long, value_parser = choice::fill())]
+    pub(crate) fill: Option<Fill>,
 
     /// When the measures cannot belong to one person, make the nearest possible one instead of failing.
     #[arg(long)]

@@ -7,7 +7,7 @@ mod soles;
 use std::path::Path;
 
 use anthronet::Error;
-use anthronet::condition::{Fill, Request, refusal_json};
+use anthronet::condition::{Request, refusal_json};
 use anthronet::format::{GltfOptions, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
@@ -17,10 +17,10 @@ use anthronet::skeleton::humanoid::JointNames;
 use glam::Vec3;
 
 use crate::failure::{Failure, Result};
-use crate::generate::{FileChoice, JointNamesChoice};
+use crate::generate::FileChoice;
 use crate::measure::{Measured, NamedValue};
 use crate::render::{Figure, Material, Part};
-use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
+use crate::request::{RequestArguments, read_text};
 
 /// The generator with its prior and definitions.
 pub(crate) struct Model(anthronet::model::Model);
@@ -88,8 +88,8 @@ impl Model {
     }
 
     /// What is usual for a sex, from the prior.
-    pub(crate) fn usual(&self, sex: SexChoice) -> Usual {
-        let prior = self.0.prior().of(core_sex(sex));
+    pub(crate) fn usual(&self, sex: Sex) -> Usual {
+        let prior = self.0.prior().of(sex);
         usual(prior.mean(), prior.covariance())
     }
 }
@@ -102,7 +102,7 @@ impl Person {
 
     /// The person as the renderer takes it.
     pub(crate) fn figure(&self, lod: u8, skin_tone: Option<&str>) -> Result<Figure> {
-        let joint_names = JointNamesChoice::Native;
+        let joint_names = JointNames::Native;
         figure_from_scene(&self.scene(&FileChoice { lod, influences: 4, joint_names, skin_tone })?)
     }
 
@@ -117,7 +117,7 @@ impl Person {
         let options = SceneOptions {
             lod: Lod::try_from(choice.lod)?,
             influences: choice.influences,
-            joint_names: core_joint_names(choice.joint_names),
+            joint_names: choice.joint_names,
             skin_tone: tone(choice.skin_tone)?,
             ..SceneOptions::default()
         };
@@ -205,7 +205,7 @@ pub(crate) fn request(arguments: &RequestArguments) -> Result<Request> {
         None => Request::default(),
     };
     if let Some(sex) = arguments.sex {
-        request.sex = Some(core_sex(sex));
+        request.sex = Some(sex);
     }
     for (name, metres) in arguments.sorted_measures()? {
         request.set(name, metres).map_err(usage_if_request)?;
@@ -217,10 +217,7 @@ pub(crate) fn request(arguments: &RequestArguments) -> Result<Request> {
         request.z = Some(z.clone());
     }
     if let Some(fill) = arguments.fill {
-        request.fill = match fill {
-            FillChoice::Mean => Fill::Mean,
-            FillChoice::Sample => Fill::Sample,
-        };
+        request.fill = fill;
     }
     request.nearest |= arguments.nearest;
     Ok(request)
@@ -250,23 +247,6 @@ fn usage_if_request(error: Error) -> Failure {
     match error {
         Error::Request { .. } => Failure::usage(error.to_string()),
         other => other.into(),
-    }
-}
-
-fn core_sex(sex: SexChoice) -> Sex {
-    match sex {
-        SexChoice::Female => Sex::Female,
-        SexChoice::Male => Sex::Male,
-    }
-}
-
-fn core_joint_names(names: JointNamesChoice) -> JointNames {
-    match names {
-        JointNamesChoice::Native => JointNames::Native,
-        JointNamesChoice::Unity => JointNames::Unity,
-        JointNamesChoice::Mixamo => JointNames::Mixamo,
-        JointNamesChoice::Vrm => JointNames::Vrm,
-        JointNamesChoice::Blender => JointNames::Blender,
     }
 }
 
@@ -345,7 +325,7 @@ mod tests {
         .unwrap();
         let arguments = RequestArguments {
             request: Some(file),
-            sex: Some(SexChoice::Female),
+            sex: Some(Sex::Female),
             measures: vec![("height".into(), 1.7)],
             ..RequestArguments::default()
         };

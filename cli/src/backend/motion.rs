@@ -8,17 +8,14 @@ pub(crate) use anthronet::clip::BUILTIN;
 use anthronet::clip::Clip;
 use anthronet::format::{self, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
-use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::retarget::{self, RetargetOptions};
 use anthronet::scene::Scene;
 use anthronet::skeleton::RestPose;
-use anthronet::skeleton::humanoid::{native_name, renamed};
-use anthronet::space::{Axis, Unit};
+use anthronet::skeleton::humanoid::{JointNames, native_name, renamed};
 use serde_json::json;
 
-use super::core_joint_names;
 use crate::failure::{Failure, Result};
-use crate::generate::JointNamesChoice;
-use crate::motion::{FingersChoice, MotionArguments, UnitChoice, UpChoice};
+use crate::motion::MotionArguments;
 use crate::request::read_text;
 
 /// A character file, whole: skin, joints, materials, motions.
@@ -27,9 +24,9 @@ pub(crate) fn open(path: &Path) -> Result<Scene> {
 }
 
 /// Names the joints in another vocabulary.
-pub(crate) fn rename_joints(scene: &mut Scene, names: JointNamesChoice) {
+pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) {
     for joint in &mut scene.joints {
-        joint.name = renamed(&native_name(&joint.name), core_joint_names(names)).into_owned();
+        joint.name = renamed(&native_name(&joint.name), names).into_owned();
     }
 }
 
@@ -94,19 +91,7 @@ fn load(
 }
 
 fn read_options(arguments: &MotionArguments) -> ReadOptions {
-    ReadOptions {
-        unit: arguments.clip_unit.map(|unit| match unit {
-            UnitChoice::M => Unit::Metre,
-            UnitChoice::Cm => Unit::Centimetre,
-            UnitChoice::Mm => Unit::Millimetre,
-            UnitChoice::In => Unit::Inch,
-        }),
-        up: arguments.clip_up.map(|up| match up {
-            UpChoice::Y => Axis::Y,
-            UpChoice::Z => Axis::Z,
-        }),
-        frames_per_second: arguments.clip_fps,
-    }
+    ReadOptions { unit: arguments.clip_unit, up: arguments.clip_up, frames_per_second: arguments.clip_fps }
 }
 
 fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
@@ -121,10 +106,8 @@ fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
     if let Some(path) = &arguments.mapping {
         options.mapping = retarget::read_overrides(&read_text(path)?, path)?;
     }
-    options.transfer.fingers = match arguments.fingers.unwrap_or(FingersChoice::Source) {
-        FingersChoice::Source => FingerMode::Source,
-        FingersChoice::Relaxed => FingerMode::Relaxed,
-        FingersChoice::Rest => FingerMode::Rest,
-    };
+    if let Some(fingers) = arguments.fingers {
+        options.transfer.fingers = fingers;
+    }
     Ok(options)
 }

@@ -1,0 +1,88 @@
+//! Options that take one of a few names: the library's own types, listed with descriptions in the help.
+
+use std::str::FromStr;
+
+use anthronet::condition::Fill;
+use anthronet::measure::Sex;
+use anthronet::retarget::FingerMode;
+use anthronet::skeleton::humanoid::JointNames;
+use anthronet::space::{Axis, Unit};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+/// Accepts these names alone and leaves their meaning to the type.
+fn one_of<T>(names: impl IntoIterator<Item = PossibleValue>) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err = anthronet::Error> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse())
+}
+
+pub(crate) fn sex() -> impl TypedValueParser<Value = Sex> {
+    one_of(Sex::ALL.map(|sex| PossibleValue::new(sex.name())))
+}
+
+pub(crate) fn fill() -> impl TypedValueParser<Value = Fill> {
+    one_of(Fill::ALL.map(|fill| {
+        PossibleValue::new(fill.name()).help(match fill {
+            Fill::Mean => "With the likeliest values beside the given ones",
+            Fill::Sample => {
+                "With a draw from what is plausible beside the given ones; `--seed` chooses which"
+            }
+        })
+    }))
+}
+
+pub(crate) fn joint_names() -> impl TypedValueParser<Value = JointNames> {
+    one_of(JointNames::ALL.map(|names| PossibleValue::new(names.name())))
+}
+
+pub(crate) fn fingers() -> impl TypedValueParser<Value = FingerMode> {
+    one_of(FingerMode::ALL.map(|mode| {
+        PossibleValue::new(mode.name()).help(match mode {
+            FingerMode::Source => "From the motion where it moves fingers, else relaxed",
+            FingerMode::Relaxed => "Hanging, slightly curled",
+            FingerMode::Rest => "Straight, as in the bind pose",
+        })
+    }))
+}
+
+pub(crate) fn unit() -> impl TypedValueParser<Value = Unit> {
+    let names = [("m", "Metres"), ("cm", "Centimetres"), ("mm", "Millimetres"), ("in", "Inches")];
+    one_of(names.map(|(name, help)| PossibleValue::new(name).help(help)))
+}
+
+pub(crate) fn up_axis() -> impl TypedValueParser<Value = Axis> {
+    one_of(["y", "z"].map(PossibleValue::new))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parses every name that the help lists.
+    fn all<T: Clone + Send + Sync + 'static>(parser: &impl TypedValueParser<Value = T>) -> Vec<T> {
+        let command = clap::Command::new("test");
+        let names = parser.possible_values().expect("a list of names");
+        names
+            .map(|name| parser.parse_ref(&command, None, name.get_name().as_ref()).expect("a value"))
+            .collect()
+    }
+
+    #[test]
+    fn every_listed_name_has_its_value() {
+        assert_eq!(all(&sex()), Sex::ALL);
+        assert_eq!(all(&fill()), Fill::ALL);
+        assert_eq!(all(&joint_names()), JointNames::ALL);
+        assert_eq!(all(&fingers()), FingerMode::ALL);
+        assert_eq!(all(&unit()), [Unit::Metre, Unit::Centimetre, Unit::Millimetre, Unit::Inch]);
+        assert_eq!(all(&up_axis()), [Axis::Y, Axis::Z]);
+    }
+
+    #[test]
+    fn names_that_are_not_listed_are_refused() {
+        let command = clap::Command::new("test");
+        for name in ["ft", "0.04", "CM", ""] {
+            assert!(unit().parse_ref(&command, None, name.as_ref()).is_err(), "{name}");
+        }
+    }
+}
