@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
+use anthronet::format::open_scene;
 use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
-use crate::backend;
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::generate::CHARACTER_ENDINGS;
-use crate::motion::MotionArguments;
-use crate::request::check_ending;
+use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene};
+use crate::motion::{MotionArguments, add_clips, rename_joints};
 
 /// Put motion onto a character that `anthronet generate` made.
 ///
@@ -47,10 +46,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one motion, got none"));
     }
-    let mut scene = backend::motion::open(&arguments.input)?;
+    let mut scene = open_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        backend::motion::rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names);
     }
-    backend::motion::animate(&mut scene, &arguments.motion)?;
-    backend::write_scene(&scene, &arguments.output, arguments.compress)
+    add_clips(&mut scene, &arguments.motion)?;
+    write_scene(&scene, &arguments.output, arguments.compress)
 }

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use anthronet::condition::Fill;
 use anthronet::measure::Sex;
+use anthronet::mesh::Lod;
 use anthronet::retarget::FingerMode;
 use anthronet::skeleton::humanoid::JointNames;
 use anthronet::space::{Axis, Unit};
@@ -55,6 +56,14 @@ pub(crate) fn up_axis() -> impl TypedValueParser<Value = Axis> {
     one_of(["y", "z"].map(PossibleValue::new))
 }
 
+pub(crate) fn lod() -> impl TypedValueParser<Value = Lod> {
+    clap::value_parser!(u8).range(0..=3).try_map(Lod::try_from)
+}
+
+pub(crate) fn influences() -> impl TypedValueParser<Value = usize> {
+    PossibleValuesParser::new(["4", "8"]).try_map(|number| number.parse())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,6 +85,7 @@ mod tests {
         assert_eq!(all(&fingers()), FingerMode::ALL);
         assert_eq!(all(&unit()), [Unit::Metre, Unit::Centimetre, Unit::Millimetre, Unit::Inch]);
         assert_eq!(all(&up_axis()), [Axis::Y, Axis::Z]);
+        assert_eq!(all(&influences()), [4, 8]);
     }
 
     #[test]

@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
+use anthronet::format::open_scene;
 use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
-use crate::backend;
 use crate::choice;
 use crate::failure::Result;
-use crate::generate::CHARACTER_ENDINGS;
-use crate::motion::STILL_ENDINGS;
-use crate::request::{check_ending, ending};
+use crate::files::{CHARACTER_ENDINGS, STILL_ENDINGS, check_ending, ending, write_scene};
+use crate::motion::rename_joints;
 
 /// Write a character file in another format, with its skin, joints, materials and motions.
 #[derive(Args)]
@@ -36,13 +35,13 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("OUTPUT", &arguments.output, &CHARACTER_ENDINGS)?;
-    let mut scene = backend::motion::open(&arguments.input)?;
+    let mut scene = open_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        backend::motion::rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names);
     }
     if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
         eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
         scene.clips.clear();
     }
-    backend::write_scene(&scene, &arguments.output, arguments.compress)
+    write_scene(&scene, &arguments.output, arguments.compress)
 }

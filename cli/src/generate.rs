@@ -2,17 +2,20 @@
 
 use std::path::PathBuf;
 
+use anthronet::condition::{Report, Request, refusal_json};
+use anthronet::measure::MeasureId;
+use anthronet::mesh::Lod;
+use anthronet::model::Model;
+use anthronet::scene::{Scene, SceneOptions, SkinTone};
 use anthronet::skeleton::humanoid::JointNames;
+use anthronet::{Body, Error};
 use clap::Args;
 
-use crate::backend::{self, Model};
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::motion::MotionArguments;
-use crate::request::{RequestArguments, check_ending};
-
-/// Endings of the files that hold a character.
-pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
+use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene, write_text};
+use crate::motion::{MotionArguments, add_clips};
+use crate::request::{RequestArguments, read_request};
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
@@ -38,20 +41,20 @@ pub(crate) struct Arguments {
     at: Option<f64>,
 
     /// Level of detail: 0 has 53,514 vertices, 1 has 13,380, 2 about a quarter of that, 3 a sixteenth.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=3), help_heading = "File")]
-    lod: u8,
+    #[arg(long, default_value = "0", value_parser = choice::lod(), help_heading = "File")]
+    lod: Lod,
 
     /// Most joints that may move a vertex: 4 works everywhere, 8 is smoother where it is read.
-    #[arg(long, default_value = "4", value_parser = ["4", "8"], help_heading = "File")]
-    influences: String,
+    #[arg(long, default_value = "4", value_parser = choice::influences(), help_heading = "File")]
+    influences: usize,
 
     /// What the joints are called.
     #[arg(long, default_value = "native", value_parser = choice::joint_names(), help_heading = "File")]
     joint_names: JointNames,
 
     /// Skin colour: 1 (light) to 10 (dark) on the Monk scale, or #rrggbb.
-    #[arg(long, value_name = "TONE", help_heading = "File")]
-    skin_tone: Option<String>,
+    #[arg(long, value_name = "TONE", value_parser = parse_skin_tone, help_heading = "File")]
+    skin_tone: Option<SkinTone>,
 
     #[command(flatten)]
     motion: MotionArguments,
@@ -71,19 +74,18 @@ pub(crate) struct Arguments {
     report: Option<PathBuf>,
 }
 
-/// How the file is to be.
-pub(crate) struct FileChoice<'a> {
-    pub(crate) lod: u8,
-    pub(crate) influences: usize,
-    pub(crate) joint_names: JointNames,
-    pub(crate) skin_tone: Option<&'a str>,
-}
-
 fn parse_share(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(t) if (0.0..=1.0).contains(&t) => Ok(t),
         _ => Err(format!("expected a number from 0 to 1, got `{text}`")),
     }
+}
+
+fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, String> {
+    text.parse().map_err(|error| match error {
+        Error::Request { message, .. } => message,
+        other => other.to_string(),
+    })
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
@@ -92,58 +94,77 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected another file than that of -o"));
     }
-    let choice = FileChoice {
-        lod: arguments.lod,
-        influences: if arguments.influences == "8" { 8 } else { 4 },
-        joint_names: arguments.joint_names,
-        skin_tone: arguments.skin_tone.as_deref(),
-    };
-    backend::check_choice(&choice)?;
-    let request = backend::request(&arguments.request)?;
-    let second = match arguments.interpolate.as_deref() {
-        Some(path) => Some((backend::request_file(path)?, path)),
-        None => None,
-    };
-
-    let model = Model::open()?;
-    let made = match (&second, arguments.at) {
-        (Some((second, path)), Some(t)) => {
-            model.interpolate((&request, &arguments.request), (second, path), t)
-        }
-        _ => model.generate(&request, &arguments.request),
-    };
-    let person = match made {
-        Ok(person) => person,
+    let request = arguments.request.to_request()?;
+    let second = arguments.interpolate.as_deref().map(read_request).transpose()?;
+    let model = Model::from_environment()?;
+    let body = match arguments.body(&model, &request, second.as_ref()) {
+        Ok(body) => body,
         Err(failure) => {
-            let requests = [Some(&request), second.as_ref().map(|(request, _)| request)];
-            let refusal = requests.into_iter().flatten().find_map(|request| model.refusal(request));
+            let requests = [Some(&request), second.as_ref()];
+            let refusal = requests.into_iter().flatten().find_map(|request| refusal(&model, request));
             if let (Some(path), Some(refusal)) = (&arguments.report, refusal) {
-                backend::write_or_print(path, &(refusal + "\n"))?;
+                write_text(path, &(refusal + "\n"))?;
             }
             return Err(failure);
         }
     };
-    let mut scene = person.scene(&choice)?;
-    backend::motion::animate(&mut scene, &arguments.motion)?;
-    backend::write_scene(&scene, &arguments.output, arguments.compress)?;
+    let mut scene = Scene::from_body(&body, &arguments.scene_options())?;
+    add_clips(&mut scene, &arguments.motion)?;
+    write_scene(&scene, &arguments.output, arguments.compress)?;
+    let report = body.report();
     if let Some(path) = &arguments.report {
-        backend::write_or_print(path, &(person.report_json() + "\n"))?;
+        write_text(path, &(report.to_json() + "\n"))?;
     }
-
-    let summary = person.summary();
-    for warning in &summary.warnings {
+    for warning in &report.warnings {
         eprintln!("warning: {warning}");
     }
-    let residual = summary
-        .worst_residual_mm
-        .map(|(name, mm)| format!("measures within {mm:.3} mm ({name})"))
-        .unwrap_or_else(|| if second.is_some() { "between two" } else { "no measure given" }.to_owned());
-    eprintln!(
-        "{}: {}, {:.3} m, {:.1} kg, {residual}",
-        arguments.output.display(),
-        summary.sex,
-        summary.height,
-        summary.mass_kg
-    );
+    let fit = match worst_residual(report) {
+        Some((name, metres)) => format!("measures within {:.3} mm ({name})", metres * 1000.0),
+        None if second.is_some() => "between two".to_owned(),
+        None => "no measure given".to_owned(),
+    };
+    let height = report.measures[MeasureId::HEIGHT.index()].obtained;
+    let (output, sex, mass) = (arguments.output.display(), report.sex, report.mass_kg);
+    eprintln!("{output}: {sex}, {height:.3} m, {mass:.1} kg, {fit}");
     Ok(())
+}
+
+impl Arguments {
+    /// The body of a request, or the one between two.
+    fn body(&self, model: &Model, request: &Request, second: Option<&Request>) -> Result<Body> {
+        let (Some(second), Some(file), Some(t)) = (second, &self.interpolate, self.at) else {
+            return model.generate(request).map_err(|error| self.request.failure(&error));
+        };
+        model.interpolate(request, second, t).map_err(|error| {
+            // Whose fault it is shows when the first is made alone.
+            match model.solve(request) {
+                Ok(_) => Failure::in_file(file, &error),
+                Err(own) => self.request.failure(&own),
+            }
+        })
+    }
+
+    fn scene_options(&self) -> SceneOptions {
+        SceneOptions {
+            lod: self.lod,
+            influences: self.influences,
+            joint_names: self.joint_names,
+            skin_tone: self.skin_tone.unwrap_or_default(),
+            ..SceneOptions::default()
+        }
+    }
+}
+
+/// The JSON report of a request that is refused because nobody can have its measures; `None` for any other.
+fn refusal(model: &Model, request: &Request) -> Option<String> {
+    match model.solve(request) {
+        Err(Error::Infeasible(why)) => Some(refusal_json(request, &why)),
+        _ => None,
+    }
+}
+
+/// The given measure that the body misses by most, and by how many metres; `None` when none was given.
+fn worst_residual(report: &Report) -> Option<(&'static str, f64)> {
+    let residuals = report.measures.iter().filter_map(|m| m.residual.map(|r| (m.name, r.abs())));
+    residuals.max_by(|a, b| a.1.total_cmp(&b.1))
 }

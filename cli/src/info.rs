@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
+use anthronet::model::Model;
 use clap::Args;
 use serde_json::Value;
 
-use crate::backend::Model;
 use crate::failure::{Failure, Result};
-use crate::progress::print;
+use crate::terminal::print;
 
 /// List the measures with their ranges, the joints, and the model's version and scores.
 #[derive(Args)]
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let info = Model::open()?.info();
+    let info = Model::from_environment()?.info();
     if arguments.json {
         let json = serde_json::to_string(&info).map_err(|e| Failure::failed(e.to_string()))?;
         return print(&(json + "\n"));

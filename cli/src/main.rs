@@ -1,23 +1,25 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
-//! One file per command. `backend` is the only one that calls the library, `train` the only one that calls the
-//! trainer; `render` makes pictures; `units` reads lengths. Exit codes: 0 done, 1 failed, 2 bad usage. Files appear
-//! whole or not at all.
+//! One file per command; the others hold what commands share: `request` reads a request from the options, `motion` adds
+//! clips to a scene, `figure` and `render` make pictures, `files` and `terminal` read and write, `units` reads lengths.
+//! Exit codes: 0 done, 1 failed, 2 bad usage. Files appear whole or not at all.
 
 mod animate;
-mod backend;
 mod choice;
 mod contact_sheet;
 mod convert;
+mod evaluate;
 mod failure;
+mod figure;
+mod files;
 mod generate;
 mod info;
 mod measure;
 mod motion;
 mod preview;
-mod progress;
 mod render;
 mod request;
+mod terminal;
 mod train;
 mod units;
 

@@ -1,15 +1,22 @@
 //! Options that say how a character moves, shared by the commands that write motion.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use anthronet::retarget::FingerMode;
+use anthronet::clip::{self, BUILTIN, Clip};
+use anthronet::format::{self, ReadOptions};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::scene::Scene;
+use anthronet::skeleton::RestPose;
+use anthronet::skeleton::humanoid::{JointNames, native_name, renamed};
 use anthronet::space::{Axis, Unit};
 use clap::Args;
+use serde_json::json;
 
-use crate::backend::motion::BUILTIN;
 use crate::choice;
-use crate::failure::Failure;
-use crate::request::ending;
+use crate::failure::{Failure, Result};
+use crate::files::{self, STILL_ENDINGS, ending, read_text};
 
 /// Options of motion.
 #[derive(Args, Clone, Debug, Default)]
@@ -65,12 +72,9 @@ pub(crate) struct MotionArguments {
     pub(crate) motion_report: Option<PathBuf>,
 }
 
-/// Endings of character files that hold no motion.
-pub(crate) const STILL_ENDINGS: [&str; 2] = ["vrm", "obj"];
-
 impl MotionArguments {
     /// Refuses, before any work is done, what cannot be written.
-    pub(crate) fn check(&self, output: &Path) -> crate::failure::Result<()> {
+    pub(crate) fn check(&self, output: &Path) -> Result<()> {
         let ending = ending(output);
         if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
             let message =
@@ -123,9 +127,98 @@ impl MotionArguments {
     }
 }
 
-fn parse_rate(text: &str) -> Result<f64, String> {
+fn parse_rate(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(rate) if (1.0..=240.0).contains(&rate) => Ok(rate),
         _ => Err(format!("expected 1 to 240 frames a second, got `{text}`")),
     }
+}
+
+/// Names the joints in another vocabulary.
+pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) {
+    for joint in &mut scene.joints {
+        joint.name = renamed(&native_name(&joint.name), names).into_owned();
+    }
+}
+
+/// Adds the motions that the options ask for to the scene, and writes the report.
+pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Result<()> {
+    if arguments.clips.is_empty() {
+        return Ok(());
+    }
+    let rest = Arc::new(scene.rest_pose(|name| native_name(name).into_owned())?);
+    let mut reports = Vec::new();
+    for source in &arguments.clips {
+        let (clips, report) = load(source, &rest, arguments)?;
+        clips.into_iter().for_each(|clip| scene.add_clip(clip));
+        reports.push(report);
+    }
+    let Some(path) = &arguments.motion_report else { return Ok(()) };
+    let text = serde_json::to_string_pretty(&json!({ "motions": reports }))
+        .map_err(|e| Failure::failed(format!("--motion-report: {e}")))?;
+    files::write_text(path, &(text + "\n"))
+}
+
+/// The clips of one `--clip`, on the body, with their report.
+fn load(
+    source: &str,
+    rest: &Arc<RestPose>,
+    arguments: &MotionArguments,
+) -> Result<(Vec<Clip>, serde_json::Value)> {
+    if BUILTIN.contains(&source) {
+        let clip = clip::builtin(source, rest)?;
+        let clip = match arguments.fps {
+            Some(rate) => clip::resample(&clip, rate)?,
+            None => clip,
+        };
+        let clip = if arguments.in_place { clip::in_place(&clip)? } else { clip };
+        let report = json!({
+            "source": source,
+            "clips": [{
+                "name": clip.name(),
+                "frames": clip.frame_count(),
+                "frames_per_second": clip.frames_per_second(),
+            }],
+        });
+        return Ok((vec![clip], report));
+    }
+    let path = Path::new(source);
+    if path.extension().is_none() && !path.exists() {
+        let known = BUILTIN.join(", ");
+        return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
+    }
+    let motion = format::motion::read(path, &read_options(arguments))?;
+    for warning in &motion.report.warnings {
+        eprintln!("warning: {source}: {warning}");
+    }
+    let in_file = |error| Failure::failed(format!("{source}: {error}"));
+    let (clips, report) =
+        retarget::retarget(&motion.clips, rest, &retarget_options(arguments)?).map_err(in_file)?;
+    if !report.joints.unmatched.is_empty() {
+        let joints = report.joints.unmatched.join(", ");
+        eprintln!("note: {source}: joints that drive nothing: {joints}");
+    }
+    Ok((clips, json!({ "source": source, "file": motion.report, "onto": report })))
+}
+
+fn read_options(arguments: &MotionArguments) -> ReadOptions {
+    ReadOptions { unit: arguments.clip_unit, up: arguments.clip_up, frames_per_second: arguments.clip_fps }
+}
+
+fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
+    let mut options = RetargetOptions {
+        limits: !arguments.no_limits,
+        feet: (!arguments.no_feet).then(FeetOptions::default),
+        frames_per_second: arguments.fps,
+        in_place: arguments.in_place,
+        looped: arguments.looped,
+        ..RetargetOptions::default()
+    };
+    if let Some(path) = &arguments.mapping {
+        options.mapping = retarget::read_overrides(&read_text(path)?, path)?;
+    }
+    if let Some(fingers) = arguments.fingers {
+        options.transfer.fingers = fingers;
+    }
+    Ok(options)
 }

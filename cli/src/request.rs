@@ -1,14 +1,15 @@
 //! The options that describe a person, shared by the commands that make one.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anthronet::condition::Fill;
+use anthronet::Error;
+use anthronet::condition::{Fill, Request};
 use anthronet::measure::Sex;
 use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
+use crate::files::read_text;
 use crate::units::parse_measure;
 
 /// Options that describe a person. They go before what the request file says.
@@ -47,8 +48,50 @@ pub(crate) struct RequestArguments {
 }
 
 impl RequestArguments {
+    /// The request that the options describe: that of the file, overridden by what was typed.
+    pub(crate) fn to_request(&self) -> Result<Request> {
+        let mut request = match &self.request {
+            Some(path) => read_request(path)?,
+            None => Request::default(),
+        };
+        if let Some(sex) = self.sex {
+            request.sex = Some(sex);
+        }
+        for (name, metres) in self.sorted_measures()? {
+            request.set(name, metres).map_err(|error| match error {
+                Error::Request { .. } => Failure::usage(error.to_string()),
+                other => other.into(),
+            })?;
+        }
+        if let Some(seed) = self.seed {
+            request.seed = seed;
+        }
+        if let Some(z) = &self.z {
+            request.z = Some(z.clone());
+        }
+        if let Some(fill) = self.fill {
+            request.fill = fill;
+        }
+        request.nearest |= self.nearest;
+        Ok(request)
+    }
+
+    /// Why the request of these options failed: a field that was typed is bad usage; a field of the file, or measures
+    /// that nobody can have, is a failure.
+    pub(crate) fn failure(&self, error: &Error) -> Failure {
+        let typed = match error {
+            Error::Request { field, .. } => self.request.is_none() || self.typed(field),
+            _ => false,
+        };
+        match (error, &self.request) {
+            _ if typed => Failure::usage(error.to_string()),
+            (Error::Request { .. } | Error::Infeasible(_), Some(file)) => Failure::in_file(file, error),
+            _ => Failure::failed(error.to_string()),
+        }
+    }
+
     /// The given measures, those without a side first, so that `arm_length_left` refines `arm_length`.
-    pub(crate) fn sorted_measures(&self) -> Result<Vec<(&str, f64)>> {
+    fn sorted_measures(&self) -> Result<Vec<(&str, f64)>> {
         let mut measures: Vec<(&str, f64)> = Vec::new();
         for (name, value) in &self.measures {
             if measures.iter().any(|(known, _)| known == name) {
@@ -62,7 +105,7 @@ impl RequestArguments {
 
     /// Whether a field of the request was typed, and not read from the request's file. Sides count as one: what is
     /// typed for one may be told of both.
-    pub(crate) fn typed(&self, field: &str) -> bool {
+    fn typed(&self, field: &str) -> bool {
         fn stem(name: &str) -> &str {
             name.trim_end_matches("_left").trim_end_matches("_right")
         }
@@ -73,31 +116,9 @@ impl RequestArguments {
     }
 }
 
-/// Reads a text file of at most 16 MB.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
-    let size = fs::metadata(path).map_err(|e| Failure::io("read", path, &e))?.len();
-    if size > 16 << 20 {
-        return Err(Failure::failed(format!("{}: expected at most 16 MB, got {size} bytes", path.display())));
-    }
-    fs::read_to_string(path).map_err(|e| Failure::io("read", path, &e))
-}
-
-/// The ending of a path in lower case, without its dot; empty for none.
-pub(crate) fn ending(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
-}
-
-/// Refuses an output path whose ending is not one of these.
-pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<()> {
-    if known.contains(&ending(path).as_str()) {
-        return Ok(());
-    }
-    let known: Vec<_> = known.iter().map(|k| format!(".{k}")).collect();
-    Err(Failure::usage(format!(
-        "{option} {}: unknown ending, expected one of {}",
-        path.display(),
-        known.join(" ")
-    )))
+/// The request in a JSON file.
+pub(crate) fn read_request(path: &Path) -> Result<Request> {
+    Request::from_json(&read_text(path)?).map_err(|error| Failure::in_file(path, &error))
 }
 
 #[cfg(test)]
@@ -134,10 +155,24 @@ mod tests {
     }
 
     #[test]
-    fn endings() {
-        assert!(check_ending("-o", Path::new("a/b.GLB"), &["glb"]).is_ok());
-        for path in ["b", "b.", "glb", "b.glb.txt"] {
-            assert!(check_ending("-o", Path::new(path), &["glb"]).is_err(), "{path}");
-        }
+    fn options_override_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("r.json");
+        std::fs::write(
+            &file,
+            r#"{"sex": "male", "measures": {"height": 1.8, "arm_length": 0.33}, "seed": 3}"#,
+        )
+        .unwrap();
+        let arguments = RequestArguments {
+            request: Some(file),
+            sex: Some(Sex::Female),
+            measures: vec![("height".into(), 1.7)],
+            ..RequestArguments::default()
+        };
+        let request = arguments.to_request().unwrap();
+        assert_eq!(request.sex, Some(Sex::Female));
+        assert_eq!(request.measures[3], Some(1.7));
+        assert_eq!(request.seed, 3);
+        assert_eq!(request.given().count(), 3);
     }
 }

@@ -119,8 +119,8 @@ pub(crate) fn evaluate(arguments: &EvaluateArguments) -> Result<()> {
 fn motion(arguments: &EvaluateArguments) -> Result<()> {
     let folder = arguments.clips.as_deref().unwrap_or(Path::new("../shared/data/clips"));
     let bodies = arguments.bodies.map_or(10, |n| n as usize);
-    let table = crate::backend::motion_table::motion_table(folder, bodies)?;
-    crate::progress::print(&if arguments.json { table.to_json()? } else { table.to_text() })
+    let table = crate::evaluate::motion::motion_table(folder, bodies)?;
+    crate::terminal::print(&if arguments.json { table.to_json()? } else { table.to_text() })
 }
 
 #[cfg(not(feature = "train"))]
@@ -151,7 +151,7 @@ fn networks(arguments: &EvaluateArguments) -> Result<()> {
         _ => commands::Table::Statistics,
     };
     let text = commands::evaluate(table, arguments.json)?;
-    crate::progress::print(&text)
+    crate::terminal::print(&text)
 }
 
 #[cfg(feature = "train")]
@@ -168,7 +168,7 @@ pub(crate) fn train(arguments: &TrainArguments) -> Result<()> {
         }),
         Network::Biases => {
             let table = commands::fit_biases(Path::new("trainer/src/sampling_bias.json"))?;
-            return crate::progress::print(&table);
+            return crate::terminal::print(&table);
         }
         Network::Measures => commands::lay_measures(Path::new("model/measures.json")),
         Network::Scores => commands::rescore(),

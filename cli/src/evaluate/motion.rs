@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use super::soles::{SkinMeasure, Soles};
 use crate::failure::{Failure, Result};
-use crate::progress::bar;
+use crate::terminal::bar;
 
 /// Statures of the bodies, metres: from the first to the last in even steps.
 const STATURES: [f64; 2] = [1.49, 1.99];
@@ -109,7 +109,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     let known = ["bvh", "fbx", "npz", "glb", "gltf", "usda", "usdc", "usdz"];
     let mut files: Vec<PathBuf> = entries
         .filter_map(|entry| entry.ok().map(|e| e.path()))
-        .filter(|path| known.contains(&crate::request::ending(path).as_str()))
+        .filter(|path| known.contains(&crate::files::ending(path).as_str()))
         .collect();
     files.sort();
     if files.is_empty() {

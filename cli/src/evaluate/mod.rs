@@ -1,0 +1,4 @@
+//! Evaluation of retargeting.
+
+pub(crate) mod motion;
+mod soles;
