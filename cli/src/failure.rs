@@ -34,6 +34,14 @@ impl Failure {
         Self::Failed(format!("{}: {error}", path.display()))
     }
 
+    /// A command that needs the networks of the feature `train`, in a build without them.
+    #[cfg(not(feature = "train"))]
+    pub(crate) fn without_networks(command: &str) -> Self {
+        Self::Usage(format!(
+            "this build has no networks: run `cargo anthronet-train {command}` in the source tree"
+        ))
+    }
+
     /// 1 failed, 2 bad usage.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
@@ -54,5 +62,12 @@ impl fmt::Display for Failure {
 impl From<anthronet::Error> for Failure {
     fn from(error: anthronet::Error) -> Self {
         Self::Failed(error.to_string())
+    }
+}
+
+#[cfg(feature = "train")]
+impl From<anthronet_trainer::Error> for Failure {
+    fn from(error: anthronet_trainer::Error) -> Self {
+        Self::failed(error.to_string())
     }
 }

@@ -60,8 +60,8 @@ enum Command {
     ContactSheet(contact_sheet::Arguments),
     Animate(animate::Arguments),
     Convert(convert::Arguments),
-    Evaluate(train::EvaluateArguments),
-    Train(train::TrainArguments),
+    Evaluate(evaluate::Arguments),
+    Train(train::Arguments),
 }
 
 fn run(command: &Command) -> Result<()> {
@@ -73,8 +73,8 @@ fn run(command: &Command) -> Result<()> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),
         Command::Animate(arguments) => animate::run(arguments),
         Command::Convert(arguments) => convert::run(arguments),
-        Command::Evaluate(arguments) => train::evaluate(arguments),
-        Command::Train(arguments) => train::train(arguments),
+        Command::Evaluate(arguments) => evaluate::run(arguments),
+        Command::Train(arguments) => train::run(arguments),
     }
 }
 

@@ -23,7 +23,7 @@ const TOUCHING: f32 = 0.005;
 const STRIDE: f64 = 1.1;
 
 /// The skin of both feet at level of detail 1, with the four influences that files carry.
-pub(crate) struct Soles {
+pub(super) struct Soles {
     skinner: Skinner,
     feet: [Foot; 2],
 }
@@ -37,17 +37,17 @@ struct Foot {
 
 /// What the skin of the feet does over a clip, the worse foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SkinMeasure {
+pub(super) struct SkinMeasure {
     /// How far the lowest vertex is under the floor, metres; 0 when none is.
-    pub(crate) deepest: f32,
+    pub(super) deepest: f32,
     /// The longest way over the floor, within a stride and a contact, of the middle of the skin that stands on it, metres.
-    pub(crate) slide: f32,
+    pub(super) slide: f32,
     /// Vertices of frames that are nowhere.
-    pub(crate) not_finite: usize,
+    pub(super) not_finite: usize,
 }
 
 impl Soles {
-    pub(crate) fn of(body: &Body, rest: &RestPose) -> Result<Self> {
+    pub(super) fn of(body: &Body, rest: &RestPose) -> Result<Self> {
         let scene = Scene::from_body(body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() })?;
         let mesh = scene.meshes.first().ok_or_else(|| Failure::failed("the scene has no body"))?;
         let model = rest.model_from_joints();
@@ -96,7 +96,7 @@ impl Soles {
     }
 
     /// Measures a clip over the contacts' floor.
-    pub(crate) fn measure(&self, clip: &Clip, contacts: &Contacts) -> Result<SkinMeasure> {
+    pub(super) fn measure(&self, clip: &Clip, contacts: &Contacts) -> Result<SkinMeasure> {
         let count = self.skinner.vertex_count();
         let [mut now, mut before, mut normals] = [(); 3].map(|()| vec![[0.0; 3]; count]);
         let mut steps = contacts.feet.each_ref().map(|of_foot| vec![Vec::new(); of_foot.len()]);
@@ -128,7 +128,7 @@ impl Soles {
     }
 
     /// How many vertices are looked at, both feet.
-    pub(crate) fn vertex_count(&self) -> usize {
+    pub(super) fn vertex_count(&self) -> usize {
         self.feet.iter().map(|foot| foot.vertices.len()).sum()
     }
 }
