@@ -1,4 +1,4 @@
-//! Options that take one of a few names: the library's own types, listed with descriptions in the help.
+//! Parsers of options that take one of a few values of the library, with the descriptions that the help lists.
 
 use std::str::FromStr;
 
@@ -10,7 +10,7 @@ use anthronet::skeleton::humanoid::JointNames;
 use anthronet::space::{Axis, Unit};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// Accepts these names alone and leaves their meaning to the type.
+/// Accepts only these names; the type parses them.
 fn one_of<T>(names: impl IntoIterator<Item = PossibleValue>) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err = anthronet::Error> + Clone + Send + Sync + 'static,
@@ -25,24 +25,30 @@ pub(crate) fn sex() -> impl TypedValueParser<Value = Sex> {
 pub(crate) fn fill() -> impl TypedValueParser<Value = Fill> {
     one_of(Fill::ALL.map(|fill| {
         PossibleValue::new(fill.name()).help(match fill {
-            Fill::Mean => "With the likeliest values beside the given ones",
-            Fill::Sample => {
-                "With a draw from what is plausible beside the given ones; `--seed` chooses which"
-            }
+            Fill::Mean => "The most likely values, given the others",
+            Fill::Sample => "A random draw of plausible values, given the others; `--seed` selects it",
         })
     }))
 }
 
 pub(crate) fn joint_names() -> impl TypedValueParser<Value = JointNames> {
-    one_of(JointNames::ALL.map(|names| PossibleValue::new(names.name())))
+    one_of(JointNames::ALL.map(|names| {
+        PossibleValue::new(names.name()).help(match names {
+            JointNames::Native => "Names of the rig, such as upperarm_l",
+            JointNames::Unity => "HumanBodyBones of Unity, such as LeftUpperArm",
+            JointNames::Mixamo => "Names in files from Mixamo, such as mixamorig:LeftArm",
+            JointNames::Vrm => "Humanoid bones of VRM 1.0, such as leftUpperArm",
+            JointNames::Blender => "Names that Blender mirrors, such as upper_arm.L",
+        })
+    }))
 }
 
 pub(crate) fn fingers() -> impl TypedValueParser<Value = FingerMode> {
     one_of(FingerMode::ALL.map(|mode| {
         PossibleValue::new(mode.name()).help(match mode {
-            FingerMode::Source => "From the motion where it moves fingers, else relaxed",
-            FingerMode::Relaxed => "Hanging, slightly curled",
-            FingerMode::Rest => "Straight, as in the bind pose",
+            FingerMode::Source => "From the motion if it animates fingers, else relaxed",
+            FingerMode::Relaxed => "Slightly curled, as in hanging hands",
+            FingerMode::Rest => "Straight, as in the rest pose",
         })
     }))
 }

@@ -1,4 +1,4 @@
-//! `anthronet contact-sheet`: many different people on one picture, for judging the model by eye.
+//! `anthronet contact-sheet`: many different people in one picture, to judge the model by eye.
 
 use std::path::PathBuf;
 
@@ -19,16 +19,16 @@ use crate::files::check_ending;
 use crate::render::{Image, LitFigure, Picture, Tile, View, draw_text, text_width};
 use crate::terminal::bar;
 
-/// Directions that the light is gathered from; fewer than for a single picture, as figures are small.
+/// Number of directions that light is gathered from; fewer than for a single picture, as figures are small.
 const QUALITY: usize = 128;
-/// Pixels per metre: the same for everyone, so that heights compare.
+/// Pixels per metre: the same for everyone, so that heights can be compared.
 const SCALE: f32 = 180.0;
 /// Widths of the three views of a person, pixels; the widest of people fit.
 const VIEWS: [(View, usize); 3] = [(View::Front, 394), (View::Side, 124), (View::Back, 394)];
 /// Height of the views; the tallest of people fit.
 const FIGURE: usize = 404;
-/// What close-ups show: a joint, how far from it (metres, along the model's axes) the middle of the tile lies, from
-/// where and how much of it, metres.
+/// Close-ups: a joint, the offset of the tile's centre from it (metres, along the model's axes), the view, and the side
+/// of the square shown, metres.
 const CLOSE: [(&str, [f32; 3], View, f32); 6] = [
     ("head", [0.0, 0.06, 0.0], View::Front, 0.34),
     ("head", [0.0, 0.06, 0.0], View::Side, 0.34),
@@ -42,9 +42,9 @@ const CLOSE_SIZE: usize = 200;
 /// Height of the caption below the figures, pixels, and of a dot of its letters.
 const CAPTION: usize = 32;
 const TEXT: usize = 3;
-/// How far from the mean, in standard deviations, the shortest and tallest are asked for, and the thinnest and heaviest
-/// for their height: waists reach far up and not far down.
-const REACH: [[f64; 2]; 2] = [[-1.8, 1.8], [-1.7, 3.3]];
+/// Range of height, and of waist given the height, in standard deviations from the mean: waists vary more upwards than
+/// downwards.
+const RANGES: [[f64; 2]; 2] = [[-1.8, 1.8], [-1.7, 3.3]];
 /// Skin tones of the people in turn: from the middle of the scale outwards, so that neighbours differ.
 const TONES: [u8; 6] = [5, 4, 7, 3, 6, 8];
 /// The stream of [`Random`] that the sheet is shuffled from.
@@ -59,11 +59,11 @@ pub(crate) struct Arguments {
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 
-    /// How many people, 1 to 400.
+    /// Number of people, 1 to 400.
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(1..=400))]
     count: u16,
 
-    /// Another seed, other people.
+    /// Seed of the random people.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     close: bool,
 
-    /// People beside each other, 1 to 12.
+    /// Number of columns, 1 to 12.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=12))]
     columns: u16,
 }
@@ -79,8 +79,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &["png"])?;
     let model = Model::from_environment()?;
-    let usual = Sex::ALL.map(|sex| Usual::of(model.prior().of(sex)));
-    let people = people(usize::from(arguments.count), arguments.seed, &usual);
+    let typical = Sex::ALL.map(|sex| Typical::of(model.prior().of(sex)));
+    let people = people(usize::from(arguments.count), arguments.seed, &typical);
     let columns = usize::from(arguments.columns).min(people.len());
     let rows = people.len().div_ceil(columns);
     let [red, green, blue] = Picture::SHEET.backdrop[0];
@@ -114,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     Ok(write_atomic(&arguments.output, &sheet.to_small_png()?)?)
 }
 
-/// Width and height of what one person takes, pixels.
+/// Width and height of the cell of one person, pixels.
 fn cell(close: bool) -> [usize; 2] {
     match close {
         true => [CLOSE.len() * CLOSE_SIZE, CLOSE_SIZE + CAPTION],
@@ -141,13 +141,13 @@ fn close_ups(body: &Body) -> Vec<(Tile, usize)> {
 
 /// Mean and standard deviation (metres) of two measures of one sex, and their correlation.
 #[derive(Clone, Copy)]
-struct Usual {
+struct Typical {
     height: (f64, f64),
     waist: (f64, f64),
     correlation: f64,
 }
 
-impl Usual {
+impl Typical {
     fn of(prior: &SexPrior) -> Self {
         let [h, w] = [MeasureId::HEIGHT, MeasureId::WAIST].map(MeasureId::index);
         let mean = prior.mean();
@@ -159,11 +159,11 @@ impl Usual {
 }
 
 /// A Latin hypercube over height and waist for each sex: every stratum of either occurs once. The waist is drawn
-/// around what is usual for the height.
-fn people(count: usize, seed: u64, usual: &[Usual; 2]) -> Vec<Request> {
+/// around its mean given the height.
+fn people(count: usize, seed: u64, typical: &[Typical; 2]) -> Vec<Request> {
     let mut random = Random::new(seed, STREAM);
     let mut targets: [Vec<(f64, f64)>; 2] = [count.div_ceil(2), count / 2].map(|n| {
-        let mut columns = REACH.map(|[low, high]| {
+        let mut columns = RANGES.map(|[low, high]| {
             let mut strata: Vec<f64> =
                 (0..n).map(|i| low + (high - low) * (i as f64 + random.uniform()) / n as f64).collect();
             for i in (1..n).rev() {
@@ -178,7 +178,7 @@ fn people(count: usize, seed: u64, usual: &[Usual; 2]) -> Vec<Request> {
         .map(|i| {
             let sex = Sex::ALL[i % 2];
             let (h, w) = targets[i % 2].pop().unwrap_or_default();
-            let Usual { height, waist, correlation: rho } = usual[sex.index()];
+            let Typical { height, waist, correlation: rho } = typical[sex.index()];
             let w = rho * h + (1.0 - rho * rho).max(0.0).sqrt() * w;
             let mut request = Request {
                 sex: Some(sex),
@@ -202,11 +202,11 @@ mod tests {
 
     #[test]
     fn every_stratum_occurs_once_and_seeds_differ() {
-        let usual = [Usual { height: (0.0, 1.0), waist: (0.0, 1.0), correlation: 0.0 }; 2];
-        let sheet = people(24, 1, &usual);
+        let typical = [Typical { height: (0.0, 1.0), waist: (0.0, 1.0), correlation: 0.0 }; 2];
+        let sheet = people(24, 1, &typical);
         assert_eq!(sheet.len(), 24);
         for sex in Sex::ALL {
-            for (id, [low, high]) in [MeasureId::HEIGHT, MeasureId::WAIST].into_iter().zip(REACH) {
+            for (id, [low, high]) in [MeasureId::HEIGHT, MeasureId::WAIST].into_iter().zip(RANGES) {
                 let mut strata: Vec<i64> = sheet
                     .iter()
                     .filter(|p| p.sex == Some(sex))
@@ -217,13 +217,13 @@ mod tests {
                 assert_eq!(strata, (0..12).collect::<Vec<_>>());
             }
         }
-        let values = |seed| people(5, seed, &usual).iter().map(|p| p.measures).collect::<Vec<_>>();
+        let values = |seed| people(5, seed, &typical).iter().map(|p| p.measures).collect::<Vec<_>>();
         assert_eq!(values(3), values(3));
         assert_ne!(values(3), values(4));
     }
 
     #[test]
-    fn usual_reads_the_covariance() {
+    fn typical_reads_the_covariance() {
         let count = MeasureId::all().count();
         let [h, w] = [MeasureId::HEIGHT, MeasureId::WAIST].map(MeasureId::index);
         let mut mean = vec![1.0; count];
@@ -235,9 +235,9 @@ mod tests {
         covariance[w * count + w] = 0.04;
         (covariance[h * count + w], covariance[w * count + h]) = (0.01, 0.01);
         let quantiles = vec![0.0; count * QUANTILE_COUNT];
-        let usual = Usual::of(&SexPrior::new(&mean, &covariance, &quantiles).unwrap());
-        assert_eq!((usual.height.0, usual.waist.0), (1.7, 0.8));
-        assert!((usual.height.1 - 0.1).abs() < 1e-12 && (usual.waist.1 - 0.2).abs() < 1e-12);
-        assert!((usual.correlation - 0.5).abs() < 1e-12);
+        let typical = Typical::of(&SexPrior::new(&mean, &covariance, &quantiles).unwrap());
+        assert_eq!((typical.height.0, typical.waist.0), (1.7, 0.8));
+        assert!((typical.height.1 - 0.1).abs() < 1e-12 && (typical.waist.1 - 0.2).abs() < 1e-12);
+        assert!((typical.correlation - 0.5).abs() < 1e-12);
     }
 }

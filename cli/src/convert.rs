@@ -1,4 +1,4 @@
-//! `anthronet convert`: a character from one file format to another.
+//! `anthronet convert`: a character file in another format.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::failure::Result;
 use crate::files::{CHARACTER_ENDINGS, STILL_ENDINGS, check_ending, ending, write_scene};
 use crate::motion::rename_joints;
 
-/// Write a character file in another format, with its skin, joints, materials and motions.
+/// Convert a character file to another format, with its skin, joints, materials and clips.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet convert walking.glb walking.usdz\n  \
@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     /// The file to write; its ending chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
     output: PathBuf,
 
-    /// What the joints are called; left out, as in the input.
+    /// Naming scheme of the joints; by default that of the input.
     #[arg(long, value_parser = choice::joint_names())]
     joint_names: Option<JointNames>,
 
@@ -40,7 +40,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         rename_joints(&mut scene, names);
     }
     if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
-        eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
+        eprintln!(
+            "warning: {}: the format holds no motion, the clips are left out",
+            arguments.output.display()
+        );
         scene.clips.clear();
     }
     write_scene(&scene, &arguments.output, arguments.compress)

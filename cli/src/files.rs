@@ -1,4 +1,4 @@
-//! Files by their endings: what is read, what is written.
+//! Reading and writing of files; formats are chosen by the ending of the path.
 
 use std::fs;
 use std::path::Path;

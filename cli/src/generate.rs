@@ -19,8 +19,8 @@ use crate::request::{RequestArguments, read_request};
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
-/// Any subset of the 36 measures will do. The body has exactly the given ones; the report says how the others were
-/// filled in, with the interval that holds 90 % of such people. The same request gives the same bytes everywhere.
+/// Give any subset of the 36 measures. The body matches them exactly; the report lists how the others were filled in,
+/// with the interval that contains 90 % of such people. The same request gives the same bytes on every machine.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet generate --sex female -m height=170cm -m waist_circumference=72cm -o anna.glb\n  \
@@ -32,11 +32,11 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     request: RequestArguments,
 
-    /// A second JSON request: make the body between the two (needs --at).
+    /// A second JSON request; the body is interpolated between the two (needs --at).
     #[arg(long, value_name = "FILE", requires = "at")]
     interpolate: Option<PathBuf>,
 
-    /// Where between the two: 0 is the first, 1 the second.
+    /// Position between the two requests: 0 is the first, 1 the second.
     #[arg(long, value_name = "T", requires = "interpolate", value_parser = parse_share)]
     at: Option<f64>,
 
@@ -44,11 +44,11 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "0", value_parser = choice::lod(), help_heading = "File")]
     lod: Lod,
 
-    /// Most joints that may move a vertex: 4 works everywhere, 8 is smoother where it is read.
+    /// Maximum number of joint influences per vertex: 4 works everywhere, 8 deforms more smoothly where it is supported.
     #[arg(long, default_value = "4", value_parser = choice::influences(), help_heading = "File")]
     influences: usize,
 
-    /// What the joints are called.
+    /// Naming scheme of the joints.
     #[arg(long, default_value = "native", value_parser = choice::joint_names(), help_heading = "File")]
     joint_names: JointNames,
 
@@ -68,8 +68,8 @@ pub(crate) struct Arguments {
     #[arg(long, help_heading = "File")]
     compress: bool,
 
-    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output; also when the request is
-    /// refused because nobody can have such measures, with what conflicts.
+    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output. It is also written when the
+    /// request is refused as infeasible, and then lists the conflicting measures.
     #[arg(long, value_name = "FILE", help_heading = "File")]
     report: Option<PathBuf>,
 }
@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
     arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
-        return Err(Failure::usage("--report: expected another file than that of -o"));
+        return Err(Failure::usage("--report: expected a file other than that of -o"));
     }
     let request = arguments.request.to_request()?;
     let second = arguments.interpolate.as_deref().map(read_request).transpose()?;
@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     let fit = match worst_residual(report) {
         Some((name, metres)) => format!("measures within {:.3} mm ({name})", metres * 1000.0),
-        None if second.is_some() => "between two".to_owned(),
+        None if second.is_some() => "interpolated".to_owned(),
         None => "no measure given".to_owned(),
     };
     let height = report.measures[MeasureId::HEIGHT.index()].obtained;
@@ -130,13 +130,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 impl Arguments {
-    /// The body of a request, or the one between two.
+    /// The body of a request, or of an interpolation between two.
     fn body(&self, model: &Model, request: &Request, second: Option<&Request>) -> Result<Body> {
         let (Some(second), Some(file), Some(t)) = (second, &self.interpolate, self.at) else {
             return model.generate(request).map_err(|error| self.request.failure(&error));
         };
         model.interpolate(request, second, t).map_err(|error| {
-            // Whose fault it is shows when the first is made alone.
+            // Which of the two requests is wrong: the first if it fails alone.
             match model.solve(request) {
                 Ok(_) => Failure::in_file(file, &error),
                 Err(own) => self.request.failure(&own),
@@ -155,7 +155,7 @@ impl Arguments {
     }
 }
 
-/// The JSON report of a request that is refused because nobody can have its measures; `None` for any other.
+/// The JSON report of an infeasible request; `None` for any other.
 fn refusal(model: &Model, request: &Request) -> Option<String> {
     match model.solve(request) {
         Err(Error::Infeasible(why)) => Some(refusal_json(request, &why)),

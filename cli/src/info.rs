@@ -1,4 +1,4 @@
-//! `anthronet info`: what the measures and joints are, and which model this is.
+//! `anthronet info`: the measures, the joints and the model.
 
 use std::fmt::Write;
 
@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     print(&text(&info))
 }
 
-/// The same for people. What the object does not have is left out.
+/// The same as readable text; missing fields are skipped.
 fn text(info: &Value) -> String {
     let mut out = String::new();
     let list = |key: &str| info[key].as_array().map(Vec::as_slice).unwrap_or_default();

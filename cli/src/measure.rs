@@ -1,4 +1,4 @@
-//! `anthronet measure`: the tape over a file.
+//! `anthronet measure`: the measures of a character file.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,10 +13,10 @@ use crate::failure::{Failure, Result};
 use crate::files::{CHARACTER_ENDINGS, check_ending};
 use crate::terminal::print;
 
-/// Read all 36 measures, mass and body mass index off a character file.
+/// Measure a character file: all 36 measures, mass and body mass index.
 ///
-/// FILE is one of ours at any level of detail, or another whose body has our vertex order. The body is measured in its
-/// bind pose.
+/// FILE was made by AnthroNet, at any level of detail, or has a body with the same vertex order. The body is measured in
+/// its bind pose.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  anthronet measure anna.glb\n  anthronet measure anna.obj --json")]
 pub(crate) struct Arguments {
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What was read; metres, kilograms.
+/// The measures of a body; metres, kilograms.
 #[derive(Debug, Serialize)]
 struct Measured {
     measures: Vec<NamedValue>,

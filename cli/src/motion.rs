@@ -1,4 +1,4 @@
-//! Options that say how a character moves, shared by the commands that write motion.
+//! Clips for a character: the options, reading, retargeting and the report, shared by the commands that write motion.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,58 +22,59 @@ use crate::files::{self, STILL_ENDINGS, ending, read_text};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Motion")]
 pub(crate) struct MotionArguments {
-    /// A motion: a file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or one of the built-in idle, walk, wave, squat,
-    /// range_of_motion. May be repeated; glTF and USD keep several.
+    /// A motion file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
+    /// range_of_motion. May be repeated; glTF and USD store several clips.
     #[arg(long = "clip", value_name = "FILE|NAME")]
     pub(crate) clips: Vec<String>,
 
-    /// Length of one unit of the motion file; left out, the file says or the size of its skeleton.
+    /// Unit of length of the motion file; by default read from the file or estimated from the size of its skeleton.
     #[arg(long, value_name = "UNIT", value_parser = choice::unit())]
     pub(crate) clip_unit: Option<Unit>,
 
-    /// The axis that points up in the motion file; left out, the file says or the skeleton.
+    /// Up axis of the motion file; by default read from the file or estimated from its skeleton.
     #[arg(long, value_name = "AXIS", value_parser = choice::up_axis())]
     pub(crate) clip_up: Option<Axis>,
 
-    /// Frames per second of the motion file, instead of what it says.
+    /// Frames per second of the motion file; overrides the rate in the file.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) clip_fps: Option<f64>,
 
-    /// A JSON object {"joint of the motion": "joint of ours" or null} that goes before what is found by itself.
+    /// A JSON object {"source joint": "target joint" or null} that overrides the automatic joint mapping; null leaves
+    /// the source joint unmapped.
     #[arg(long, value_name = "FILE")]
     pub(crate) mapping: Option<PathBuf>,
 
-    /// Frames per second of the written motion; left out, those of the motion file, 30 for built-in ones.
+    /// Frames per second of the written clips; by default those of the motion file, 30 for built-in clips.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) fps: Option<f64>,
 
-    /// Where the fingers' pose comes from, for motion files [default: source].
+    /// Pose of the fingers, for motion files [default: source].
     #[arg(long, value_parser = choice::fingers())]
     pub(crate) fingers: Option<FingerMode>,
 
-    /// Stay in place: no motion over the ground.
+    /// Remove the horizontal root motion.
     #[arg(long)]
     pub(crate) in_place: bool,
 
-    /// Make the end meet the beginning; built-in motions do already.
+    /// Blend the end of the clip into its beginning, so that it loops; built-in clips already do.
     #[arg(long = "loop")]
     pub(crate) looped: bool,
 
-    /// Leave feet where the motion file puts them: they may slide and sink.
+    /// Turn off foot planting: feet may slide and sink into the floor.
     #[arg(long)]
     pub(crate) no_feet: bool,
 
-    /// Let joints turn further than people's do where the motion file does.
+    /// Turn off joint limits: joints may turn beyond the human range.
     #[arg(long)]
     pub(crate) no_limits: bool,
 
-    /// Write how the motion was read and brought onto the body as JSON, to a file or with `-` to standard output.
+    /// Write a JSON report of how the motion was read and retargeted, to a file or with `-` to standard output.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion_report: Option<PathBuf>,
 }
 
 impl MotionArguments {
-    /// Refuses, before any work is done, what cannot be written.
+    /// Refuses contradictory options before any work is done.
     pub(crate) fn check(&self, output: &Path) -> Result<()> {
         let ending = ending(output);
         if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
@@ -93,8 +94,7 @@ impl MotionArguments {
             if let Some((option, _)) = given {
                 let clips = self.clips.join(", ");
                 let message = format!(
-                    "{option}: says how a motion file comes onto a body, expected one of those with --clip, got the built-in \
-                     {clips}"
+                    "{option}: applies to motion files only, expected one with --clip, got the built-in {clips}"
                 );
                 return Err(Failure::usage(message));
             }
@@ -102,8 +102,8 @@ impl MotionArguments {
         Ok(())
     }
 
-    /// Options that mean something for motion files alone, and whether they were given. Built-in clips are made for the
-    /// body, with feet on the floor, joints within their limits and hands relaxed.
+    /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with
+    /// feet on the floor, joints within their limits and relaxed hands.
     fn of_files(&self) -> [(&'static str, bool); 7] {
         [
             ("--clip-unit", self.clip_unit.is_some()),
@@ -116,7 +116,7 @@ impl MotionArguments {
         ]
     }
 
-    /// Options that mean something for every motion; built-in clips loop already.
+    /// Options that apply to every clip; built-in clips already loop.
     fn of_all(&self) -> [(&'static str, bool); 4] {
         [
             ("--fps", self.fps.is_some()),
@@ -134,14 +134,14 @@ fn parse_rate(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-/// Names the joints in another vocabulary.
+/// Renames the joints to another naming scheme.
 pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) {
     for joint in &mut scene.joints {
         joint.name = renamed(&native_name(&joint.name), names).into_owned();
     }
 }
 
-/// Adds the motions that the options ask for to the scene, and writes the report.
+/// Adds the requested clips to the scene and writes the report.
 pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Result<()> {
     if arguments.clips.is_empty() {
         return Ok(());
@@ -159,7 +159,7 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     files::write_text(path, &(text + "\n"))
 }
 
-/// The clips of one `--clip`, on the body, with their report.
+/// The clips of one `--clip`, retargeted to the rest pose, with their report.
 fn load(
     source: &str,
     rest: &Arc<RestPose>,
@@ -196,9 +196,9 @@ fn load(
         retarget::retarget(&motion.clips, rest, &retarget_options(arguments)?).map_err(in_file)?;
     if !report.joints.unmatched.is_empty() {
         let joints = report.joints.unmatched.join(", ");
-        eprintln!("note: {source}: joints that drive nothing: {joints}");
+        eprintln!("note: {source}: unmatched joints: {joints}");
     }
-    Ok((clips, json!({ "source": source, "file": motion.report, "onto": report })))
+    Ok((clips, json!({ "source": source, "file": motion.report, "retarget": report })))
 }
 
 fn read_options(arguments: &MotionArguments) -> ReadOptions {

@@ -14,12 +14,12 @@ use crate::render::{LitFigure, View, draw_views};
 use crate::request::RequestArguments;
 use crate::units::parse_size;
 
-/// Directions that the light is gathered from.
+/// Number of directions that light is gathered from.
 const QUALITY: usize = 256;
 
 /// Draw a character from several sides into a PNG.
 ///
-/// The views stand side by side at one scale. The picture has the same bytes on every machine.
+/// The views are side by side at one scale. The picture has the same bytes on every machine.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet preview anna.glb -o anna.png\n  \
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "1600x720", value_parser = parse_size)]
     size: (usize, usize),
 
-    /// What to show, from left to right, separated by commas.
+    /// Views from left to right, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "front,side,back")]
     views: Vec<View>,
 }

@@ -12,11 +12,11 @@ use crate::failure::{Failure, Result};
 use crate::files::read_text;
 use crate::units::parse_measure;
 
-/// Options that describe a person. They go before what the request file says.
+/// Options that describe a person. They override the request file.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Person")]
 pub(crate) struct RequestArguments {
-    /// Sex of the body; left out, the measures decide.
+    /// Sex of the body; by default inferred from the measures.
     #[arg(long, value_parser = choice::sex())]
     pub(crate) sex: Option<Sex>,
 
@@ -29,26 +29,26 @@ pub(crate) struct RequestArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) request: Option<PathBuf>,
 
-    /// Which of the people with these measures: 0 is the likeliest [default: 0].
+    /// Selects one of the people with these measures; 0 is the most likely [default: 0].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
-    /// The latent vector by hand instead of by seed: as many numbers as `anthronet info` says, most people's within -3
-    /// and 3, none beyond 6.
+    /// The latent vector, instead of one drawn from the seed. `anthronet info` gives its length; values of most people
+    /// lie between -3 and 3, the limits are -6 and 6.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) z: Option<Vec<f64>>,
 
-    /// How measures that are not given are filled in [default: mean].
+    /// How missing measures are filled in [default: mean].
     #[arg(long, value_parser = choice::fill())]
     pub(crate) fill: Option<Fill>,
 
-    /// When the measures cannot belong to one person, make the nearest possible one instead of failing.
+    /// If the measures cannot belong to one person, use the nearest feasible ones instead of failing.
     #[arg(long)]
     pub(crate) nearest: bool,
 }
 
 impl RequestArguments {
-    /// The request that the options describe: that of the file, overridden by what was typed.
+    /// The request that the options describe: that of the file, overridden by typed options.
     pub(crate) fn to_request(&self) -> Result<Request> {
         let mut request = match &self.request {
             Some(path) => read_request(path)?,
@@ -76,8 +76,8 @@ impl RequestArguments {
         Ok(request)
     }
 
-    /// Why the request of these options failed: a field that was typed is bad usage; a field of the file, or measures
-    /// that nobody can have, is a failure.
+    /// The failure of this request: a wrong field that was typed is bad usage; a wrong field of the file, or infeasible
+    /// measures, are failures that name the file.
     pub(crate) fn failure(&self, error: &Error) -> Failure {
         let typed = match error {
             Error::Request { field, .. } => self.request.is_none() || self.typed(field),
@@ -103,8 +103,8 @@ impl RequestArguments {
         Ok(measures)
     }
 
-    /// Whether a field of the request was typed, and not read from the request's file. Sides count as one: what is
-    /// typed for one may be told of both.
+    /// Whether a field of the request was typed rather than read from the file. Sides count as one: a value typed for
+    /// both may be wrong on one of them.
     fn typed(&self, field: &str) -> bool {
         fn stem(name: &str) -> &str {
             name.trim_end_matches("_left").trim_end_matches("_right")

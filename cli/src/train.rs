@@ -1,5 +1,5 @@
-//! `anthronet train`: networks, trained and scored. Built only with the feature `train`; without it the command says how
-//! to get it.
+//! `anthronet train`: training and scoring of networks. Built only with the feature `train`; without it the command says
+//! how to get it.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 
 use crate::failure::Result;
 
-/// Train a network from nothing. Long; shows its progress and can be resumed.
+/// Train a network from scratch. Takes long; shows its progress and can be resumed.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  cargo anthronet-train train generator --resume\n  \
                         cargo anthronet-train train generator --plain --fourier 8 --sigma 0.03 --out /tmp/paper")]
@@ -19,27 +19,28 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 pub(crate) enum Network {
     Generator(GeneratorArguments),
-    /// Fit the middles of the sliders to the paper's mean measures: writes trainer/src/sampling_bias.json. The generator
-    /// must be trained after it.
+    /// Fit the slider centres to the paper's mean measures and write trainer/src/sampling_bias.json. The generator must
+    /// be retrained afterwards.
     Biases,
-    /// Lay the measures on the mean body anew: writes model/measures.json. The generator must be trained after it.
+    /// Define the measures on the mean body again and write model/measures.json. The generator must be retrained
+    /// afterwards.
     Measures,
-    /// Score the committed generator again and write the scores into its file.
+    /// Evaluate the committed generator again and write the scores into its file.
     Scores,
 }
 
 /// The conditional autoencoder that makes bodies from measures.
 #[derive(Args)]
 pub(crate) struct GeneratorArguments {
-    /// Go on from the last checkpoint.
+    /// Resume from the last checkpoint.
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Passes over the bodies; left out, as configured.
+    /// Number of epochs; by default as configured.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) epochs: Option<u32>,
 
-    /// Folder for the model and its checkpoints; left out, as configured.
+    /// Folder for the model and its checkpoints; by default as configured.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
@@ -47,11 +48,11 @@ pub(crate) struct GeneratorArguments {
     #[arg(long)]
     pub(crate) plain: bool,
 
-    /// Fourier components f of a measure, 0 for none; left out, as configured.
+    /// Number of Fourier features per measure, 0 for none; by default as configured.
     #[arg(long, value_name = "F")]
     pub(crate) fourier: Option<usize>,
 
-    /// Deviation σ of their frequencies, cycles per deviation of the measure; left out, as configured.
+    /// Standard deviation σ of their frequencies, cycles per standard deviation of the measure; by default as configured.
     #[arg(long, value_name = "S")]
     pub(crate) sigma: Option<f64>,
 }

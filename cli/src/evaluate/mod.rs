@@ -11,27 +11,27 @@ use clap::{Args, ValueEnum};
 use crate::failure::{Failure, Result};
 use crate::terminal::print;
 
-/// Which table to compute.
+/// The table to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Table {
-    /// Errors of the generator on bodies it was not fitted to.
+    /// Errors of the generator on bodies it was not trained on.
     Generator,
-    /// Mean, deviation, least and most of every measure over the sampled bodies.
+    /// Mean, standard deviation, minimum and maximum of every measure over the sampled bodies.
     Statistics,
-    /// How motion files come onto bodies from small to tall: directions, joint limits, feet.
+    /// Motion files retargeted to bodies from short to tall: bone directions, joint limits, feet.
     Motion,
 }
 
-/// Bodies that no network was fitted to.
+/// Bodies that no network was trained on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Split {
-    /// The bodies that scores are told on.
+    /// The bodies of the published scores.
     HeldOut,
-    /// The bodies that settings are chosen on.
+    /// The bodies that hyperparameters are chosen on.
     Validation,
 }
 
-/// Score the model against bodies it has not seen, or print the statistics of the sampled ones.
+/// Evaluate the generator on unseen bodies or retargeting on motion files, or print statistics of the sampled bodies.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --split validation --json\n  \
@@ -39,11 +39,11 @@ enum Split {
                   cargo anthronet evaluate --table motion --clips DIR"
 )]
 pub(crate) struct Arguments {
-    /// Which table.
+    /// The table to print.
     #[arg(long, default_value = "generator")]
     table: Table,
 
-    /// Which bodies the generator is scored on.
+    /// The bodies that the generator is evaluated on.
     #[arg(long, default_value = "held-out")]
     split: Split,
 
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     clips: Option<PathBuf>,
 
-    /// How many bodies; of motion, 10.
+    /// Number of bodies; 10 for the table of motion.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     bodies: Option<u32>,
 }

@@ -24,7 +24,7 @@ use crate::terminal::bar;
 /// Statures of the bodies, metres: from the first to the last in even steps.
 const STATURES: [f64; 2] = [1.49, 1.99];
 
-/// Every motion file of the folder on this many bodies.
+/// Retargets every motion file of the folder to this many bodies.
 pub(super) fn table(folder: &Path, bodies: usize) -> Result<MotionTable> {
     let files = files(folder)?;
     let bodies = bodies_of(bodies)?;

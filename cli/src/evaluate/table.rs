@@ -9,33 +9,33 @@ use serde::Serialize;
 use super::soles::SkinMeasure;
 use crate::failure::{Failure, Result};
 
-/// One clip, the worst over the bodies unless said; degrees and millimetres.
+/// One clip: maxima over the bodies unless stated otherwise; degrees and millimetres.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Row {
     clip: String,
     pub(super) frames: usize,
-    /// Joints of the motion that drive nothing.
+    /// Source joints without a target.
     pub(super) unmatched: usize,
     /// Mean over frames, limb bones and bodies.
     direction_mean_deg: f64,
     beyond_limits_deg: f64,
     beyond_limits_joint: Option<String>,
-    /// The farthest that a limb turns in one frame beyond the motion, and where.
+    /// The largest rotation of a limb in one frame beyond that of the motion, and where.
     jump_deg: f64,
     jump_at: Option<String>,
     /// Contacts of both feet, mean over the bodies.
     contacts: f64,
-    /// The longest way of the skin that stands on the floor within one contact, before and after feet were held.
+    /// The longest slide of the skin on the floor within a stride and a contact, before and after foot planting.
     slide_before_mm: f64,
     slide_mm: f64,
-    /// The lowest vertex of a foot, under the floor.
+    /// Depth of the lowest vertex of a foot under the floor.
     under_floor_before_mm: f64,
     under_floor_mm: f64,
-    /// Vertices of frames that are nowhere.
+    /// Vertices with coordinates that are not finite, over all frames.
     not_finite: usize,
 }
 
-/// The table, and the worst of all clips.
+/// The table, and the maxima over all clips.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MotionTable {
     bodies: usize,
@@ -47,7 +47,7 @@ pub(super) struct MotionTable {
     slide_mm: f64,
     under_floor_mm: f64,
     not_finite: usize,
-    /// Vertices of both feet that are looked at, level of detail 1.
+    /// Number of measured vertices of both feet, level of detail 1.
     foot_vertices: usize,
     rows: Vec<Row>,
 }
@@ -72,7 +72,7 @@ impl Row {
         }
     }
 
-    /// Adds one clip on one body, which counts as this share of the mean.
+    /// Adds one clip on one body; `share` is its weight in the means.
     pub(super) fn add_quality(&mut self, quality: &ClipReport, share: f64) {
         self.frames = self.frames.max(quality.frames);
         self.direction_mean_deg += share * quality.direction.mean();
@@ -128,11 +128,11 @@ impl MotionTable {
         }
     }
 
-    /// As text, the worst over the bodies.
+    /// As text.
     pub(super) fn to_text(&self) -> String {
         let mut out = format!(
-            "{} clips on {} bodies; the worst over the bodies, in brackets before feet were held; feet measured on {} vertices \
-             of the skin\n",
+            "{} clips on {} bodies; maxima over the bodies, in brackets before foot planting; feet measured on {} vertices of \
+             the skin\n",
             self.clips, self.bodies, self.foot_vertices
         );
         let _ = writeln!(
@@ -144,7 +144,7 @@ impl MotionTable {
             "beyond limits",
             "jump in one frame",
             "contacts",
-            "slide a stride",
+            "slide per stride",
             "under the floor"
         );
         for r in &self.rows {
@@ -169,7 +169,7 @@ impl MotionTable {
         let _ = writeln!(
             out,
             "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; jump in one frame \
-             {:.1} °; slide a stride {:.1} mm; under the floor {:.1} mm; {} vertices not finite",
+             {:.1} °; slide per stride {:.1} mm; under the floor {:.1} mm; {} vertices not finite",
             self.direction_mean_deg,
             self.direction_worst_clip_mean_deg,
             self.beyond_limits_deg,
