@@ -1,26 +1,27 @@
-//! `anthronet animate`: a character file of ours, with motion.
+//! `anthronet animate`: clips for an existing character file.
 
 use std::path::PathBuf;
 
+use anthronet::format::open_scene;
+use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
-use crate::backend;
+use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
-use crate::motion::MotionArguments;
-use crate::request::check_ending;
+use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene};
+use crate::motion::{MotionArguments, add_clips, rename_joints};
 
-/// Put motion onto a character that `anthronet generate` made.
+/// Add clips to a character that `anthronet generate` made.
 ///
-/// The motion may come from any skeleton of a person: joints are matched by their names, or by where they are when
-/// the names are unknown. Motions that the file holds already stay.
+/// The motion may come from any humanoid skeleton: joints are matched by name, or by position when the names are
+/// unknown. Clips that the file already has are kept.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet animate anna.glb --clip walk -o walking.glb\n  \
     anthronet animate anna.glb --clip dance.bvh --clip wave.fbx --fps 24 -o moves.usdc\n  \
     anthronet animate anna.glb --clip run.bvh --in-place --loop --motion-report - -o run.glb")]
 pub(crate) struct Arguments {
-    /// The character: a .glb or .gltf, or a .usda, .usdc or .usdz, with our skeleton.
+    /// The character: a .glb, .gltf, .usda, .usdc or .usdz with AnthroNet's skeleton.
     input: PathBuf,
 
     #[command(flatten)]
@@ -30,9 +31,9 @@ pub(crate) struct Arguments {
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 
-    /// What the joints are called; left out, as in the input.
-    #[arg(long)]
-    joint_names: Option<JointNamesChoice>,
+    /// Naming scheme of the joints; by default that of the input.
+    #[arg(long, value_parser = choice::joint_names())]
+    joint_names: Option<JointNames>,
 
     /// Write a .glb or .gltf with EXT_meshopt_compression.
     #[arg(long)]
@@ -43,12 +44,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
     arguments.motion.check(&arguments.output)?;
     if arguments.motion.clips.is_empty() {
-        return Err(Failure::usage("--clip: expected at least one motion, got none"));
+        return Err(Failure::usage("--clip: expected at least one clip, got none"));
     }
-    let mut scene = backend::motion::open(&arguments.input)?;
+    let mut scene = open_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        backend::motion::rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names);
     }
-    backend::motion::animate(&mut scene, &arguments.motion)?;
-    backend::write_scene(&scene, &arguments.output, arguments.compress)
+    add_clips(&mut scene, &arguments.motion)?;
+    write_scene(&scene, &arguments.output, arguments.compress)
 }

@@ -1,16 +1,17 @@
-//! `anthronet convert`: a character from one file format to another.
+//! `anthronet convert`: a character file in another format.
 
 use std::path::PathBuf;
 
+use anthronet::format::open_scene;
+use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
-use crate::backend;
+use crate::choice;
 use crate::failure::Result;
-use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
-use crate::motion::STILL_ENDINGS;
-use crate::request::{check_ending, ending};
+use crate::files::{CHARACTER_ENDINGS, STILL_ENDINGS, check_ending, ending, write_scene};
+use crate::motion::rename_joints;
 
-/// Write a character file in another format, with its skin, joints, materials and motions.
+/// Convert a character file to another format, with its skin, joints, materials and clips.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet convert walking.glb walking.usdz\n  \
@@ -23,9 +24,9 @@ pub(crate) struct Arguments {
     /// The file to write; its ending chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
     output: PathBuf,
 
-    /// What the joints are called; left out, as in the input.
-    #[arg(long)]
-    joint_names: Option<JointNamesChoice>,
+    /// Naming scheme of the joints; by default that of the input.
+    #[arg(long, value_parser = choice::joint_names())]
+    joint_names: Option<JointNames>,
 
     /// Write a .glb or .gltf with EXT_meshopt_compression.
     #[arg(long)]
@@ -34,13 +35,16 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("OUTPUT", &arguments.output, &CHARACTER_ENDINGS)?;
-    let mut scene = backend::motion::open(&arguments.input)?;
+    let mut scene = open_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        backend::motion::rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names);
     }
     if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
-        eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
+        eprintln!(
+            "warning: {}: the format holds no motion, the clips are left out",
+            arguments.output.display()
+        );
         scene.clips.clear();
     }
-    backend::write_scene(&scene, &arguments.output, arguments.compress)
+    write_scene(&scene, &arguments.output, arguments.compress)
 }

@@ -1,4 +1,4 @@
-//! Why the command ends without doing its work, and with which exit code.
+//! Errors of the command and their exit codes.
 
 use std::fmt;
 use std::path::Path;
@@ -6,12 +6,12 @@ use std::path::Path;
 /// What the command's fallible functions return.
 pub(crate) type Result<T> = std::result::Result<T, Failure>;
 
-/// A reason to stop.
+/// Why the command failed.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The command line asks for something that does not exist or contradicts itself: exit code 2.
+    /// The command line is wrong or contradicts itself: exit code 2.
     Usage(String),
-    /// The work was understood and could not be done: exit code 1.
+    /// The work could not be done: exit code 1.
     Failed(String),
 }
 
@@ -29,9 +29,17 @@ impl Failure {
         Self::Failed(format!("{}: cannot {action}: {error}", path.display()))
     }
 
-    /// Something wrong in a file, by its name.
+    /// An error in a file, with its path.
     pub(crate) fn in_file(path: &Path, error: &impl fmt::Display) -> Self {
         Self::Failed(format!("{}: {error}", path.display()))
+    }
+
+    /// A command that needs the networks of the feature `train`, in a build without them.
+    #[cfg(not(feature = "train"))]
+    pub(crate) fn without_networks(command: &str) -> Self {
+        Self::Usage(format!(
+            "this build has no networks: run `cargo anthronet-train {command}` in the source tree"
+        ))
     }
 
     /// 1 failed, 2 bad usage.
@@ -54,5 +62,12 @@ impl fmt::Display for Failure {
 impl From<anthronet::Error> for Failure {
     fn from(error: anthronet::Error) -> Self {
         Self::Failed(error.to_string())
+    }
+}
+
+#[cfg(feature = "train")]
+impl From<anthronet_trainer::Error> for Failure {
+    fn from(error: anthronet_trainer::Error) -> Self {
+        Self::failed(error.to_string())
     }
 }

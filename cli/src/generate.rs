@@ -2,30 +2,25 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use anthronet::condition::{Report, Request, refusal_json};
+use anthronet::measure::MeasureId;
+use anthronet::mesh::Lod;
+use anthronet::model::Model;
+use anthronet::scene::{Scene, SceneOptions, SkinTone};
+use anthronet::skeleton::humanoid::JointNames;
+use anthronet::{Body, Error};
+use clap::Args;
 
-use crate::backend::{self, Model};
+use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::motion::MotionArguments;
-use crate::request::{RequestArguments, check_ending};
-
-/// Endings of the files that hold a character.
-pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
-
-/// What the file's joints are called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum JointNamesChoice {
-    Native,
-    Unity,
-    Mixamo,
-    Vrm,
-    Blender,
-}
+use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene, write_text};
+use crate::motion::{MotionArguments, add_clips};
+use crate::request::{RequestArguments, read_request};
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
-/// Any subset of the measures will do. The body has exactly the given ones; the report says how the others were
-/// filled in, with the interval that holds 90 % of such people. The same request gives the same bytes everywhere.
+/// Give any subset of the measures. The body matches them exactly; the report lists how the others were filled in,
+/// with the interval that contains 90 % of such people. The same request gives the same bytes on every machine.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet generate --sex female -m height=170cm -m waist_circumference=72cm -o anna.glb\n  \
@@ -37,29 +32,29 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     request: RequestArguments,
 
-    /// A second JSON request: make the body between the two (needs --at).
+    /// A second JSON request; the body is interpolated between the two (needs --at).
     #[arg(long, value_name = "FILE", requires = "at")]
     interpolate: Option<PathBuf>,
 
-    /// Where between the two: 0 is the first, 1 the second.
+    /// Position between the two requests: 0 is the first, 1 the second.
     #[arg(long, value_name = "T", requires = "interpolate", value_parser = parse_share)]
     at: Option<f64>,
 
     /// Level of detail: 0 has 53,514 vertices, 1 has 13,380, 2 about a quarter of that, 3 a sixteenth.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=3), help_heading = "File")]
-    lod: u8,
+    #[arg(long, default_value = "0", value_parser = choice::lod(), help_heading = "File")]
+    lod: Lod,
 
-    /// Most joints that may move a vertex: 4 works everywhere, 8 is smoother where it is read.
-    #[arg(long, default_value = "4", value_parser = ["4", "8"], help_heading = "File")]
-    influences: String,
+    /// Maximum number of joint influences per vertex: 4 works everywhere, 8 deforms more smoothly where it is supported.
+    #[arg(long, default_value = "4", value_parser = choice::influences(), help_heading = "File")]
+    influences: usize,
 
-    /// What the joints are called.
-    #[arg(long, default_value = "native", help_heading = "File")]
-    joint_names: JointNamesChoice,
+    /// Naming scheme of the joints.
+    #[arg(long, default_value = "native", value_parser = choice::joint_names(), help_heading = "File")]
+    joint_names: JointNames,
 
     /// Skin colour: 1 (light) to 10 (dark) on the Monk scale, or #rrggbb.
-    #[arg(long, value_name = "TONE", help_heading = "File")]
-    skin_tone: Option<String>,
+    #[arg(long, value_name = "TONE", value_parser = parse_skin_tone, help_heading = "File")]
+    skin_tone: Option<SkinTone>,
 
     #[command(flatten)]
     motion: MotionArguments,
@@ -73,18 +68,10 @@ pub(crate) struct Arguments {
     #[arg(long, help_heading = "File")]
     compress: bool,
 
-    /// Write the report of all measures as JSON, to a file or with `-` to standard output; also when the request is
-    /// refused because nobody can have such measures, with what conflicts.
+    /// Write the report of all measures as JSON, to a file or with `-` to standard output. It is also written when the
+    /// request is refused as infeasible, and then lists the conflicting measures.
     #[arg(long, value_name = "FILE", help_heading = "File")]
     report: Option<PathBuf>,
-}
-
-/// How the file is to be.
-pub(crate) struct FileChoice<'a> {
-    pub(crate) lod: u8,
-    pub(crate) influences: usize,
-    pub(crate) joint_names: JointNamesChoice,
-    pub(crate) skin_tone: Option<&'a str>,
 }
 
 fn parse_share(text: &str) -> std::result::Result<f64, String> {
@@ -94,64 +81,90 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, String> {
+    text.parse().map_err(|error| match error {
+        Error::Request { message, .. } => message,
+        other => other.to_string(),
+    })
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
     arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
-        return Err(Failure::usage("--report: expected another file than that of -o"));
+        return Err(Failure::usage("--report: expected a file other than that of -o"));
     }
-    let choice = FileChoice {
-        lod: arguments.lod,
-        influences: if arguments.influences == "8" { 8 } else { 4 },
-        joint_names: arguments.joint_names,
-        skin_tone: arguments.skin_tone.as_deref(),
-    };
-    backend::check_choice(&choice)?;
-    let request = backend::request(&arguments.request)?;
-    let second = match arguments.interpolate.as_deref() {
-        Some(path) => Some((backend::request_file(path)?, path)),
-        None => None,
-    };
-
-    let model = Model::open()?;
-    let made = match (&second, arguments.at) {
-        (Some((second, path)), Some(t)) => {
-            model.interpolate((&request, &arguments.request), (second, path), t)
-        }
-        _ => model.generate(&request, &arguments.request),
-    };
-    let person = match made {
-        Ok(person) => person,
+    let request = arguments.request.to_request()?;
+    let second = arguments.interpolate.as_deref().map(read_request).transpose()?;
+    let model = Model::from_environment()?;
+    let body = match arguments.body(&model, &request, second.as_ref()) {
+        Ok(body) => body,
         Err(failure) => {
-            let requests = [Some(&request), second.as_ref().map(|(request, _)| request)];
-            let refusal = requests.into_iter().flatten().find_map(|request| model.refusal(request));
+            let requests = [Some(&request), second.as_ref()];
+            let refusal = requests.into_iter().flatten().find_map(|request| refusal(&model, request));
             if let (Some(path), Some(refusal)) = (&arguments.report, refusal) {
-                backend::write_or_print(path, &(refusal + "\n"))?;
+                write_text(path, &(refusal + "\n"))?;
             }
             return Err(failure);
         }
     };
-    let mut scene = person.scene(&choice)?;
-    backend::motion::animate(&mut scene, &arguments.motion)?;
-    backend::write_scene(&scene, &arguments.output, arguments.compress)?;
+    let mut scene = Scene::from_body(&body, &arguments.scene_options())?;
+    add_clips(&mut scene, &arguments.motion)?;
+    write_scene(&scene, &arguments.output, arguments.compress)?;
+    let report = body.report();
     if let Some(path) = &arguments.report {
-        backend::write_or_print(path, &(person.report_json() + "\n"))?;
+        write_text(path, &(report.to_json() + "\n"))?;
     }
-
-    let summary = person.summary();
-    for warning in &summary.warnings {
+    for warning in &report.warnings {
         eprintln!("warning: {warning}");
     }
-    let residual = summary
-        .worst_residual_mm
-        .map(|(name, mm)| format!("measures within {mm:.3} mm ({name})"))
-        .unwrap_or_else(|| if second.is_some() { "between two" } else { "no measure given" }.to_owned());
-    eprintln!(
-        "{}: {}, {:.3} m, {:.1} kg, {residual}",
-        arguments.output.display(),
-        summary.sex,
-        summary.height,
-        summary.mass_kg
-    );
+    let fit = match worst_residual(report) {
+        Some((name, metres)) => format!("measures within {:.3} mm ({name})", metres * 1000.0),
+        None if second.is_some() => "interpolated".to_owned(),
+        None => "no measure given".to_owned(),
+    };
+    let height = report.measures[MeasureId::HEIGHT.index()].obtained;
+    let (output, sex, mass) = (arguments.output.display(), report.sex, report.mass_kg);
+    eprintln!("{output}: {sex}, {height:.3} m, {mass:.1} kg, {fit}");
     Ok(())
+}
+
+impl Arguments {
+    /// The body of a request, or of an interpolation between two.
+    fn body(&self, model: &Model, request: &Request, second: Option<&Request>) -> Result<Body> {
+        let (Some(second), Some(file), Some(t)) = (second, &self.interpolate, self.at) else {
+            return model.generate(request).map_err(|error| self.request.failure(&error));
+        };
+        model.interpolate(request, second, t).map_err(|error| {
+            // Which of the two requests is wrong: the first if it fails alone.
+            match model.solve(request) {
+                Ok(_) => Failure::in_file(file, &error),
+                Err(own) => self.request.failure(&own),
+            }
+        })
+    }
+
+    fn scene_options(&self) -> SceneOptions {
+        SceneOptions {
+            lod: self.lod,
+            influences: self.influences,
+            joint_names: self.joint_names,
+            skin_tone: self.skin_tone.unwrap_or_default(),
+            ..SceneOptions::default()
+        }
+    }
+}
+
+/// The JSON report of an infeasible request; `None` for any other.
+fn refusal(model: &Model, request: &Request) -> Option<String> {
+    match model.solve(request) {
+        Err(Error::Infeasible(why)) => Some(refusal_json(request, &why)),
+        _ => None,
+    }
+}
+
+/// The given measure that the body misses by most, and by how many metres; `None` when none was given.
+fn worst_residual(report: &Report) -> Option<(&'static str, f64)> {
+    let residuals = report.measures.iter().filter_map(|m| m.residual.map(|r| (m.name, r.abs())));
+    residuals.max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -1,13 +1,13 @@
-//! `anthronet info`: what the measures and joints are, and which model this is.
+//! `anthronet info`: the measures, the joints and the model.
 
 use std::fmt::Write;
 
+use anthronet::model::Model;
 use clap::Args;
 use serde_json::Value;
 
-use crate::backend::Model;
 use crate::failure::{Failure, Result};
-use crate::progress::print;
+use crate::terminal::print;
 
 /// List the measures with their ranges, the joints, and the model's version and scores.
 #[derive(Args)]
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    let info = Model::open()?.info();
+    let info = Model::from_environment()?.info();
     if arguments.json {
         let json = serde_json::to_string(&info).map_err(|e| Failure::failed(e.to_string()))?;
         return print(&(json + "\n"));
@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     print(&text(&info))
 }
 
-/// The same for people. What the object does not have is left out.
+/// The same as readable text; missing fields are skipped.
 fn text(info: &Value) -> String {
     let mut out = String::new();
     let list = |key: &str| info[key].as_array().map(Vec::as_slice).unwrap_or_default();

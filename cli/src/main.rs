@@ -1,22 +1,25 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
-//! One file per command. `backend` is the only one that calls the library, `train` the only one that calls the
-//! trainer; `render` makes pictures; `units` reads lengths. Exit codes: 0 done, 1 failed, 2 bad usage. Files appear
-//! whole or not at all.
+//! One file per command; the others hold what commands share: `request` reads a request from the options, `motion` adds
+//! clips to a scene, `figure` and `render` make pictures, `files` and `terminal` read and write, `units` reads lengths.
+//! Exit codes: 0 done, 1 failed, 2 bad usage. Files appear whole or not at all.
 
 mod animate;
-mod backend;
+mod choice;
 mod contact_sheet;
 mod convert;
+mod evaluate;
 mod failure;
+mod figure;
+mod files;
 mod generate;
 mod info;
 mod measure;
 mod motion;
 mod preview;
-mod progress;
 mod render;
 mod request;
+mod terminal;
 mod train;
 mod units;
 
@@ -29,8 +32,8 @@ use crate::failure::Result;
 /// Type tape measures, get a person: rigged, skinned, ready for Blender, Unity or the web.
 ///
 /// Lengths are metres unless a unit follows: 1.7, 170cm, 1700mm, 67in, 5ft7in. `anthronet info` lists the
-/// measures; one without its side, such as arm_length, sets both sides. What is not given is filled in from what is
-/// likely beside it.
+/// measures; one without its side, such as arm_length, sets both sides. Measures that are not given are predicted from
+/// those that are.
 #[derive(Parser)]
 #[command(
     name = "anthronet",
@@ -57,8 +60,8 @@ enum Command {
     ContactSheet(contact_sheet::Arguments),
     Animate(animate::Arguments),
     Convert(convert::Arguments),
-    Evaluate(train::EvaluateArguments),
-    Train(train::TrainArguments),
+    Evaluate(evaluate::Arguments),
+    Train(train::Arguments),
 }
 
 fn run(command: &Command) -> Result<()> {
@@ -70,8 +73,8 @@ fn run(command: &Command) -> Result<()> {
         Command::ContactSheet(arguments) => contact_sheet::run(arguments),
         Command::Animate(arguments) => animate::run(arguments),
         Command::Convert(arguments) => convert::run(arguments),
-        Command::Evaluate(arguments) => train::evaluate(arguments),
-        Command::Train(arguments) => train::train(arguments),
+        Command::Evaluate(arguments) => evaluate::run(arguments),
+        Command::Train(arguments) => train::run(arguments),
     }
 }
 

@@ -1,21 +1,22 @@
-//! `anthronet measure`: the tape over a file.
+//! `anthronet measure`: the measures of a character file.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use anthronet::format::measure_file;
+use anthronet::measure::{Mass, MeasureId};
+use anthronet::model::Model;
 use clap::Args;
 use serde::Serialize;
 
-use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
-use crate::generate::CHARACTER_ENDINGS;
-use crate::progress::print;
-use crate::request::ending;
+use crate::files::{CHARACTER_ENDINGS, check_ending};
+use crate::terminal::print;
 
-/// Read all measures, mass and body mass index off a character file.
+/// Measure a character file: all measures, mass and body mass index.
 ///
-/// FILE is one of ours at any level of detail, or another whose body has our vertex order. The body is measured in its
-/// bind pose.
+/// FILE was made by AnthroNet, at any level of detail, or has a body with the same vertex order. The body is measured in
+/// its bind pose.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  anthronet measure anna.glb\n  anthronet measure anna.obj --json")]
 pub(crate) struct Arguments {
@@ -27,30 +28,36 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What was read; metres, kilograms.
+/// The measures of a body; metres, kilograms.
 #[derive(Debug, Serialize)]
-pub(crate) struct Measured {
-    pub(crate) measures: Vec<NamedValue>,
-    pub(crate) mass_kg: f64,
-    pub(crate) volume_m3: f64,
-    pub(crate) bmi: f64,
+struct Measured {
+    measures: Vec<NamedValue>,
+    mass_kg: f64,
+    volume_m3: f64,
+    bmi: f64,
+}
+
+impl Measured {
+    /// Measures the body of a file: its first mesh, at any level of detail.
+    fn of_file(model: &Model, path: &Path) -> Result<Self> {
+        let file = measure_file(model, path)?;
+        let Mass { volume_m3, mass_kg, bmi } = file.mass;
+        let named = MeasureId::all().zip(file.measurements);
+        let measures = named.map(|(id, value)| NamedValue { name: id.name(), value }).collect();
+        Ok(Self { measures, mass_kg, volume_m3, bmi })
+    }
 }
 
 /// One measure and its value in metres.
 #[derive(Debug, Serialize)]
-pub(crate) struct NamedValue {
-    pub(crate) name: &'static str,
-    pub(crate) value: f64,
+struct NamedValue {
+    name: &'static str,
+    value: f64,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    if !CHARACTER_ENDINGS.contains(&ending(&arguments.file).as_str()) {
-        let file = arguments.file.display();
-        return Err(Failure::usage(format!(
-            "{file}: unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"
-        )));
-    }
-    let measured = backend::measure_file(&Model::open()?, &arguments.file)?;
+    check_ending("", &arguments.file, &CHARACTER_ENDINGS)?;
+    let measured = Measured::of_file(&Model::from_environment()?, &arguments.file)?;
     if arguments.json {
         let json = serde_json::to_string_pretty(&measured).map_err(|e| Failure::failed(e.to_string()))?;
         return print(&(json + "\n"));

@@ -1,104 +1,81 @@
-//! Options that say how a character moves, shared by the commands that write motion.
+//! Clips for a character: the options, reading, retargeting and the report, shared by the commands that write motion.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use clap::{Args, ValueEnum};
+use anthronet::clip::{self, BUILTIN, Clip};
+use anthronet::format::{self, ReadOptions};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::scene::Scene;
+use anthronet::skeleton::Skeleton;
+use anthronet::skeleton::humanoid::{JointNames, native_name, renamed};
+use anthronet::space::{Axis, Unit};
+use clap::Args;
+use serde_json::json;
 
-use crate::backend::motion::BUILTIN;
-use crate::failure::Failure;
-use crate::request::ending;
-
-/// Length of one unit of a motion file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum UnitChoice {
-    /// Metres.
-    M,
-    /// Centimetres.
-    Cm,
-    /// Millimetres.
-    Mm,
-    /// Inches.
-    In,
-}
-
-/// The axis that points up in a motion file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum UpChoice {
-    Y,
-    Z,
-}
-
-/// Where the fingers' pose comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FingersChoice {
-    /// From the motion where it moves fingers, else relaxed.
-    Source,
-    /// Hanging, slightly curled.
-    Relaxed,
-    /// Straight, as in the bind pose.
-    Rest,
-}
+use crate::choice;
+use crate::failure::{Failure, Result};
+use crate::files::{self, STILL_ENDINGS, ending, read_text};
 
 /// Options of motion.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Motion")]
 pub(crate) struct MotionArguments {
-    /// A motion: a file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or one of the built-in idle, walk, wave, squat,
-    /// range_of_motion. May be repeated; glTF and USD keep several.
+    /// A motion file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
+    /// range_of_motion. May be repeated; glTF and USD store several clips.
     #[arg(long = "clip", value_name = "FILE|NAME")]
     pub(crate) clips: Vec<String>,
 
-    /// Length of one unit of the motion file; left out, the file says or the size of its skeleton.
-    #[arg(long, value_name = "UNIT")]
-    pub(crate) clip_unit: Option<UnitChoice>,
+    /// Unit of length of the motion file; by default read from the file or estimated from the size of its skeleton.
+    #[arg(long, value_name = "UNIT", value_parser = choice::unit())]
+    pub(crate) clip_unit: Option<Unit>,
 
-    /// The axis that points up in the motion file; left out, the file says or the skeleton.
-    #[arg(long, value_name = "AXIS")]
-    pub(crate) clip_up: Option<UpChoice>,
+    /// Up axis of the motion file; by default read from the file or estimated from its skeleton.
+    #[arg(long, value_name = "AXIS", value_parser = choice::up_axis())]
+    pub(crate) clip_up: Option<Axis>,
 
-    /// Frames per second of the motion file, instead of what it says.
+    /// Frames per second of the motion file; overrides the rate in the file.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) clip_fps: Option<f64>,
 
-    /// A JSON object {"joint of the motion": "joint of ours" or null} that goes before what is found by itself.
+    /// A JSON object {"source joint": "target joint" or null} that overrides the automatic joint mapping; null leaves
+    /// the source joint unmapped.
     #[arg(long, value_name = "FILE")]
     pub(crate) mapping: Option<PathBuf>,
 
-    /// Frames per second of the written motion; left out, those of the motion file, 30 for built-in ones.
+    /// Frames per second of the written clips; by default those of the motion file, 30 for built-in clips.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) fps: Option<f64>,
 
-    /// Where the fingers' pose comes from, for motion files [default: source].
-    #[arg(long)]
-    pub(crate) fingers: Option<FingersChoice>,
+    /// Pose of the fingers, for motion files [default: source].
+    #[arg(long, value_parser = choice::fingers())]
+    pub(crate) fingers: Option<FingerMode>,
 
-    /// Stay in place: no motion over the ground.
+    /// Remove the horizontal root motion.
     #[arg(long)]
     pub(crate) in_place: bool,
 
-    /// Make the end meet the beginning; built-in motions do already.
+    /// Blend the end of the clip into its beginning, so that it loops; built-in clips already do.
     #[arg(long = "loop")]
     pub(crate) looped: bool,
 
-    /// Leave feet where the motion file puts them: they may slide and sink.
+    /// Turn off foot planting: feet may slide and sink into the floor.
     #[arg(long)]
     pub(crate) no_feet: bool,
 
-    /// Let joints turn further than people's do where the motion file does.
+    /// Turn off joint limits: joints may turn beyond the human range.
     #[arg(long)]
     pub(crate) no_limits: bool,
 
-    /// Write how the motion was read and brought onto the body as JSON, to a file or with `-` to standard output.
+    /// Write a JSON report of how the motion was read and retargeted, to a file or with `-` to standard output.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion_report: Option<PathBuf>,
 }
 
-/// Endings of character files that hold no motion.
-pub(crate) const STILL_ENDINGS: [&str; 2] = ["vrm", "obj"];
-
 impl MotionArguments {
-    /// Refuses, before any work is done, what cannot be written.
-    pub(crate) fn check(&self, output: &Path) -> crate::failure::Result<()> {
+    /// Refuses contradictory options before any work is done.
+    pub(crate) fn check(&self, output: &Path) -> Result<()> {
         let ending = ending(output);
         if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
             let message =
@@ -117,8 +94,7 @@ impl MotionArguments {
             if let Some((option, _)) = given {
                 let clips = self.clips.join(", ");
                 let message = format!(
-                    "{option}: says how a motion file comes onto a body, expected one of those with --clip, got the built-in \
-                     {clips}"
+                    "{option}: applies to motion files only, expected one with --clip, got the built-in {clips}"
                 );
                 return Err(Failure::usage(message));
             }
@@ -126,8 +102,8 @@ impl MotionArguments {
         Ok(())
     }
 
-    /// Options that mean something for motion files alone, and whether they were given. Built-in clips are made for the
-    /// body, with feet on the floor, joints within their limits and hands relaxed.
+    /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with
+    /// feet on the floor, joints within their limits and relaxed hands.
     fn of_files(&self) -> [(&'static str, bool); 7] {
         [
             ("--clip-unit", self.clip_unit.is_some()),
@@ -140,7 +116,7 @@ impl MotionArguments {
         ]
     }
 
-    /// Options that mean something for every motion; built-in clips loop already.
+    /// Options that apply to every clip; built-in clips already loop.
     fn of_all(&self) -> [(&'static str, bool); 4] {
         [
             ("--fps", self.fps.is_some()),
@@ -151,9 +127,98 @@ impl MotionArguments {
     }
 }
 
-fn parse_rate(text: &str) -> Result<f64, String> {
+fn parse_rate(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(rate) if (1.0..=240.0).contains(&rate) => Ok(rate),
         _ => Err(format!("expected 1 to 240 frames a second, got `{text}`")),
     }
+}
+
+/// Renames the joints to another naming scheme.
+pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) {
+    for joint in &mut scene.joints {
+        joint.name = renamed(&native_name(&joint.name), names).into_owned();
+    }
+}
+
+/// Adds the requested clips to the scene and writes the report.
+pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Result<()> {
+    if arguments.clips.is_empty() {
+        return Ok(());
+    }
+    let rest = Arc::new(scene.skeleton(|name| native_name(name).into_owned())?);
+    let mut reports = Vec::new();
+    for source in &arguments.clips {
+        let (clips, report) = load(source, &rest, arguments)?;
+        clips.into_iter().for_each(|clip| scene.add_clip(clip));
+        reports.push(report);
+    }
+    let Some(path) = &arguments.motion_report else { return Ok(()) };
+    let text = serde_json::to_string_pretty(&json!({ "motions": reports }))
+        .map_err(|e| Failure::failed(format!("--motion-report: {e}")))?;
+    files::write_text(path, &(text + "\n"))
+}
+
+/// The clips of one `--clip`, retargeted to the rest pose, with their report.
+fn load(
+    source: &str,
+    rest: &Arc<Skeleton>,
+    arguments: &MotionArguments,
+) -> Result<(Vec<Clip>, serde_json::Value)> {
+    if BUILTIN.contains(&source) {
+        let clip = clip::builtin(source, rest)?;
+        let clip = match arguments.fps {
+            Some(rate) => clip::resample(&clip, rate)?,
+            None => clip,
+        };
+        let clip = if arguments.in_place { clip::in_place(&clip)? } else { clip };
+        let report = json!({
+            "source": source,
+            "clips": [{
+                "name": clip.name(),
+                "frames": clip.frame_count(),
+                "frames_per_second": clip.frames_per_second(),
+            }],
+        });
+        return Ok((vec![clip], report));
+    }
+    let path = Path::new(source);
+    if path.extension().is_none() && !path.exists() {
+        let known = BUILTIN.join(", ");
+        return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
+    }
+    let motion = format::motion::read(path, &read_options(arguments))?;
+    for warning in &motion.report.warnings {
+        eprintln!("warning: {source}: {warning}");
+    }
+    let in_file = |error| Failure::failed(format!("{source}: {error}"));
+    let (clips, report) =
+        retarget::retarget(&motion.clips, rest, &retarget_options(arguments)?).map_err(in_file)?;
+    if !report.joints.unmatched.is_empty() {
+        let joints = report.joints.unmatched.join(", ");
+        eprintln!("note: {source}: unmatched joints: {joints}");
+    }
+    Ok((clips, json!({ "source": source, "file": motion.report, "retarget": report })))
+}
+
+fn read_options(arguments: &MotionArguments) -> ReadOptions {
+    ReadOptions { unit: arguments.clip_unit, up: arguments.clip_up, frames_per_second: arguments.clip_fps }
+}
+
+fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
+    let mut options = RetargetOptions {
+        limits: !arguments.no_limits,
+        feet: (!arguments.no_feet).then(FeetOptions::default),
+        frames_per_second: arguments.fps,
+        in_place: arguments.in_place,
+        looped: arguments.looped,
+        ..RetargetOptions::default()
+    };
+    if let Some(path) = &arguments.mapping {
+        options.mapping = retarget::read_overrides(&read_text(path)?, path)?;
+    }
+    if let Some(fingers) = arguments.fingers {
+        options.transfer.fingers = fingers;
+    }
+    Ok(options)
 }

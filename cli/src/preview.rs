@@ -2,20 +2,24 @@
 
 use std::path::PathBuf;
 
+use anthronet::format::write_atomic;
+use anthronet::model::Model;
+use anthronet::scene::{Scene, SceneOptions};
 use clap::Args;
 
-use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
+use crate::figure;
+use crate::files::{CHARACTER_ENDINGS, check_ending, ending};
 use crate::render::{LitFigure, View, draw_views};
-use crate::request::{RequestArguments, check_ending, ending};
+use crate::request::RequestArguments;
 use crate::units::parse_size;
 
-/// Directions that the light is gathered from.
+/// Number of directions that light is gathered from.
 const QUALITY: usize = 256;
 
 /// Draw a character from several sides into a PNG.
 ///
-/// The views stand side by side at one scale. The picture has the same bytes on every machine.
+/// The views are side by side at one scale. The picture has the same bytes on every machine.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     anthronet preview anna.glb -o anna.png\n  \
@@ -33,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "1600x720", value_parser = parse_size)]
     size: (usize, usize),
 
-    /// What to show, from left to right, separated by commas.
+    /// Views from left to right, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "front,side,back")]
     views: Vec<View>,
 }
@@ -46,19 +50,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let figure = match ending(&arguments.input).as_str() {
         "json" => {
             let from = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };
-            let request = backend::request(&from)?;
-            Model::open()?.generate(&request, &from)?.figure(0, None)?
-        }
-        "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => {
-            backend::figure_from_file(&arguments.input)?
+            let request = from.to_request()?;
+            let model = Model::from_environment()?;
+            let body = model.generate(&request).map_err(|error| from.failure(&error))?;
+            figure::from_scene(&Scene::from_body(&body, &SceneOptions::default())?)?
         }
         _ => {
-            let input = arguments.input.display();
-            let known = ".glb .gltf .vrm .usda .usdc .usdz .obj .json";
-            return Err(Failure::usage(format!("{input}: unknown ending, expected one of {known}")));
+            check_ending("", &arguments.input, &[&CHARACTER_ENDINGS[..], &["json"]].concat())?;
+            figure::from_file(&arguments.input)?
         }
     };
     let (width, height) = arguments.size;
     let image = draw_views(&LitFigure::new(figure, QUALITY), &arguments.views, width, height);
-    backend::write(&arguments.output, &image.to_png()?)
+    Ok(write_atomic(&arguments.output, &image.to_png()?)?)
 }

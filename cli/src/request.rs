@@ -1,37 +1,25 @@
 //! The options that describe a person, shared by the commands that make one.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use anthronet::Error;
+use anthronet::condition::{Fill, Request};
+use anthronet::measure::Sex;
+use clap::Args;
 
-use crate::backend::Side;
+use crate::choice;
 use crate::failure::{Failure, Result};
+use crate::files::read_text;
 use crate::units::parse_measure;
+use anthronet::Side;
 
-/// Which of the two sexes the body is conditioned on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SexChoice {
-    Female,
-    Male,
-}
-
-/// How what is not given is filled in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FillChoice {
-    /// With the likeliest values beside the given ones.
-    Mean,
-    /// With a draw from what is plausible beside the given ones; `--seed` chooses which.
-    Sample,
-}
-
-/// Options that describe a person. They go before what the request file says.
+/// Options that describe a person. They override the request file.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Person")]
 pub(crate) struct RequestArguments {
-    /// Sex of the body; left out, the measures decide.
-    #[arg(long)]
-    pub(crate) sex: Option<SexChoice>,
+    /// Sex of the body; by default inferred from the measures.
+    #[arg(long, value_parser = choice::sex())]
+    pub(crate) sex: Option<Sex>,
 
     /// A measure, such as height=1.7, height=170cm, waist_circumference=28in or height=5ft7in; a plain number is
     /// metres. May be repeated. `anthronet info` lists the names.
@@ -42,27 +30,69 @@ pub(crate) struct RequestArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) request: Option<PathBuf>,
 
-    /// Which of the people with these measures: 0 is the likeliest [default: 0].
+    /// Selects one of the people with these measures; 0 is the most likely [default: 0].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
-    /// The latent vector by hand instead of by seed: as many numbers as `anthronet info` says, most people's within -3
-    /// and 3, none beyond 6.
+    /// The latent vector, instead of one drawn from the seed. `anthronet info` gives its length; values of most people
+    /// lie between -3 and 3, the limits are -6 and 6.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) z: Option<Vec<f64>>,
 
-    /// How measures that are not given are filled in [default: mean].
-    #[arg(long)]
-    pub(crate) fill: Option<FillChoice>,
+    /// How missing measures are filled in [default: mean].
+    #[arg(long, value_parser = choice::fill())]
+    pub(crate) fill: Option<Fill>,
 
-    /// When the measures cannot belong to one person, make the nearest possible one instead of failing.
+    /// If the measures cannot belong to one person, use the nearest feasible ones instead of failing.
     #[arg(long)]
     pub(crate) nearest: bool,
 }
 
 impl RequestArguments {
+    /// The request that the options describe: that of the file, overridden by typed options.
+    pub(crate) fn to_request(&self) -> Result<Request> {
+        let mut request = match &self.request {
+            Some(path) => read_request(path)?,
+            None => Request::default(),
+        };
+        if let Some(sex) = self.sex {
+            request.sex = Some(sex);
+        }
+        for (name, metres) in self.sorted_measures()? {
+            request.set(name, metres).map_err(|error| match error {
+                Error::Request { .. } => Failure::usage(error.to_string()),
+                other => other.into(),
+            })?;
+        }
+        if let Some(seed) = self.seed {
+            request.seed = seed;
+        }
+        if let Some(z) = &self.z {
+            request.z = Some(z.clone());
+        }
+        if let Some(fill) = self.fill {
+            request.fill = fill;
+        }
+        request.nearest |= self.nearest;
+        Ok(request)
+    }
+
+    /// The failure of this request: a wrong field that was typed is bad usage; a wrong field of the file, or infeasible
+    /// measures, are failures that name the file.
+    pub(crate) fn failure(&self, error: &Error) -> Failure {
+        let typed = match error {
+            Error::Request { field, .. } => self.request.is_none() || self.typed(field),
+            _ => false,
+        };
+        match (error, &self.request) {
+            _ if typed => Failure::usage(error.to_string()),
+            (Error::Request { .. } | Error::Infeasible(_), Some(file)) => Failure::in_file(file, error),
+            _ => Failure::failed(error.to_string()),
+        }
+    }
+
     /// The given measures, those without a side first, so that `arm_length_left` refines `arm_length`.
-    pub(crate) fn sorted_measures(&self) -> Result<Vec<(&str, f64)>> {
+    fn sorted_measures(&self) -> Result<Vec<(&str, f64)>> {
         let mut measures: Vec<(&str, f64)> = Vec::new();
         for (name, value) in &self.measures {
             if measures.iter().any(|(known, _)| known == name) {
@@ -74,9 +104,9 @@ impl RequestArguments {
         Ok(measures)
     }
 
-    /// Whether a field of the request was typed, and not read from the request's file. Sides count as one: what is
-    /// typed for one may be told of both.
-    pub(crate) fn typed(&self, field: &str) -> bool {
+    /// Whether a field of the request was typed rather than read from the file. Sides count as one: a value typed for
+    /// both may be wrong on one of them.
+    fn typed(&self, field: &str) -> bool {
         let base = |name| Side::part_measure_name(name).0;
         match field {
             "z" => self.z.is_some(),
@@ -85,31 +115,9 @@ impl RequestArguments {
     }
 }
 
-/// Reads a text file of at most 16 MB.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
-    let size = fs::metadata(path).map_err(|e| Failure::io("read", path, &e))?.len();
-    if size > 16 << 20 {
-        return Err(Failure::failed(format!("{}: expected at most 16 MB, got {size} bytes", path.display())));
-    }
-    fs::read_to_string(path).map_err(|e| Failure::io("read", path, &e))
-}
-
-/// The ending of a path in lower case, without its dot; empty for none.
-pub(crate) fn ending(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
-}
-
-/// Refuses an output path whose ending is not one of these.
-pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<()> {
-    if known.contains(&ending(path).as_str()) {
-        return Ok(());
-    }
-    let known: Vec<_> = known.iter().map(|k| format!(".{k}")).collect();
-    Err(Failure::usage(format!(
-        "{option} {}: unknown ending, expected one of {}",
-        path.display(),
-        known.join(" ")
-    )))
+/// The request in a JSON file.
+pub(crate) fn read_request(path: &Path) -> Result<Request> {
+    Request::from_json(&read_text(path)?).map_err(|error| Failure::in_file(path, &error))
 }
 
 #[cfg(test)]
@@ -146,10 +154,24 @@ mod tests {
     }
 
     #[test]
-    fn endings() {
-        assert!(check_ending("-o", Path::new("a/b.GLB"), &["glb"]).is_ok());
-        for path in ["b", "b.", "glb", "b.glb.txt"] {
-            assert!(check_ending("-o", Path::new(path), &["glb"]).is_err(), "{path}");
-        }
+    fn options_override_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("r.json");
+        std::fs::write(
+            &file,
+            r#"{"sex": "male", "measures": {"height": 1.8, "arm_length": 0.33}, "seed": 3}"#,
+        )
+        .unwrap();
+        let arguments = RequestArguments {
+            request: Some(file),
+            sex: Some(Sex::Female),
+            measures: vec![("height".into(), 1.7)],
+            ..RequestArguments::default()
+        };
+        let request = arguments.to_request().unwrap();
+        assert_eq!(request.sex, Some(Sex::Female));
+        assert_eq!(request.measures[3], Some(1.7));
+        assert_eq!(request.seed, 3);
+        assert_eq!(request.given().count(), 3);
     }
 }

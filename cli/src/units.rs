@@ -1,8 +1,8 @@
-//! Lengths and pictures' sizes as people write them. The only place where units are converted.
+//! Lengths and picture sizes as typed. The only place that converts units.
 
 /// Reads a length and returns metres: `1.7` and `1.7m`, `170cm`, `1700mm`, `67in`, `67"`, `5ft7in`, `5ft`, `5'7"`.
 ///
-/// A plain number is metres. The value's plausibility is not judged here: 1700 is 1700 m.
+/// A plain number is metres. Plausibility is not checked here: 1700 is 1700 m.
 pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let lower = text.to_ascii_lowercase().replace('′', "'").replace('″', "\"").replace("''", "\"");
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_length_says_so() {
+    fn invalid_lengths_are_refused() {
         for text in [
             "", "m", "NaN", "inf", "-inf", "1e999", "tall", "1.7.0", "5ft13in", "5ftx", "5.5ft3in", "1.7kg",
             "0x10",
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn measures_name_themselves_in_errors() {
+    fn errors_name_the_measure() {
         assert_eq!(parse_measure("height=170cm"), Ok(("height".to_owned(), 1.7)));
         assert!(parse_measure("height=NaN").unwrap_err().starts_with("height: "));
         assert!(parse_measure("height").unwrap_err().contains("NAME=VALUE"));

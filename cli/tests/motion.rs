@@ -1,4 +1,4 @@
-//! Motion from the command line: built-in clips, a file of somebody else's, every format, and what is refused.
+//! Clips from the command line: built-in ones, a motion file, every format, and what is refused.
 
 mod common;
 
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 const BVH: &str = include_str!("../../tests/data/bend.bvh");
 
 #[test]
-fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
+fn a_motion_file_is_retargeted_and_converted_through_every_format() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let clip = write(&folder, "bend.bvh", BVH.as_bytes());
@@ -40,13 +40,13 @@ fn somebody_elses_motion_comes_onto_a_person_and_through_every_format() {
         &[],
     )
     .succeeds();
-    assert!(run.err.contains("drive nothing: Tail"), "{}", run.err);
+    assert!(run.err.contains("unmatched joints: Tail"), "{}", run.err);
     let report: Value = serde_json::from_str(&run.out).unwrap();
     let motion = &report["motions"][0];
     assert_eq!((motion["file"]["unit"].as_str(), motion["file"]["up"].as_str()), (Some("cm"), Some("Y")));
-    let quality = &motion["onto"]["clips"][0];
+    let quality = &motion["retarget"]["clips"][0];
     assert_eq!((quality["frames"].as_u64(), quality["frames_per_second"].as_f64()), (Some(4), Some(25.0)));
-    assert_eq!(motion["onto"]["joints"]["unmatched"], serde_json::json!(["Tail"]));
+    assert_eq!(motion["retarget"]["joints"]["unmatched"], serde_json::json!(["Tail"]));
     assert_eq!(report["motions"][1]["source"], "wave");
 
     // To USD and back nothing of the skin or the motion is lost: the measures stay, and so do both clips.
@@ -108,7 +108,7 @@ fn clip_names(scene: &Scene) -> Vec<&str> {
 }
 
 #[test]
-fn motion_comes_onto_a_person_and_onto_the_file_of_it_alike() {
+fn clips_added_at_once_or_to_the_file_give_the_same_bytes() {
     let still = Still::new();
     let [once, then, first] = ["once.glb", "then.glb", "first.usda"].map(|name| still.path(name));
     let made = ["generate", "--sex", "female", "--lod", "3"];
@@ -157,7 +157,7 @@ fn every_option_of_motion_does_what_it_says() {
     };
     let (plain, report) = with(&[]);
     assert_eq!((plain.clips[0].frame_count(), plain.clips[0].frames_per_second()), (4, 25.0));
-    assert!(way(&plain) > 0.05 && report["onto"]["clips"][0]["feet"].is_object());
+    assert!(way(&plain) > 0.05 && report["retarget"]["clips"][0]["feet"].is_object());
 
     let (closed, _) = with(&["--loop"]);
     let last = closed.clips[0].frame_count() - 1;
@@ -167,7 +167,7 @@ fn every_option_of_motion_does_what_it_says() {
     }
     assert!(way(&with(&["--in-place"]).0) < 1e-5);
     let (slides, report) = with(&["--no-feet"]);
-    assert!(report["onto"]["clips"][0]["feet"].is_null() && slides.clips != plain.clips);
+    assert!(report["retarget"]["clips"][0]["feet"].is_null() && slides.clips != plain.clips);
 
     let finger = plain.clips[0].skeleton().find("index_02_l").unwrap();
     let bent = |scene: &Scene| {
@@ -188,14 +188,14 @@ fn every_option_of_motion_does_what_it_says() {
 
     let mapping = write(&still.folder, "map.json", br#"{"Tail": "jaw", "Neck": null}"#);
     let (_, report) = with(&["--mapping", &mapping]);
-    let matched = report["onto"]["joints"]["matched"].as_array().unwrap();
+    let matched = report["retarget"]["joints"]["matched"].as_array().unwrap();
     assert!(matched.iter().any(|m| m["source"] == "Tail" && m["target"] == "jaw" && m["by"] == "mapping"));
     assert!(matched.iter().all(|m| m["source"] != "Neck"));
 
     let backwards = write(&still.folder, "back.bvh", BVH.replace("0 60 0", "0 -60 0").as_bytes());
     let beyond = |options: &[&str]| {
         let (_, report) = still.animated(&[&["--clip", backwards.as_str()], options].concat());
-        report["onto"]["clips"][0]["beyond_limits"].as_f64().unwrap()
+        report["retarget"]["clips"][0]["beyond_limits"].as_f64().unwrap()
     };
     assert!(beyond(&["--no-feet"]) < 5.0 && beyond(&["--no-feet", "--no-limits"]) > 30.0);
 }
@@ -209,7 +209,7 @@ fn joints_have_the_names_that_are_asked_for() {
             let expected = renamed(joint, names);
             assert!(scene.joints.iter().any(|j| j.name == expected), "{}: {expected}", names.name());
         }
-        // What was written is known again under every name: motion comes onto it, and it is measured.
+        // The written joints are recognised under every name: clips can be added.
         let (named, again) = (still.path("out.glb"), still.path("again.glb"));
         anthronet(&["animate", &named, "--clip", "wave", "--joint-names", "native", "-o", &again], &[])
             .succeeds();
@@ -248,7 +248,7 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
     ] {
         generate(option, 2, &[option[0], "together with --clip"]);
         let built_in = [&["--clip", "walk", "--clip", "idle"], option].concat();
-        generate(&built_in, 2, &[option[0], "expected one of those with --clip", "walk, idle"]);
+        generate(&built_in, 2, &[option[0], "applies to motion files only", "walk, idle"]);
     }
     anthronet(&["generate", "--clip", "walk", "-o", &path("a.vrm")], &[]).fails(2, &[".vrm holds no motion"]);
     anthronet(&["animate", &whole, "--clip", "walk", "-o", &out], &[])

@@ -3,7 +3,6 @@
 use anthronet::Body;
 use anthronet::condition::Filled;
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::skeleton::Skeleton;
 
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;

@@ -3,10 +3,10 @@
 
 use glam::{Mat3, Vec2, Vec3};
 
-/// From where a figure is looked at.
+/// Direction and framing of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum View {
-    /// Face to face.
+    /// From the front.
     Front,
     /// From the person's left.
     Side,

@@ -42,7 +42,7 @@ impl Image {
         self.encode(png::ColorType::Rgb, None, &self.pixels)
     }
 
-    /// The bytes of a PNG file of 256 colours: much smaller, for large pictures of little consequence.
+    /// The bytes of a PNG file of 256 colours: much smaller, for large overviews.
     pub(crate) fn to_small_png(&self) -> Result<Vec<u8>> {
         let (palette, indices) = indexed(&self.pixels);
         self.encode(png::ColorType::Indexed, Some(palette.concat()), &indices)
@@ -59,7 +59,7 @@ impl Image {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::High);
         if let Some(palette) = palette {
-            // Differences of places in a palette mean nothing.
+            // Filters predict values; palette indices are not predictable.
             encoder.set_filter(png::Filter::NoFilter);
             encoder.set_palette(palette);
         }

@@ -11,16 +11,24 @@
 mod camera;
 mod figure;
 mod font;
+mod ground;
 mod image;
 mod light;
+mod lit_figure;
 mod material;
 mod palette;
+mod parallel;
 mod picture;
 mod raster;
+mod tile;
+mod views;
 mod visibility;
 
 pub(crate) use camera::View;
 pub(crate) use figure::{Figure, Material, Part};
 pub(crate) use font::{draw_text, text_width};
 pub(crate) use image::Image;
-pub(crate) use picture::{LitFigure, Picture, Tile, draw_views};
+pub(crate) use lit_figure::LitFigure;
+pub(crate) use picture::Picture;
+pub(crate) use tile::Tile;
+pub(crate) use views::draw_views;

@@ -1,16 +1,17 @@
-//! The 256 colours that a picture is best told in: median cut (Heckbert, "Color image quantization for frame buffer
-//! display", 1982). A sheet of many figures is a third of the size so, and nobody sees which.
+//! Quantisation to 256 colours: median cut (Heckbert, "Color image quantization for frame buffer display", 1982). It
+//! makes a sheet of many figures a third of the size without a visible difference.
 
-/// Colours of a palette, as many as one byte tells apart.
+/// Number of colours of a palette: what one byte can index.
 const COLOURS: usize = 256;
 
-/// A palette and each pixel's place in it, of pixels of three bytes.
+/// A palette and the index of each pixel in it; pixels have three bytes.
 pub(super) fn indexed(pixels: &[u8]) -> (Vec<[u8; 3]>, Vec<u8>) {
     let mut boxes = vec![Cut::new(histogram(pixels))];
     while boxes.len() < COLOURS {
-        let dearest = (0..boxes.len()).filter(|&i| boxes[i].colours.len() > 1).max_by_key(|&i| boxes[i].cost);
-        let Some(dearest) = dearest else { break };
-        let (low, high) = boxes.swap_remove(dearest).halves();
+        let costliest =
+            (0..boxes.len()).filter(|&i| boxes[i].colours.len() > 1).max_by_key(|&i| boxes[i].cost);
+        let Some(costliest) = costliest else { break };
+        let (low, high) = boxes.swap_remove(costliest).halves();
         boxes.extend([low, high]);
     }
     let mut places: Vec<([u8; 3], u8)> = boxes
@@ -31,19 +32,19 @@ pub(super) fn indexed(pixels: &[u8]) -> (Vec<[u8; 3]>, Vec<u8>) {
     (boxes.iter().map(Cut::mean).collect(), indices)
 }
 
-/// Every colour of the picture once, ascending, with how many pixels have it.
+/// The distinct colours, ascending, with their number of pixels.
 fn histogram(pixels: &[u8]) -> Vec<([u8; 3], u64)> {
     let mut all: Vec<[u8; 3]> = pixels.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
     all.sort_unstable();
     all.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u64)).collect()
 }
 
-/// Colours near each other that share a place of the palette.
+/// A box of the median cut: near colours that share a palette entry.
 struct Cut {
     colours: Vec<([u8; 3], u64)>,
-    /// The channel that spreads most.
+    /// The channel with the largest range.
     channel: usize,
-    /// By how much, squared, summed over the pixels.
+    /// Priority for cutting: that range squared, times the root of the number of pixels.
     cost: u64,
 }
 
@@ -54,7 +55,7 @@ impl Cut {
             values().max().unwrap_or(0) - values().min().unwrap_or(0)
         };
         let channel = (0..3).max_by_key(|&c| spread(c)).unwrap_or(0);
-        // Of pixels only the root counts: a wide backdrop must not take all colours.
+        // Only the root of the number of pixels: a large backdrop must not take all colours.
         let pixels: u64 = colours.iter().map(|(_, n)| n).sum();
         let cost = spread(channel).pow(2) * pixels.isqrt();
         Self { colours, channel, cost }

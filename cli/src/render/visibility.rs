@@ -1,10 +1,8 @@
 //! Which directions of the surroundings each point of a figure sees: one small depth map per direction.
 
-use std::num::NonZero;
-use std::thread;
-
 use glam::{Vec2, Vec3};
 
+use super::parallel::map_parallel;
 use super::raster::{Window, depth_map};
 
 /// Side of a depth map in texels. A person with arms spread spans 2 m: a texel is then 5 mm.
@@ -40,23 +38,7 @@ impl Visibility {
     /// Looks from every point, `(position, normal)`, into every direction. Directions behind a point's own surface
     /// are closed.
     pub(crate) fn new(occluder: &Occluder<'_>, points: &[(Vec3, Vec3)], directions: &[Vec3]) -> Self {
-        let threads = thread::available_parallelism().map_or(1, NonZero::get).min(8);
-        let chunk = directions.len().div_ceil(threads).max(1);
-        let open = thread::scope(|scope| {
-            let workers: Vec<_> = directions
-                .chunks(chunk)
-                .map(|part| {
-                    scope.spawn(move || {
-                        part.iter().map(|d| open_towards(occluder, points, *d)).collect::<Vec<_>>()
-                    })
-                })
-                .collect();
-            workers
-                .into_iter()
-                .flat_map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect()
-        });
-        Self { open }
+        Self { open: map_parallel(directions, |direction| open_towards(occluder, points, *direction)) }
     }
 
     /// Whether the point sees the surroundings in this direction.

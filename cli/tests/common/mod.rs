@@ -1,4 +1,4 @@
-//! Runs the built command and looks at what it says and leaves.
+//! Runs the built command and checks its output and the files that it leaves.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::fs;
@@ -51,6 +51,19 @@ pub(crate) fn run(command: &mut Command) -> Run {
         out: String::from_utf8_lossy(&output.stdout).into_owned(),
         err: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
+}
+
+/// Runs `generate` with options that must fail, into a fresh folder that must stay empty.
+pub(crate) fn generate(options: &[&str]) -> Run {
+    let folder = folder();
+    let out = folder.path().join("out.glb");
+    let mut all = vec!["generate"];
+    all.extend_from_slice(options);
+    let out = out.to_string_lossy().into_owned();
+    all.extend(["-o", &out]);
+    let run = anthronet(&all, &[]);
+    assert_eq!(files_in(folder.path()), Vec::<String>::new(), "{options:?} left files behind");
+    run
 }
 
 /// A fresh folder.

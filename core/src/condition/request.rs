@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::str::FromStr;
 
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -29,6 +30,30 @@ pub enum Fill {
     Mean,
     /// With a draw from what is plausible beside the given measures; the seed chooses it.
     Sample,
+}
+
+impl Fill {
+    /// Every way.
+    pub const ALL: [Self; 2] = [Self::Mean, Self::Sample];
+
+    /// `mean` or `sample`, as in JSON and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Sample => "sample",
+        }
+    }
+}
+
+impl FromStr for Fill {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|fill| fill.name() == text)
+            .ok_or_else(|| Error::request("fill", format!("expected mean or sample, got `{text}`")))
+    }
 }
 
 /// The values that a measure may take, metres, both ends included.
@@ -181,7 +206,7 @@ impl Request {
         if let Some(z) = &self.z {
             object.insert("z".into(), z.clone().into());
         }
-        object.insert("fill".into(), if self.fill == Fill::Mean { "mean" } else { "sample" }.into());
+        object.insert("fill".into(), self.fill.name().into());
         object.insert("nearest".into(), self.nearest.into());
         Value::from(object).to_string()
     }

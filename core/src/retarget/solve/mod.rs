@@ -16,6 +16,7 @@ mod root;
 mod tests;
 mod twist;
 
+use std::str::FromStr;
 use std::sync::Arc;
 
 use glam::Quat;
@@ -53,6 +54,31 @@ pub enum FingerMode {
     Relaxed,
     /// As at rest.
     Rest,
+}
+
+impl FingerMode {
+    /// Every mode.
+    pub const ALL: [Self; 3] = [Self::Source, Self::Relaxed, Self::Rest];
+
+    /// The word for it on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Source => "source",
+            Self::Relaxed => "relaxed",
+            Self::Rest => "rest",
+        }
+    }
+}
+
+impl FromStr for FingerMode {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == text).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::request("fingers", format!("expected one of {known}, got `{text}`"))
+        })
+    }
 }
 
 /// What feet keep of the source.

@@ -1,4 +1,4 @@
-//! What the commands do when all is well, end to end through files. Needs the built-in model.
+//! The commands on good input, end to end through files. Needs the built-in model.
 
 mod common;
 

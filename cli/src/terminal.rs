@@ -1,4 +1,4 @@
-//! A progress bar for long work, and printing; nothing is drawn unless standard error is a terminal.
+//! Standard output, and a progress bar on standard error where that is a terminal.
 
 use std::io::{IsTerminal, Write};
 
@@ -18,7 +18,7 @@ pub(crate) fn bar(steps: usize, what: &str) -> ProgressBar {
     bar
 }
 
-/// Prints to standard output. A reader that has gone away (`| head`) is no error.
+/// Prints to standard output. A closed pipe (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

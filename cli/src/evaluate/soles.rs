@@ -1,4 +1,6 @@
-//! Feet as the floor meets them: the skin of the soles, posed frame by frame.
+//! Sliding and sinking of feet, measured on the skin of the soles, frame by frame.
+
+use std::ops::Range;
 
 use anthronet::Body;
 use anthronet::Side;
@@ -6,83 +8,66 @@ use anthronet::clip::Clip;
 use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
-use anthronet::skeleton::Influences;
-use anthronet::skeleton::{Pose, SidedJoint, Skeleton};
+use anthronet::skeleton::{Influences, Pose, SidedJoint, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::Vec3;
 
 use crate::failure::{Failure, Result};
 
-/// How far above the lowest vertex of heel or ball at rest its sole reaches, metres.
+/// Height of the sole of heel or ball above its lowest vertex in the rest pose, metres.
 const SOLE: f32 = 0.01;
-/// How far from its middle the sole counts as that of heel or ball, metres. The middle of the ball is under its joint, that
-/// of the heel as far ahead of its back edge.
+/// Radius of the sole of heel or ball, metres. That of the ball is centred under its joint, that of the heel one radius
+/// ahead of its back edge.
 const REACH: f32 = 0.03;
-/// How far above the lowest vertex of heel or ball a vertex stands on the floor with it, metres.
+/// Vertices up to this height above the lowest one stand on the floor with it, metres.
 const TOUCHING: f32 = 0.005;
-/// How long a stride takes, seconds: of people who walk at their ease.
+/// Duration of a stride at a comfortable walk, seconds.
 const STRIDE: f64 = 1.1;
 
-/// The skin of both feet at level of detail 1, with the four influences that files carry.
-pub(crate) struct Soles {
+/// The skin of both feet at level of detail 1, with four influences per vertex as in files.
+pub(super) struct Soles {
     skinner: Skinner,
     feet: [Foot; 2],
 }
 
 struct Foot {
-    /// All vertices that follow the foot or its toes.
-    vertices: Vec<usize>,
-    /// The sole under the heel, and under the ball.
+    /// Vertices influenced by the foot or ball joint.
+    vertices: Range<usize>,
+    /// Vertices of the sole under the heel and under the ball.
     under: [Vec<usize>; 2],
 }
 
-/// What the skin of the feet does over a clip, the worse foot.
+/// The skin of the feet over a clip; the worse foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SkinMeasure {
-    /// How far the lowest vertex is under the floor, metres; 0 when none is.
-    pub(crate) deepest: f32,
-    /// The longest way over the floor, within a stride and a contact, of the middle of the skin that stands on it, metres.
-    pub(crate) slide: f32,
-    /// Vertices of frames that are nowhere.
-    pub(crate) not_finite: usize,
+pub(super) struct SkinMeasure {
+    /// Depth of the lowest vertex under the floor, metres; 0 when none is below.
+    pub(super) deepest: f32,
+    /// The longest path over the floor, within a stride and a contact, of the centre of the skin that stands on it, metres.
+    pub(super) slide: f32,
+    /// Number of vertices with coordinates that are not finite, over all frames.
+    pub(super) not_finite: usize,
 }
 
 impl Soles {
-    pub(crate) fn of(body: &Body, rest: &Skeleton) -> Result<Self> {
+    pub(super) fn of(body: &Body, rest: &Skeleton) -> Result<Self> {
         let scene = Scene::from_body(body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() })?;
         let mesh = scene.meshes.first().ok_or_else(|| Failure::failed("the scene has no body"))?;
         let model = rest.model_from_joints();
         let mut feet = Vec::new();
         let mut kept: Vec<usize> = Vec::new();
         for side in Side::ALL {
-            let foot = rest.require_rig_joint(SidedJoint::Foot.on(side))?;
-            let ball = rest.require_rig_joint(SidedJoint::Ball.on(side))?;
-            let first = kept.len();
+            let joints = [
+                rest.require_rig_joint(SidedJoint::Foot.on(side))?,
+                rest.require_rig_joint(SidedJoint::Ball.on(side))?,
+            ];
             let follows = |v: &usize| {
-                mesh.influences(*v).any(|(joint, w)| w > 0.0 && [foot, ball].contains(&usize::from(joint)))
+                mesh.influences(*v).any(|(joint, w)| w > 0.0 && joints.contains(&usize::from(joint)))
             };
+            let first = kept.len();
             kept.extend((0..mesh.positions.len()).filter(follows));
-            let (ankle, ahead) = (model[foot].translation, model[ball].translation - model[foot].translation);
-            let along = |v: usize| {
-                let way = Vec3::from(mesh.positions[kept[v]]) - ankle;
-                way.with_y(0.0).dot(ahead.with_y(0.0)) / ahead.with_y(0.0).length_squared()
-            };
-            let height = |v: usize| mesh.positions[kept[v]][1];
-            let vertices: Vec<usize> = (first..kept.len()).collect();
-            let ball_at = model[ball].translation;
-            let way = ahead.with_y(0.0);
-            let low = vertices.iter().filter(|&&v| height(v) < 2.0 * SOLE);
-            let back = low.map(|&v| along(v)).fold(f32::INFINITY, f32::min);
-            let heel_at = ankle + way * back + way.normalize_or_zero() * REACH;
-            let near = |middle: Vec3| {
-                let near =
-                    |v: &usize| (Vec3::from(mesh.positions[kept[*v]]) - middle).with_y(0.0).length() < REACH;
-                let part: Vec<usize> = vertices.iter().copied().filter(near).collect();
-                let lowest = part.iter().map(|&v| height(v)).fold(f32::INFINITY, f32::min);
-                part.into_iter().filter(|&v| height(v) < lowest + SOLE).collect()
-            };
-            let under = [near(heel_at), near(ball_at)];
-            feet.push(Foot { vertices, under });
+            let positions: Vec<_> = kept[first..].iter().map(|&v| Vec3::from(mesh.positions[v])).collect();
+            let [ankle, ball] = joints.map(|joint| model[joint].translation);
+            feet.push(Foot::new(first, &positions, ankle, ball));
         }
         let pick = |of: &[[f32; 3]]| kept.iter().map(|&v| Vec3::from(of[v])).collect::<Vec<_>>();
         let influences = Influences {
@@ -95,8 +80,8 @@ impl Soles {
         Ok(Self { skinner, feet })
     }
 
-    /// Measures a clip over the contacts' floor.
-    pub(crate) fn measure(&self, clip: &Clip, contacts: &Contacts) -> Result<SkinMeasure> {
+    /// Measures a clip relative to the floor of the contacts.
+    pub(super) fn measure(&self, clip: &Clip, contacts: &Contacts) -> Result<SkinMeasure> {
         let count = self.skinner.vertex_count();
         let [mut now, mut before, mut normals] = [(); 3].map(|()| vec![[0.0; 3]; count]);
         let mut steps = contacts.feet.each_ref().map(|of_foot| vec![Vec::new(); of_foot.len()]);
@@ -119,22 +104,38 @@ impl Soles {
             }
         }
         let stride = ((STRIDE * clip.frames_per_second()).round() as usize).max(1);
-        let ways = steps.iter().flatten().flat_map(|steps| {
+        let slides = steps.iter().flatten().flat_map(|steps| {
             let ends = 0..(steps.len() + 1).saturating_sub(stride).max(1);
             ends.map(move |at| steps[at..].iter().take(stride).sum::<f32>())
         });
-        out.slide = ways.fold(0.0, f32::max);
+        out.slide = slides.fold(0.0, f32::max);
         Ok(out)
     }
 
-    /// How many vertices are looked at, both feet.
-    pub(crate) fn vertex_count(&self) -> usize {
+    /// Number of measured vertices of both feet.
+    pub(super) fn vertex_count(&self) -> usize {
         self.feet.iter().map(|foot| foot.vertices.len()).sum()
     }
 }
 
 impl Foot {
-    /// How far the middle of what stands on the floor goes over it from one frame to the next.
+    /// The foot of the vertices from number `first` on, with their positions in the rest pose.
+    fn new(first: usize, positions: &[Vec3], ankle: Vec3, ball: Vec3) -> Self {
+        let forward = (ball - ankle).with_y(0.0);
+        let along = |p: &Vec3| (*p - ankle).with_y(0.0).dot(forward) / forward.length_squared();
+        let low = positions.iter().filter(|p| p.y < 2.0 * SOLE);
+        let back = low.map(along).fold(f32::INFINITY, f32::min);
+        let heel = ankle + forward * back + forward.normalize_or_zero() * REACH;
+        let sole_at = |centre: Vec3| {
+            let near = |p: &Vec3| (*p - centre).with_y(0.0).length() < REACH;
+            let part = || positions.iter().enumerate().filter(|(_, p)| near(p));
+            let lowest = part().map(|(_, p)| p.y).fold(f32::INFINITY, f32::min);
+            part().filter(|(_, p)| p.y < lowest + SOLE).map(|(v, _)| first + v).collect()
+        };
+        Self { vertices: first..first + positions.len(), under: [sole_at(heel), sole_at(ball)] }
+    }
+
+    /// Horizontal distance from one frame to the next of the centre of what stands on the floor.
     fn step(&self, contact: &Contact, before: &[[f32; 3]], now: &[[f32; 3]]) -> f32 {
         let sole = &self.under[usize::from(contact.point == FootPoint::Ball)];
         let lowest = sole.iter().map(|&v| before[v][1]).fold(f32::INFINITY, f32::min);

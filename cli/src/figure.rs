@@ -1,0 +1,56 @@
+//! Characters as the renderer takes them.
+
+use std::path::Path;
+
+use anthronet::format::meshes;
+use anthronet::scene::{Scene, SceneMaterial, SceneMesh, SkinTone};
+use glam::Vec3;
+
+use crate::failure::{Failure, Result};
+use crate::render::{Figure, Material, Part};
+
+/// The figure of a scene: materials by name, quads split into triangles.
+pub(crate) fn from_scene(scene: &Scene) -> Result<Figure> {
+    let material = |mesh: &SceneMesh| scene.materials.get(mesh.material as usize);
+    let kind = |mesh: &SceneMesh| {
+        let by_material = material(mesh).map_or(Material::Skin, |m| Material::from_name(&m.name));
+        if by_material == Material::Skin { Material::from_name(&mesh.name) } else { by_material }
+    };
+    let parts = scene
+        .meshes
+        .iter()
+        .map(|mesh| {
+            let quads = mesh.quads.positions.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+            Part {
+                material: kind(mesh),
+                positions: mesh.positions.iter().map(|p| Vec3::from_array(*p)).collect(),
+                triangles: quads.chain(mesh.triangles.positions.iter().copied()).collect(),
+            }
+        })
+        .collect();
+    let skin = scene.meshes.iter().find(|mesh| kind(mesh) == Material::Skin).and_then(material);
+    let [r, g, b, _] =
+        skin.map_or_else(|| SkinTone::default().base_color(), |m: &SceneMaterial| m.base_color);
+    Figure::new(parts, Vec3::new(r, g, b))
+}
+
+/// The figure of a character file, moved so that its lowest point stands on the ground.
+pub(crate) fn from_file(path: &Path) -> Result<Figure> {
+    let scene = meshes::open(path)?;
+    let lowest =
+        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
+    let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
+    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name)).map(|mesh| mesh.base_color);
+    // A file without colours reads as white, which is no skin.
+    let [r, g, b, _] = skin.filter(|c| *c != [1.0; 4]).unwrap_or_else(|| SkinTone::default().base_color());
+    let parts = scene
+        .meshes
+        .into_iter()
+        .map(|mesh| Part {
+            material: Material::from_name(&mesh.name),
+            positions: mesh.positions.iter().map(|p| *p - Vec3::Y * lowest).collect(),
+            triangles: mesh.triangles,
+        })
+        .collect();
+    Figure::new(parts, Vec3::new(r, g, b)).map_err(|failure| Failure::in_file(path, &failure))
+}
