@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::sample::{Sampler, Wrap, mix};
 use super::{Clip, MAX_FRAMES, TranslationTrack};
+use crate::math::smoothstep;
 use crate::skeleton::{Pose, RestPose};
 use crate::{Error, Result};
 
@@ -103,7 +104,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
             for (joint, by) in &travel {
                 lead.locals[*joint as usize].translation += *by;
             }
-            let share = share * share * (3.0 - 2.0 * share);
+            let share = smoothstep(share);
             for (local, lead) in pose.locals.iter_mut().zip(&lead.locals) {
                 *local = mix(*local, *lead, share);
             }

@@ -1,8 +1,9 @@
 //! Joint after joint through much of its range, from the T-pose.
 
+use super::RATE;
 use super::figure::Figure;
-use super::{RATE, smooth};
 use crate::Side;
+use crate::math::smoothstep;
 use crate::skeleton::{Pose, RigJoint, SidedJoint};
 
 /// Seconds from one key to the next.
@@ -101,7 +102,7 @@ fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
 
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let frames = (STEP * RATE as f32) as usize;
-    let share = |frame: usize| smooth(frame as f32 / frames as f32);
+    let share = |frame: usize| smoothstep(frame as f32 / frames as f32);
     let mut poses = vec![figure.rest.pose().clone()];
     for exercise in UPPER_BODY {
         let home = [0.0; 3];
