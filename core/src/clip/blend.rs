@@ -7,8 +7,8 @@ use glam::Quat;
 use super::Clip;
 use super::edit::clip_of_poses;
 use super::sample::{Sampler, Wrap, mix};
-use crate::math::RigidTransform;
-use crate::skeleton::{Pose, Skeleton};
+use crate::math::{RigidTransform, smoothstep};
+use crate::skeleton::{Pose, RestPose, Skeleton};
 use crate::{Error, Result};
 
 /// How much each joint takes part: 0 not at all, 1 fully.
@@ -130,7 +130,7 @@ pub fn crossfade(a: &Clip, b: &Clip, seconds: f64) -> Result<Clip> {
                 mixed.locals[*joint as usize].translation += *by;
             }
             let share = if seconds > 0.0 { ((at - start) / seconds).min(1.0) as f32 } else { 1.0 };
-            blend_pose(&mut pose, &mixed, share * share * (3.0 - 2.0 * share), &mask);
+            blend_pose(&mut pose, &mixed, smoothstep(share), &mask);
         }
         pose
     });

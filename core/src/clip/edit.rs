@@ -6,7 +6,8 @@ use glam::Vec3;
 
 use super::sample::{Sampler, Wrap, mix};
 use super::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::skeleton::{Pose, Skeleton};
+use crate::skeleton::{Pose, RestPose, Skeleton};
+use crate::math::smoothstep;
 use crate::{Error, Result};
 
 impl Clip {
@@ -103,7 +104,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
             for (joint, by) in &travel {
                 lead.locals[*joint as usize].translation += *by;
             }
-            let share = share * share * (3.0 - 2.0 * share);
+            let share = smoothstep(share);
             for (local, lead) in pose.locals.iter_mut().zip(&lead.locals) {
                 *local = mix(*local, *lead, share);
             }

@@ -1,10 +1,11 @@
 //! Whether the given measures can belong to one person, and if not, which of them quarrel and what would do instead.
 //!
-//! The ruler is the Mahalanobis distance of the given measures from the prior's mean, each believed up to a reading
-//! error. In that metric the nearest point of the feasible ellipsoid lies on the line to the mean, so it has a closed
+//! The ruler is the Mahalanobis distance of the given measures from the prior's mean, each believed up to
+//! [`JUDGING_ERROR`]. In that metric the nearest point of the feasible ellipsoid lies on the line to the mean, so it has a closed
 //! form.
 
 use super::chi_squared;
+use super::error::JUDGING_ERROR;
 use super::prior::{GivenMeasures, SexPrior};
 use super::request::{group_by, groups};
 use super::text::{list, metres};
@@ -22,14 +23,19 @@ const ROUNDS: usize = 3;
 /// Names that a message spells out; of more, it tells those that move most.
 const SPELT_OUT: usize = 6;
 
+/// How often nearest values are pulled towards the mean, each time to [`PULL`] of their distance, before the mean itself is
+/// taken: by then a sixtieth of the first distance is left.
+const PULLS: usize = 39;
+const PULL: f64 = 0.9;
+
 /// How far inside the limit a nearest value is put, so that it is still feasible when rounded to the millimetre.
 const NEAREST_SCALE: f64 = 0.98;
 
 /// Where a request becomes unusual, and where it is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Standard deviation, metres, of the error with which given measures are believed.
-    pub reading_error: f64,
+    /// Standard deviation, metres, of the error with which given measures are believed; [`JUDGING_ERROR`].
+    pub error: f64,
     /// Share of people farther out than the distance that draws a warning.
     pub warn_tail: f64,
     /// Share of people farther out than the distance that, times `slack`, is refused.
@@ -40,7 +46,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { reading_error: 0.005, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.6 }
+        Self { error: JUDGING_ERROR, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.6 }
     }
 }
 
@@ -79,11 +85,11 @@ impl Feasibility {
     /// Judges the given measures.
     ///
     /// # Errors
-    /// [`crate::Error::Request`] for a measure that is not finite, [`crate::Error::Invalid`] for a reading error that
+    /// [`crate::Error::Request`] for a measure that is not finite, [`crate::Error::Invalid`] for an error of theirs that
     /// is not positive.
     pub fn assess(prior: &SexPrior, sex: Sex, given: &GivenMeasures, limits: &Limits) -> Result<Self> {
         let count = given.iter().flatten().count();
-        let distance = prior.distance_squared(given, limits.reading_error)?.sqrt();
+        let distance = prior.distance_squared(given, limits.error)?.sqrt();
         let mut result = Self {
             sex,
             count,
@@ -196,7 +202,7 @@ impl<'a> Search<'a> {
     /// Distance of these measures as a share of what is refused; above 1 they conflict.
     fn excess(&self, set: &[usize], values: &GivenMeasures) -> Result<f64> {
         let part = subset(values, set);
-        let distance = self.prior.distance_squared(&part, self.limits.reading_error)?.sqrt();
+        let distance = self.prior.distance_squared(&part, self.limits.error)?.sqrt();
         let excess = distance / self.refuse[set.len().min(MEASURE_COUNT)];
         Ok(if excess.is_nan() { f64::INFINITY } else { excess })
     }
@@ -252,8 +258,8 @@ impl<'a> Search<'a> {
         let mean = self.prior.mean();
         let excess = self.excess(set, values)?;
         let mut scale = if excess.is_finite() { NEAREST_SCALE / excess.max(1.0) } else { 0.0 };
-        for attempt in 0..40 {
-            if attempt == 39 {
+        for attempt in 0..=PULLS {
+            if attempt == PULLS {
                 scale = 0.0;
             }
             for &i in set {
@@ -279,7 +285,7 @@ impl<'a> Search<'a> {
             if self.excess(set, values)? <= 1.0 {
                 return Ok(());
             }
-            scale *= 0.9;
+            scale *= PULL;
         }
         for &i in set {
             values[i] = Some(mean[i]);

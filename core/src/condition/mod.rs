@@ -4,6 +4,7 @@
 //! [`solve()`] on the given measures → [`Report`].
 
 mod chi_squared;
+mod error;
 mod feasibility;
 mod prepare;
 mod prior;
@@ -13,11 +14,10 @@ mod solve;
 mod text;
 
 pub use crate::error::{Conflict, ConflictMeasure};
+pub use error::{FILL_ERROR, JUDGING_ERROR, PROJECTION_ERROR};
 pub use feasibility::{Feasibility, Limits};
 pub use prepare::Prepared;
-pub use prior::{
-    Conditional, GivenMeasures, PROJECTION_ERROR, Prior, QUANTILE_COUNT, READING_ERROR, SexPrior,
-};
+pub use prior::{Conditional, GivenMeasures, Prior, QUANTILE_COUNT, SexPrior};
 pub use report::{Filled, MeasureReport, Report, refusal_json};
 pub use request::{Fill, LATENT_LIMIT, MeasureRange, Request};
 pub use solve::{MeasuredShape, SolveOptions, SolveOutcome, solve};

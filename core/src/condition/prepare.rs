@@ -1,7 +1,8 @@
 //! A request made ready for the network: checked, its sex decided, its conflicts found, its open measures filled.
 
+use super::error::PROJECTION_ERROR;
 use super::feasibility::{Feasibility, Limits};
-use super::prior::{Conditional, GivenMeasures, PROJECTION_ERROR, Prior, SexPrior};
+use super::prior::{Conditional, GivenMeasures, Prior, SexPrior};
 use super::request::{Fill, MeasureRange, Request};
 use crate::error::Conflict;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
@@ -113,7 +114,7 @@ fn guess_sex(request: &Request, prior: &Prior, limits: &Limits, warnings: &mut V
         warnings.push("sex not given, nor any measure: female assumed".to_owned());
         return Ok(Sex::Female);
     }
-    let posterior = prior.sex_posterior(&request.measures, limits.reading_error)?;
+    let posterior = prior.sex_posterior(&request.measures, limits.error)?;
     let sex = if posterior[0] >= posterior[1] { Sex::Female } else { Sex::Male };
     // Never 100 %: the data is not the world.
     let percent = (100.0 * posterior[sex.index()]).floor().min(99.0);

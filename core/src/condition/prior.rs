@@ -5,6 +5,7 @@
 //! is pulled towards the plausible ([`SexPrior::project`]) before the network sees it; and a sex that was not given is
 //! judged by which Gaussian explains the measures better.
 
+use super::error::FILL_ERROR;
 use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
 use crate::random::Random;
@@ -12,14 +13,6 @@ use crate::{Error, Result};
 
 /// Number of quantiles kept per measure: 0 %, 1 %, … 100 %.
 pub const QUANTILE_COUNT: usize = 101;
-
-/// Standard deviation, in metres, of the error with which a given measure is believed when it predicts others: a tape
-/// reads to about a millimetre. It also keeps nearly collinear measures (left and right) from being extrapolated.
-pub const READING_ERROR: f64 = 0.001;
-
-/// Standard deviation, in metres, of the error that [`SexPrior::project`] takes off by default: half of the rounding to
-/// a centimetre of the paper's tables.
-pub const PROJECTION_ERROR: f64 = 0.003;
 
 /// Standard normal quantile of 95 %: a 90 % interval is the mean ± this many standard deviations.
 const HALF_INTERVAL_90: f64 = 1.644_853_626_951_472_7;
@@ -100,7 +93,7 @@ impl SexPrior {
     ///
     /// # Errors
     /// [`Error::Invalid`] for wrong sizes, numbers that are not finite, a covariance that is not symmetric or not
-    /// positive definite beside [`READING_ERROR`], and quantiles that fall.
+    /// positive definite beside [`FILL_ERROR`], and quantiles that fall.
     pub fn new(mean: &[f64], covariance: &[f64], quantiles: &[f64]) -> Result<Self> {
         let n = MEASURE_COUNT;
         for (what, data, expected) in [
@@ -132,7 +125,7 @@ impl SexPrior {
         }
         let all: Vec<_> = (0..n).collect();
         if symmetric.iter().step_by(n + 1).any(|v| *v < 0.0)
-            || noisy_factor(&symmetric, &all, READING_ERROR).is_none()
+            || noisy_factor(&symmetric, &all, FILL_ERROR).is_none()
         {
             return Err(Error::invalid("prior covariance", "expected a positive definite matrix"));
         }
@@ -169,14 +162,14 @@ impl SexPrior {
         }
     }
 
-    /// The distribution of all measures once some are given, each believed up to `READING_ERROR`.
+    /// The distribution of all measures once some are given, each believed up to [`FILL_ERROR`].
     ///
     /// # Errors
     /// [`Error::Request`] for a given measure that is not finite.
     pub fn condition(&self, given: &GivenMeasures) -> Result<Conditional> {
         let n = MEASURE_COUNT;
         let (rows, offset) = self.offsets(given)?;
-        let factor = self.factor(&rows, READING_ERROR)?;
+        let factor = self.factor(&rows, FILL_ERROR)?;
         let mut weights = offset;
         factor.solve(&mut weights);
 

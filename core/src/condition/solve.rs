@@ -13,9 +13,17 @@ use crate::{Error, Result};
 /// rounding from making the matrix indefinite.
 const RIDGE: f64 = 1e-14;
 
+/// How often a matrix that a ridge did not make definite is tried again with ten times the ridge: until the ridge is this
+/// share of the diagonal. Beyond, the step is the ridge's and no longer the measures'.
+const RIDGE_MOST: f64 = 1e-3;
+
 /// What the ridge grows by after a step that failed: measures that contradict each other ask for endless steps along
 /// what they share, and a ridge turns those into a compromise.
 const RIDGE_GROWTH: f64 = 1e4;
+
+/// Steps in a row that may fail to improve on the point they came from. Tapes have kinks where the hull changes corners; a few
+/// such steps get over one, more of them mean that there is nothing beyond.
+const FAILURES: usize = 4;
 
 /// Below this largest residual, metres, the next step is expected to be the last, and its derivatives are not computed
 /// before it has failed to be.
@@ -111,11 +119,9 @@ pub fn solve<S: MeasuredShape + ?Sized>(
     }
     let mut best = at.clone();
     let mut iterations = 0;
-    // Steps that did not improve on the point they came from. Tapes have kinks where the hull changes corners; a few
-    // such steps get over one, more of them mean that there is nothing beyond.
     let mut failures = 0;
     let mut ridge = RIDGE;
-    while at.largest > options.tolerance && iterations < options.max_iterations && failures < 4 {
+    while at.largest > options.tolerance && iterations < options.max_iterations && failures < FAILURES {
         if !at.has_jacobian {
             at = problem.evaluate(at.coefficients, true);
         }
@@ -228,7 +234,7 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
             }
             match Cholesky::new(&regular, n) {
                 Some(factor) => break factor,
-                None if ridge < 1e-3 => ridge *= 10.0,
+                None if ridge < RIDGE_MOST => ridge *= 10.0,
                 None => return None,
             }
         };

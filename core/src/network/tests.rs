@@ -1,8 +1,8 @@
-//! Tests of [`super::network`] on small random networks.
+//! The networks on small random weights.
 
 use super::config::GeneratorConfig;
-use super::network::{Decoder, Encoder, Shapes, Tensor, Tensors, decoder_shapes, encoder_shapes};
-use crate::network::fourier::FourierConfig;
+use super::fourier::FourierConfig;
+use super::{Decoder, Encoder, Shapes, Tensor, Tensors, decoder_shapes, encoder_shapes};
 use crate::measure::{MEASURE_COUNT, Sex};
 use crate::random::Random;
 

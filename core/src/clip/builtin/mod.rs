@@ -15,7 +15,8 @@ use std::sync::Arc;
 
 use super::Clip;
 use super::edit::clip_of_poses;
-use crate::skeleton::{Pose, Skeleton};
+use crate::skeleton::{Pose, RestPose, Skeleton};
+use crate::math::smoothstep;
 use crate::{Error, Result};
 use figure::Figure;
 
@@ -53,18 +54,12 @@ pub fn builtin(name: &str, rest: &Arc<Skeleton>) -> Result<Clip> {
     clip_of_poses(name, rest, RATE, poses)
 }
 
-/// From 0 to 1 with level ends.
-fn smooth(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
-}
-
 /// Straight between points (time, value) in order, with level ends at each; the ends are held.
 fn keyed(keys: &[(f32, f32)], at: f32) -> f32 {
     for pair in keys.windows(2) {
         let [(from, a), (to, b)] = [pair[0], pair[1]];
         if at < to {
-            return a + (b - a) * smooth((at - from) / (to - from));
+            return a + (b - a) * smoothstep((at - from) / (to - from));
         }
     }
     keys.last().map_or(0.0, |key| key.1)

@@ -9,7 +9,8 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::figure::{Arm, Figure, Foot, Stance};
-use super::{RATE, keyed, smooth};
+use super::{RATE, keyed};
+use crate::math::smoothstep;
 use crate::skeleton::Pose;
 
 /// Stride over leg length.
@@ -57,7 +58,7 @@ fn stance(figure: &Figure, phase: f32, stride: f32) -> Stance {
     let foot = |side: usize| {
         let own = if side == 0 { phase } else { (phase + 0.5) % 1.0 };
         let swing = ((own - TOE_OFF) / (1.0 - TOE_OFF)).max(0.0);
-        let along = stride * (OVER_ANKLE - own + smooth(swing));
+        let along = stride * (OVER_ANKLE - own + smoothstep(swing));
         let lift = 0.045 * figure.leg_length * libm::powf(libm::sinf(0.5 * TAU * swing), 2.0);
         let shift = standing[side].shift + Vec3::new(0.0, if swing > 0.0 { lift } else { 0.0 }, along);
         Foot { shift, roll: keyed(&ROLL, own), toe_out: 3.0 }

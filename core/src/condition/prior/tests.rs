@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::super::test_prior::{prior, sex_prior};
 use super::*;
+use crate::condition::{JUDGING_ERROR, PROJECTION_ERROR};
 
 /// Solves A X = B for dense A by Gaussian elimination with pivoting: an oracle that shares nothing with Cholesky.
 fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
@@ -66,7 +67,7 @@ proptest! {
         let conditional = p.condition(&given).unwrap();
         let rows: Vec<_> = (0..n).filter(|i| mask[*i]).collect();
         let noisy: Vec<Vec<f64>> = rows.iter().map(|i| rows.iter().map(|j| {
-            p.covariance()[i * n + j] + if i == j { READING_ERROR * READING_ERROR } else { 0.0 }
+            p.covariance()[i * n + j] + if i == j { FILL_ERROR * FILL_ERROR } else { 0.0 }
         }).collect()).collect();
         let weights = eliminate(noisy.clone(), rows.iter().map(|i| shift[*i]).collect());
         let deviation = conditional.standard_deviation();
@@ -145,16 +146,16 @@ fn samples_have_the_conditional_moments() {
 fn taller_people_have_longer_arms_and_are_likelier_men() {
     let prior = prior();
     let mut given = [None; MEASURE_COUNT];
-    assert_eq!(prior.sex_posterior(&given, 0.005).unwrap(), [0.5, 0.5]);
+    assert_eq!(prior.sex_posterior(&given, JUDGING_ERROR).unwrap(), [0.5, 0.5]);
     given[3] = Some(1.95);
-    let posterior = prior.sex_posterior(&given, 0.005).unwrap();
+    let posterior = prior.sex_posterior(&given, JUDGING_ERROR).unwrap();
     assert!(posterior[1] > 0.9 && (posterior[0] + posterior[1] - 1.0).abs() < 1e-12);
     let arm = MeasureId::from_name("arm_length_left").unwrap().index();
     let women = prior.of(Sex::Female);
     assert!(women.condition(&given).unwrap().mean()[arm] > women.mean()[arm] + 0.03);
     // Far outside everything: still a probability.
     given[3] = Some(1e200);
-    assert!(prior.sex_posterior(&given, 0.005).unwrap().iter().all(|p| (0.0..=1.0).contains(p)));
+    assert!(prior.sex_posterior(&given, JUDGING_ERROR).unwrap().iter().all(|p| (0.0..=1.0).contains(p)));
 }
 
 #[test]

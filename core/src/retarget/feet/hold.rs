@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 
 use super::contacts::{Contact, FootPoint, runs};
+use crate::math::smoothstep;
 use crate::pose::Sole;
 
 /// A rigid motion of a foot: turned by `turn` (axis times angle) about its ball joint, then moved by `shift`.
@@ -142,10 +143,4 @@ pub(super) fn ramped(values: &mut [f32], most: f32) {
     for frame in (1..values.len()).rev() {
         values[frame - 1] = values[frame - 1].max(values[frame] - most);
     }
-}
-
-/// From 0 to 1 with level ends.
-pub(super) fn smoothstep(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }

@@ -12,7 +12,7 @@ use super::bones::Bone;
 use super::twist::wrapped;
 use super::{Joints, Reference};
 use crate::Side;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, smoothstep};
 use crate::skeleton::SidedJoint;
 
 /// Bends at which a frame's own plane begins to count and counts fully, radians (15° and 40°).
@@ -115,8 +115,7 @@ fn towards(rotation: Quat, along: Vec3, direction: Vec3) -> Quat {
     }
 }
 
-/// 0 below the first, 1 above the second, 3t² − 2t³ between.
+/// 0 below the first, 1 above the second, eased between.
 fn smooth([from, to]: [f32; 2], value: f32) -> f32 {
-    let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
+    smoothstep((value - from) / (to - from))
 }
