@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::backend;
 use crate::failure::{Failure, Result};
-use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
+use crate::generate::JointNamesChoice;
 use crate::motion::MotionArguments;
 use crate::request::check_ending;
 
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    check_ending("-o", &arguments.output, &backend::written_endings())?;
     arguments.motion.check(&arguments.output)?;
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one motion, got none"));

@@ -6,8 +6,7 @@ use clap::Args;
 
 use crate::backend;
 use crate::failure::Result;
-use crate::generate::{CHARACTER_ENDINGS, JointNamesChoice};
-use crate::motion::STILL_ENDINGS;
+use crate::generate::JointNamesChoice;
 use crate::request::{check_ending, ending};
 
 /// Write a character file in another format, with its skin, joints, materials and motions.
@@ -33,12 +32,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("OUTPUT", &arguments.output, &CHARACTER_ENDINGS)?;
+    check_ending("OUTPUT", &arguments.output, &backend::written_endings())?;
     let mut scene = backend::motion::open(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         backend::motion::rename_joints(&mut scene, names);
     }
-    if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
+    if !backend::moving_endings().contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
         eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
         scene.clips.clear();
     }

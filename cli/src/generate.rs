@@ -9,9 +9,6 @@ use crate::failure::{Failure, Result};
 use crate::motion::MotionArguments;
 use crate::request::{RequestArguments, check_ending};
 
-/// Endings of the files that hold a character.
-pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
-
 /// What the file's joints are called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum JointNamesChoice {
@@ -95,7 +92,7 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    check_ending("-o", &arguments.output, &backend::written_endings())?;
     arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected another file than that of -o"));

@@ -76,6 +76,7 @@ fn run(command: &Command) -> Result<()> {
 }
 
 fn main() -> ExitCode {
+    backend::keep_caught_panics_quiet();
     match run(&Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -8,9 +8,8 @@ use serde::Serialize;
 
 use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
-use crate::generate::CHARACTER_ENDINGS;
 use crate::progress::print;
-use crate::request::ending;
+use crate::request::{dotted, ending};
 
 /// Read all 36 measures, mass and body mass index off a character file.
 ///
@@ -44,11 +43,10 @@ pub(crate) struct NamedValue {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    if !CHARACTER_ENDINGS.contains(&ending(&arguments.file).as_str()) {
-        let file = arguments.file.display();
-        return Err(Failure::usage(format!(
-            "{file}: unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"
-        )));
+    let known = backend::surface_endings();
+    if !known.contains(&ending(&arguments.file).as_str()) {
+        let (file, known) = (arguments.file.display(), dotted(&known));
+        return Err(Failure::usage(format!("{file}: unknown ending, expected one of {known}")));
     }
     let measured = backend::measure_file(&Model::open()?, &arguments.file)?;
     if arguments.json {

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use crate::backend::motion::BUILTIN;
 use crate::failure::Failure;
-use crate::request::ending;
+use crate::request::{dotted, ending};
 
 /// Length of one unit of a motion file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -93,17 +93,15 @@ pub(crate) struct MotionArguments {
     pub(crate) motion_report: Option<PathBuf>,
 }
 
-/// Endings of character files that hold no motion.
-pub(crate) const STILL_ENDINGS: [&str; 2] = ["vrm", "obj"];
-
 impl MotionArguments {
     /// Refuses, before any work is done, what cannot be written.
     pub(crate) fn check(&self, output: &Path) -> crate::failure::Result<()> {
         let ending = ending(output);
-        if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
-            let message =
-                format!("--clip: a .{ending} holds no motion, expected .glb .gltf .usda .usdc or .usdz");
-            return Err(Failure::usage(message));
+        let moving = crate::backend::moving_endings();
+        if !self.clips.is_empty() && !moving.contains(&ending.as_str()) {
+            let (last, others) = moving.split_last().unwrap_or((&"", &[]));
+            let expected = format!("{} or .{last}", dotted(others));
+            return Err(Failure::usage(format!("--clip: a .{ending} holds no motion, expected {expected}")));
         }
         if self.clips.is_empty() {
             let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);

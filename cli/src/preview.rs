@@ -7,7 +7,7 @@ use clap::Args;
 use crate::backend::{self, Model};
 use crate::failure::{Failure, Result};
 use crate::render::{LitFigure, View, draw_views};
-use crate::request::{RequestArguments, check_ending, ending};
+use crate::request::{RequestArguments, check_ending, dotted, ending};
 use crate::units::parse_size;
 
 /// Directions that the light is gathered from.
@@ -49,13 +49,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let request = backend::request(&from)?;
             Model::open()?.generate(&request, &from)?.figure(0, None)?
         }
-        "glb" | "gltf" | "vrm" | "usda" | "usdc" | "usdz" | "obj" => {
+        ending if backend::surface_endings().contains(&ending) => {
             backend::figure_from_file(&arguments.input)?
         }
         _ => {
-            let input = arguments.input.display();
-            let known = ".glb .gltf .vrm .usda .usdc .usdz .obj .json";
-            return Err(Failure::usage(format!("{input}: unknown ending, expected one of {known}")));
+            let (input, known) = (arguments.input.display(), dotted(&backend::surface_endings()));
+            return Err(Failure::usage(format!("{input}: unknown ending, expected one of {known} .json")));
         }
     };
     let (width, height) = arguments.size;

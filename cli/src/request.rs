@@ -105,12 +105,13 @@ pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<
     if known.contains(&ending(path).as_str()) {
         return Ok(());
     }
-    let known: Vec<_> = known.iter().map(|k| format!(".{k}")).collect();
-    Err(Failure::usage(format!(
-        "{option} {}: unknown ending, expected one of {}",
-        path.display(),
-        known.join(" ")
-    )))
+    let (path, known) = (path.display(), dotted(known));
+    Err(Failure::usage(format!("{option} {path}: unknown ending, expected one of {known}")))
+}
+
+/// Endings as messages list them: `.glb .gltf`.
+pub(crate) fn dotted(endings: &[&str]) -> String {
+    endings.iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

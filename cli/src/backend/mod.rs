@@ -8,7 +8,7 @@ use std::path::Path;
 
 use anthronet::Error;
 use anthronet::condition::{Fill, Request, refusal_json};
-use anthronet::format::{GltfOptions, WriteOptions};
+use anthronet::format::{Format, GltfOptions, Purpose, WriteOptions};
 use anthronet::measure::{Mass, MeasureId, Sex};
 use anthronet::mesh::Lod;
 pub(crate) use anthronet::random::Random;
@@ -21,6 +21,16 @@ use crate::generate::{FileChoice, JointNamesChoice};
 use crate::measure::{Measured, NamedValue};
 use crate::render::{Figure, Material, Part};
 use crate::request::{FillChoice, RequestArguments, SexChoice, read_text};
+
+/// What becomes an error about a damaged file is said there and not as a panic.
+pub(crate) fn keep_caught_panics_quiet() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !anthronet::format::panic_becomes_error() {
+            before(info);
+        }
+    }));
+}
 
 /// The generator with its prior and definitions.
 pub(crate) struct Model(anthronet::model::Model);
@@ -153,20 +163,21 @@ pub(crate) fn measure_file(model: &Model, path: &Path) -> Result<Measured> {
 
 /// A character file as the renderer takes it, moved so that its lowest point stands on the ground.
 pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
-    let scene = anthronet::format::meshes::open(path)?;
+    let scene = anthronet::format::read_meshes(path)?;
     let lowest =
-        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
+        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p[1]));
     let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
-    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name)).map(|mesh| mesh.base_color);
+    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name));
+    let skin = skin.and_then(|mesh| scene.materials.get(mesh.material as usize)).map(|m| m.base_color);
     // A file without colours reads as white, which is no skin.
     let [r, g, b, _] = skin.filter(|c| *c != [1.0; 4]).unwrap_or_else(|| SkinTone::default().base_color());
     let parts = scene
         .meshes
-        .into_iter()
+        .iter()
         .map(|mesh| Part {
             material: Material::from_name(&mesh.name),
-            positions: mesh.positions.iter().map(|p| *p - Vec3::Y * lowest).collect(),
-            triangles: mesh.triangles,
+            positions: mesh.positions.iter().map(|p| Vec3::from(*p) - Vec3::Y * lowest).collect(),
+            triangles: mesh.triangulated().iter().map(|t| t.map(|corner| corner.0)).collect(),
         })
         .collect();
     Figure::new(parts, Vec3::new(r, g, b))
@@ -176,11 +187,26 @@ pub(crate) fn figure_from_file(path: &Path) -> Result<Figure> {
 /// Writes the scene; the path's ending chooses the format.
 pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<()> {
     let ending = crate::request::ending(path);
-    if compress && !matches!(ending.as_str(), "glb" | "gltf") {
+    if compress && !matches!(Format::of_ending(&ending), Some(Format::Glb | Format::Gltf)) {
         return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
     }
     let options = WriteOptions { gltf: GltfOptions { compress }, ..Default::default() };
-    Ok(anthronet::format::write_scene_with(scene, path, &options)?)
+    Ok(anthronet::format::write_scene(scene, path, &options)?)
+}
+
+/// Endings, without the dot, of files that a character is written to.
+pub(crate) fn written_endings() -> Vec<&'static str> {
+    Format::serving(Purpose::WriteScene).map(Format::ending).collect()
+}
+
+/// Those of them that hold motion.
+pub(crate) fn moving_endings() -> Vec<&'static str> {
+    Format::serving(Purpose::WriteScene).filter(|format| format.holds().clips).map(Format::ending).collect()
+}
+
+/// Endings, without the dot, of files whose surfaces are read.
+pub(crate) fn surface_endings() -> Vec<&'static str> {
+    Format::serving(Purpose::ReadMeshes).map(Format::ending).collect()
 }
 
 /// Writes text to a file, or with `-` to standard output.

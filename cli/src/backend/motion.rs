@@ -23,7 +23,7 @@ use crate::request::read_text;
 
 /// A character file, whole: skin, joints, materials, motions.
 pub(crate) fn open(path: &Path) -> Result<Scene> {
-    Ok(anthronet::format::open_scene(path)?)
+    Ok(format::read_scene(path)?)
 }
 
 /// Names the joints in another vocabulary.
@@ -79,7 +79,7 @@ fn load(
         let known = BUILTIN.join(", ");
         return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
     }
-    let motion = format::motion::read(path, &read_options(arguments))?;
+    let motion = format::read_motion(path, &read_options(arguments))?;
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }
