@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use anthronet::format::open_scene;
+use anthronet::format::{Purpose, read_scene};
 use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene};
+use crate::files::{check_ending, endings, write_scene};
 use crate::motion::{MotionArguments, add_clips, rename_joints};
 
 /// Add clips to a character that `anthronet generate` made.
@@ -41,12 +41,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    check_ending("-o", &arguments.output, &endings(Purpose::WriteScene))?;
     arguments.motion.check(&arguments.output)?;
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one clip, got none"));
     }
-    let mut scene = open_scene(&arguments.input)?;
+    let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         rename_joints(&mut scene, names);
     }

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use anthronet::format::open_scene;
+use anthronet::format::{Purpose, read_scene};
 use anthronet::skeleton::humanoid::JointNames;
 use clap::Args;
 
 use crate::choice;
 use crate::failure::Result;
-use crate::files::{CHARACTER_ENDINGS, STILL_ENDINGS, check_ending, ending, write_scene};
+use crate::files::{check_ending, endings, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
 /// Convert a character file to another format, with its skin, joints, materials and clips.
@@ -34,12 +34,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("OUTPUT", &arguments.output, &CHARACTER_ENDINGS)?;
-    let mut scene = open_scene(&arguments.input)?;
+    check_ending("OUTPUT", &arguments.output, &endings(Purpose::WriteScene))?;
+    let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         rename_joints(&mut scene, names);
     }
-    if STILL_ENDINGS.contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
+    if !holds_motion(&arguments.output) && !scene.clips.is_empty() {
         eprintln!(
             "warning: {}: the format holds no motion, the clips are left out",
             arguments.output.display()

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anthronet::format::meshes;
+use anthronet::format::read_meshes;
 use anthronet::scene::{Scene, SceneMaterial, SceneMesh, SkinTone};
 use glam::Vec3;
 
@@ -36,20 +36,21 @@ pub(crate) fn from_scene(scene: &Scene) -> Result<Figure> {
 
 /// The figure of a character file, moved so that its lowest point stands on the ground.
 pub(crate) fn from_file(path: &Path) -> Result<Figure> {
-    let scene = meshes::open(path)?;
+    let scene = read_meshes(path)?;
     let lowest =
-        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p.y));
+        scene.meshes.iter().flat_map(|mesh| &mesh.positions).fold(f32::INFINITY, |low, p| low.min(p[1]));
     let is_skin = |name: &str| Material::from_name(name) == Material::Skin;
-    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name)).map(|mesh| mesh.base_color);
+    let skin = scene.meshes.iter().find(|mesh| is_skin(&mesh.name));
+    let skin = skin.and_then(|mesh| scene.materials.get(mesh.material as usize)).map(|m| m.base_color);
     // A file without colours reads as white, which is no skin.
     let [r, g, b, _] = skin.filter(|c| *c != [1.0; 4]).unwrap_or_else(|| SkinTone::default().base_color());
     let parts = scene
         .meshes
-        .into_iter()
+        .iter()
         .map(|mesh| Part {
             material: Material::from_name(&mesh.name),
-            positions: mesh.positions.iter().map(|p| *p - Vec3::Y * lowest).collect(),
-            triangles: mesh.triangles,
+            positions: mesh.positions.iter().map(|p| Vec3::from(*p) - Vec3::Y * lowest).collect(),
+            triangles: mesh.triangulated().iter().map(|t| t.map(|corner| corner.0)).collect(),
         })
         .collect();
     Figure::new(parts, Vec3::new(r, g, b)).map_err(|failure| Failure::in_file(path, &failure))

@@ -3,17 +3,21 @@
 use std::fs;
 use std::path::Path;
 
-use anthronet::format::{GltfOptions, WriteOptions, write_atomic, write_scene_with};
+use anthronet::format::{self, Format, GltfOptions, Purpose, WriteOptions, write_atomic};
 use anthronet::scene::Scene;
 
 use crate::failure::{Failure, Result};
 use crate::terminal;
 
-/// Endings of the files that hold a character.
-pub(crate) const CHARACTER_ENDINGS: [&str; 7] = ["glb", "gltf", "vrm", "usda", "usdc", "usdz", "obj"];
+/// Endings, without the dot, of the files that serve a purpose.
+pub(crate) fn endings(purpose: Purpose) -> Vec<&'static str> {
+    Format::serving(purpose).map(Format::ending).collect()
+}
 
-/// Endings of character files that hold no motion.
-pub(crate) const STILL_ENDINGS: [&str; 2] = ["vrm", "obj"];
+/// Whether a file of this path's ending holds motion when it is written.
+pub(crate) fn holds_motion(path: &Path) -> bool {
+    Format::of_path(path, Purpose::WriteScene).is_ok_and(|format| format.holds().clips)
+}
 
 /// The ending of a path in lower case, without its dot; empty for none.
 pub(crate) fn ending(path: &Path) -> String {
@@ -48,11 +52,11 @@ pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
 /// Writes the scene; the path's ending chooses the format.
 pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<()> {
     let ending = ending(path);
-    if compress && !matches!(ending.as_str(), "glb" | "gltf") {
+    if compress && !matches!(Format::of_ending(&ending), Some(Format::Glb | Format::Gltf)) {
         return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
     }
     let options = WriteOptions { gltf: GltfOptions { compress }, ..WriteOptions::default() };
-    Ok(write_scene_with(scene, path, &options)?)
+    Ok(format::write_scene(scene, path, &options)?)
 }
 
 #[cfg(test)]

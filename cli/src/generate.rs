@@ -13,9 +13,10 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::files::{CHARACTER_ENDINGS, check_ending, write_scene, write_text};
+use crate::files::{check_ending, endings, write_scene, write_text};
 use crate::motion::{MotionArguments, add_clips};
 use crate::request::{RequestArguments, read_request};
+use anthronet::format::Purpose;
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
@@ -89,7 +90,7 @@ fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &CHARACTER_ENDINGS)?;
+    check_ending("-o", &arguments.output, &endings(Purpose::WriteScene))?;
     arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected a file other than that of -o"));

@@ -78,7 +78,18 @@ fn run(command: &Command) -> Result<()> {
     }
 }
 
+/// What becomes an error about a damaged file is reported there and not as a panic.
+fn keep_caught_panics_quiet() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !anthronet::format::panic_becomes_error() {
+            before(info);
+        }
+    }));
+}
+
 fn main() -> ExitCode {
+    keep_caught_panics_quiet();
     match run(&Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

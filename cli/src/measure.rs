@@ -3,14 +3,14 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use anthronet::format::measure_file;
+use anthronet::format::{Purpose, measure_file};
 use anthronet::measure::{Mass, MeasureId};
 use anthronet::model::Model;
 use clap::Args;
 use serde::Serialize;
 
 use crate::failure::{Failure, Result};
-use crate::files::{CHARACTER_ENDINGS, check_ending};
+use crate::files::{check_ending, endings};
 use crate::terminal::print;
 
 /// Measure a character file: all measures, mass and body mass index.
@@ -56,7 +56,7 @@ struct NamedValue {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("", &arguments.file, &CHARACTER_ENDINGS)?;
+    check_ending("", &arguments.file, &endings(Purpose::ReadMeshes))?;
     let measured = Measured::of_file(&Model::from_environment()?, &arguments.file)?;
     if arguments.json {
         let json = serde_json::to_string_pretty(&measured).map_err(|e| Failure::failed(e.to_string()))?;

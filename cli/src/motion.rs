@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anthronet::clip::{self, BUILTIN, Clip};
-use anthronet::format::{self, ReadOptions};
+use anthronet::format::{self, Format, Purpose, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
 use anthronet::retarget::{self, FingerMode, RetargetOptions};
 use anthronet::scene::Scene;
@@ -16,7 +16,7 @@ use serde_json::json;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::files::{self, STILL_ENDINGS, ending, read_text};
+use crate::files::{self, ending, read_text};
 
 /// Options of motion.
 #[derive(Args, Clone, Debug, Default)]
@@ -77,10 +77,12 @@ impl MotionArguments {
     /// Refuses contradictory options before any work is done.
     pub(crate) fn check(&self, output: &Path) -> Result<()> {
         let ending = ending(output);
-        if !self.clips.is_empty() && STILL_ENDINGS.contains(&ending.as_str()) {
-            let message =
-                format!("--clip: a .{ending} holds no motion, expected .glb .gltf .usda .usdc or .usdz");
-            return Err(Failure::usage(message));
+        if !self.clips.is_empty() && !files::holds_motion(output) {
+            let moving: Vec<_> = Format::serving(Purpose::WriteScene).filter(|f| f.holds().clips).collect();
+            let dotted: Vec<_> = moving.iter().map(|format| format!(".{}", format.ending())).collect();
+            let (last, others) = dotted.split_last().map_or(("", &[][..]), |(l, o)| (l.as_str(), o));
+            let expected = format!("{} or {last}", others.join(" "));
+            return Err(Failure::usage(format!("--clip: a .{ending} holds no motion, expected {expected}")));
         }
         if self.clips.is_empty() {
             let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);
@@ -187,7 +189,7 @@ fn load(
         let known = BUILTIN.join(", ");
         return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
     }
-    let motion = format::motion::read(path, &read_options(arguments))?;
+    let motion = format::read_motion(path, &read_options(arguments))?;
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }

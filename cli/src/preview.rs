@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use anthronet::format::write_atomic;
+use anthronet::format::{Purpose, write_atomic};
 use anthronet::model::Model;
 use anthronet::scene::{Scene, SceneOptions};
 use clap::Args;
 
 use crate::failure::{Failure, Result};
 use crate::figure;
-use crate::files::{CHARACTER_ENDINGS, check_ending, ending};
+use crate::files::{check_ending, ending, endings};
 use crate::render::{LitFigure, View, draw_views};
 use crate::request::RequestArguments;
 use crate::units::parse_size;
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             figure::from_scene(&Scene::from_body(&body, &SceneOptions::default())?)?
         }
         _ => {
-            check_ending("", &arguments.input, &[&CHARACTER_ENDINGS[..], &["json"]].concat())?;
+            check_ending("", &arguments.input, &[&endings(Purpose::ReadMeshes)[..], &["json"]].concat())?;
             figure::from_file(&arguments.input)?
         }
     };

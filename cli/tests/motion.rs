@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use anthronet::clip::Clip;
-use anthronet::format::open_scene;
+use anthronet::format::read_scene;
 use anthronet::scene::Scene;
 use anthronet::skeleton::humanoid::{JointNames, renamed};
 use common::{anthronet, files_in, folder, write};
@@ -99,7 +99,7 @@ impl Still {
         let out = self.path("out.glb");
         let all = [&["animate", &self.file, "--motion-report", "-", "-o", &out], options].concat();
         let report: Value = serde_json::from_str(&anthronet(&all, &[]).succeeds().out).expect("a report");
-        (open_scene(&out).expect("a character"), report["motions"][0].clone())
+        (read_scene(&out).expect("a character"), report["motions"][0].clone())
     }
 }
 
@@ -213,7 +213,7 @@ fn joints_have_the_names_that_are_asked_for() {
         let (named, again) = (still.path("out.glb"), still.path("again.glb"));
         anthronet(&["animate", &named, "--clip", "wave", "--joint-names", "native", "-o", &again], &[])
             .succeeds();
-        let scene = open_scene(&again).unwrap();
+        let scene = read_scene(&again).unwrap();
         assert_eq!(clip_names(&scene), ["idle", "wave"]);
         assert!(scene.joints.iter().any(|j| j.name == "thumb_02_r"));
     }

@@ -7,7 +7,7 @@ use anthronet::format::{self, ReadOptions};
 #[test]
 fn every_clip_is_a_person_on_a_floor() {
     for path in common::clips("clips of people on a floor") {
-        let motion = format::motion::read(&path, &ReadOptions::default()).unwrap();
+        let motion = format::read_motion(&path, &ReadOptions::default()).unwrap();
         let report = &motion.report;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         for clip in &motion.clips {
@@ -54,14 +54,14 @@ fn damaged_clips_do_no_harm() {
         for i in 0..40 {
             let at = i * bytes.len() / 40;
             assert!(
-                format::motion::from_bytes(&bytes[..at], path, &ReadOptions::default()).is_err(),
+                format::read_motion_from_bytes(&bytes[..at], path, &ReadOptions::default()).is_err(),
                 "cut at {at}"
             );
             for value in [0, 0x7f, 0xff] {
                 let mut damaged = bytes.clone();
                 damaged[at] = value;
                 // Whether it is a motion is the file's luck; that this returns is what counts.
-                if let Ok(motion) = format::motion::from_bytes(&damaged, path, &ReadOptions::default()) {
+                if let Ok(motion) = format::read_motion_from_bytes(&damaged, path, &ReadOptions::default()) {
                     assert!(!motion.clips.is_empty());
                 }
             }

@@ -3,8 +3,7 @@
 mod common;
 
 use anthronet::condition::Request;
-use anthronet::format::ReadOptions;
-use anthronet::format::motion::read;
+use anthronet::format::{ReadOptions, read_motion};
 use anthronet::measure::Sex;
 use anthronet::model::Model;
 use anthronet::retarget::{JointMap, Retargeter, TransferOptions, direction_error};
@@ -22,7 +21,7 @@ fn limbs_of_real_clips_point_where_the_sources_point() {
     let feet = ["foot_l", "foot_r", "ball_l", "ball_r"].map(|name| rest.find(name).unwrap());
     for path in paths {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        for clip in read(&path, &ReadOptions::default()).unwrap().clips {
+        for clip in read_motion(&path, &ReadOptions::default()).unwrap().clips {
             let map = JointMap::find(clip.skeleton(), &Default::default()).unwrap();
             let options = TransferOptions::default();
             let retargeter = Retargeter::new(clip.skeleton(), rest.clone(), &map, &options).unwrap();

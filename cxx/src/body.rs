@@ -103,6 +103,7 @@ impl Body {
         anthronet::format::write_scene(
             &anthronet::scene::Scene::from_body(&self.body, &Default::default())?,
             path,
+            &Default::default(),
         )
     }
 }

@@ -1,7 +1,5 @@
 //! Motion: files as they were read, their way onto a body, and clips of the body's own skeleton.
 
-use std::path::Path;
-
 use anthronet::Error;
 use anthronet::clip;
 use anthronet::clip::{BUILTIN, JointMask, Sampler};
@@ -175,11 +173,13 @@ fn room(joints: &[ffi::Transform], expected: usize) -> Result<()> {
 
 impl Motion {
     pub(crate) fn open(path: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
-        Ok(Box::new(Self(format::motion::read(path, &read_options(options)?)?)))
+        crate::panic::keep_caught_ones_quiet();
+        Ok(Box::new(Self(format::read_motion(path, &read_options(options)?)?)))
     }
 
     pub(crate) fn from_bytes(bytes: &[u8], name: &str, options: &ffi::MotionOptions) -> Result<Box<Self>> {
-        Ok(Box::new(Self(format::motion::from_bytes(bytes, Path::new(name), &read_options(options)?)?)))
+        crate::panic::keep_caught_ones_quiet();
+        Ok(Box::new(Self(format::read_motion_from_bytes(bytes, name, &read_options(options)?)?)))
     }
 
     pub(crate) fn clip_count(&self) -> usize {

@@ -12,6 +12,7 @@ mod clip;
 mod enums;
 mod mesh;
 mod model;
+mod panic;
 mod request;
 mod scene;
 mod skin;

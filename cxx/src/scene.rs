@@ -1,7 +1,7 @@
 //! Characters with their clips, as files on the disk or in memory.
 
 use anthronet::Error;
-use anthronet::format::{GltfOptions, WriteOptions, scene_to_bytes, write_scene_with};
+use anthronet::format::{Format, GltfOptions, WriteOptions, write_scene, write_scene_to_bytes};
 use anthronet::scene::{SceneOptions, SkinTone};
 
 use crate::Result;
@@ -35,11 +35,11 @@ impl Scene {
     }
 
     pub(crate) fn save(&self, path: &str) -> Result<()> {
-        write_scene_with(&self.scene, path, &self.options)
+        write_scene(&self.scene, path, &self.options)
     }
 
     pub(crate) fn to_bytes(&self, format: &str) -> Result<Vec<u8>> {
-        scene_to_bytes(&self.scene, format, &self.options)
+        write_scene_to_bytes(&self.scene, Format::of_one_file(format)?, &self.options)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 use std::path::Path;
 
-use anthronet::format::{GltfOptions, WriteOptions, scene_to_bytes, write_scene_with};
+use anthronet::format::{Format, GltfOptions, WriteOptions, write_scene, write_scene_to_bytes};
 use anthronet::scene::Scene;
 
 use crate::body::anthronet_body;
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn anthronet_export_path(
     guard(error, || {
         let path = Path::new(text(path, path_length, "path")?);
         let (scene, options) = scene(body, options)?;
-        Ok(write_scene_with(&scene, path, &options)?)
+        Ok(write_scene(&scene, path, &options)?)
     })
 }
 
@@ -70,9 +70,9 @@ pub unsafe extern "C" fn anthronet_export_memory(
 ) -> anthronet_status {
     guard(error, || {
         let out = Out::new(out_bytes, "out_bytes")?;
-        let format = text(format, format_length, "format")?;
+        let format = Format::of_one_file(text(format, format_length, "format")?)?;
         let (scene, options) = scene(body, options)?;
-        out.give(anthronet_bytes(scene_to_bytes(&scene, format, &options)?));
+        out.give(anthronet_bytes(write_scene_to_bytes(&scene, format, &options)?));
         Ok(())
     })
 }

@@ -106,7 +106,7 @@ pub unsafe extern "C" fn anthronet_motion_open_path(
     guard(error, || {
         let out = Out::new(out_motion, "out_motion")?;
         let path = Path::new(text(path, path_length, "path")?);
-        give(out, format::motion::read(path, &options(read_options)?)?);
+        give(out, format::read_motion(path, &options(read_options)?)?);
         Ok(())
     })
 }
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn anthronet_motion_open_memory(
         let out = Out::new(out_motion, "out_motion")?;
         let bytes = file(data, length, "data")?;
         let name = Path::new(text(name, name_length, "name")?);
-        give(out, format::motion::from_bytes(bytes, name, &options(read_options)?)?);
+        give(out, format::read_motion_from_bytes(bytes, name, &options(read_options)?)?);
         Ok(())
     })
 }

@@ -19,6 +19,9 @@ pub(crate) fn listen() {
 }
 
 fn hook(info: &PanicHookInfo<'_>) {
+    if anthronet::format::panic_becomes_error() {
+        return;
+    }
     let (said, place) = (said(info.payload()), info.location().map(ToString::to_string).unwrap_or_default());
     *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some((said.to_owned(), place.clone()));
     let mut message = text(said, &place);

@@ -29,7 +29,7 @@ use std::path::Path;
 use anthronet::Body;
 use anthronet::clip::builtin;
 use anthronet::condition::{Fill, Request};
-use anthronet::format::{WriteOptions, scene_to_bytes};
+use anthronet::format::{Format, WriteOptions, write_scene_to_bytes};
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
@@ -94,7 +94,7 @@ fn direct(model: &Model, request: &Request, number: usize) -> anthronet::Result<
     if walks(number) {
         scene.clips.push(builtin("walk", &body.skeleton().clone())?);
     }
-    let file = hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?);
+    let file = hash(&write_scene_to_bytes(&scene, Format::Glb, &WriteOptions::default())?);
     Ok([file, in_unity(&body, scene)?])
 }
 

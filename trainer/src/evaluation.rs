@@ -1,7 +1,6 @@
 //! Scores on bodies of a split, and the statistics of the sampled ones beside the paper's.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use anthronet::condition::Request;
 use anthronet::format::gltf::to_glb;
@@ -167,9 +166,9 @@ fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
         Err(e) => return Err(e.into()),
     };
     let glb = to_glb(&Scene::from_body(&body, &SceneOptions::default())?)?;
-    let file = anthronet::format::gltf::read::from_bytes(&glb, Path::new("body.glb"))?;
+    let file = anthronet::format::read_meshes_from_bytes(&glb, "body.glb")?;
     let mesh = file.meshes.first().ok_or_else(|| Error::Invalid("the written .glb has no mesh".into()))?;
-    let again = model.definitions().read_all(|v| mesh.positions[v as usize].as_dvec3());
+    let again = model.definitions().read_all(|v| glam::Vec3::from(mesh.positions[v as usize]).as_dvec3());
     let worst =
         request.given().map(|(id, asked)| 1000.0 * (again[id.index()] - asked).abs()).fold(0.0, f64::max);
     Ok(Some((worst, body.report().iterations)))

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use anthronet::clip;
 use anthronet::clip::BUILTIN;
 use anthronet::condition::Request;
-use anthronet::format::{self, Motion, ReadOptions};
+use anthronet::format::{self, Format, Motion, Purpose, ReadOptions};
 use anthronet::model::Model;
 use anthronet::pose::limits::JointLimits;
 use anthronet::retarget::{self, RetargetOptions, feet};
@@ -18,7 +18,6 @@ use rayon::prelude::*;
 use super::soles::Soles;
 use super::table::{MotionTable, Row};
 use crate::failure::{Failure, Result};
-use crate::files::ending;
 use crate::terminal::bar;
 
 /// Statures of the bodies, metres: from the first to the last in even steps.
@@ -32,7 +31,7 @@ pub(super) fn table(folder: &Path, bodies: usize) -> Result<MotionTable> {
     let mut rows = files
         .par_iter()
         .map(|path| {
-            let motion = format::motion::read(path, &ReadOptions::default())?;
+            let motion = format::read_motion(path, &ReadOptions::default())?;
             let row = row(path, &motion, &bodies)?;
             bar.inc(1);
             Ok(row)
@@ -50,10 +49,9 @@ pub(super) fn table(folder: &Path, bodies: usize) -> Result<MotionTable> {
 /// The motion files of a folder, in the order of their names.
 fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(folder).map_err(|e| Failure::io("read", folder, &e))?;
-    let known = ["bvh", "fbx", "npz", "glb", "gltf", "usda", "usdc", "usdz"];
     let mut files: Vec<PathBuf> = entries
         .filter_map(|entry| entry.ok().map(|e| e.path()))
-        .filter(|path| known.contains(&ending(path).as_str()))
+        .filter(|path| Format::of_path(path, Purpose::ReadMotion).is_ok())
         .collect();
     files.sort();
     if files.is_empty() {

@@ -8,7 +8,7 @@ use super::Clip;
 use super::edit::clip_of_poses;
 use super::sample::{Sampler, Wrap, mix};
 use crate::math::{RigidTransform, smoothstep};
-use crate::skeleton::{Pose, RestPose, Skeleton};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 /// How much each joint takes part: 0 not at all, 1 fully.

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::sample::{Sampler, Wrap, mix};
 use super::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::skeleton::{Pose, RestPose, Skeleton};
 use crate::math::smoothstep;
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 impl Clip {

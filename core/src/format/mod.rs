@@ -1,26 +1,47 @@
-//! Files: one room per format, each with its document, the motion and the character that are read of it, and what is
-//! written.
+//! Files: what is read of them and written to them.
+//!
+//! | To | Call | Returns |
+//! |---|---|---|
+//! | read a character | [`read_scene`] | a [`Scene`](crate::scene::Scene) with skeleton, skin, materials and clips |
+//! | read surfaces alone | [`read_meshes`] | a scene of meshes, in the bind pose, without a skeleton |
+//! | read the motion of any skeleton | [`read_motion`] | [`Motion`]: clips, and how the file was understood |
+//! | write a character | [`write_scene`] | a file, whole or not at all |
+//!
+//! Each has a variant for bytes in memory: [`read_scene_from_bytes`], [`read_meshes_from_bytes`],
+//! [`read_motion_from_bytes`], [`write_scene_to_bytes`]. The ending of the path chooses the [`Format`].
+//!
+//! # One folder per format
+//!
+//! A folder has as many of these as apply: `document` (bytes to a parsed document, every size checked), `motion` (document
+//! to [`RawMotion`](motion::raw::RawMotion)), `character` and `meshes` (document to scene), `write` (scene to bytes). What the
+//! folder offers is in one [`Description`](kind::Description), which [`Format`] lists: a new format is a folder and a line
+//! there.
 
-pub(crate) mod bvh;
-pub(crate) mod fbx;
-pub mod file;
+mod bvh;
+mod disk;
+mod fbx;
 pub mod gltf;
-pub(crate) mod input;
-mod measured;
-pub mod meshes;
-pub mod motion;
-pub(crate) mod npz;
+mod guard;
+mod kind;
+mod limits;
+mod measure;
+mod motion;
+mod npz;
 pub mod obj;
-mod proportions;
-pub(crate) mod raw;
-pub mod scene;
-mod settle;
+mod read;
 pub mod usd;
 pub mod vrm;
+mod write;
 
-pub use file::{WriteOptions, scene_to_bytes, write_atomic, write_scene, write_scene_with};
+pub use disk::write_atomic;
 pub use gltf::GltfOptions;
-pub use measured::measure_file;
+pub use guard::panic_becomes_error;
+pub use kind::{Format, Holds, Purpose};
+pub use measure::measure_file;
 pub use motion::{Found, Motion, ReadOptions, ReadReport};
-pub use scene::{open_scene, scene_from_bytes};
+pub use read::{
+    read_meshes, read_meshes_from_bytes, read_motion, read_motion_from_bytes, read_scene,
+    read_scene_from_bytes,
+};
 pub use vrm::VrmMeta;
+pub use write::{WriteOptions, write_scene, write_scene_to_bytes};

@@ -147,7 +147,7 @@ impl SceneMesh {
     /// Every face as triangles of corners `(position index, texture coordinate index)`: the quads first, each split
     /// along its diagonal from corner 0 to corner 2, then the triangles, in order. Triangles that a repeated corner
     /// leaves without area are left out. A mesh without texture coordinates has 0 for all of them.
-    pub(crate) fn triangulated(&self) -> Vec<[(u32, u32); 3]> {
+    pub fn triangulated(&self) -> Vec<[(u32, u32); 3]> {
         let quads = self.quads.iter().flat_map(|c| [[c[0], c[1], c[2]], [c[0], c[2], c[3]]]);
         let mut triangles =
             Vec::with_capacity(2 * self.quads.positions.len() + self.triangles.positions.len());

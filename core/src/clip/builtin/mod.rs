@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 use super::Clip;
 use super::edit::clip_of_poses;
-use crate::skeleton::{Pose, RestPose, Skeleton};
 use crate::math::smoothstep;
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 use figure::Figure;
 

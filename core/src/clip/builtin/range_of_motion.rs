@@ -102,13 +102,8 @@ fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
 
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let frames = (STEP * RATE as f32) as usize;
-<<<<<<< HEAD
-    let share = |frame: usize| smooth(frame as f32 / frames as f32);
-    let mut poses = vec![figure.rest.rest_pose().clone()];
-=======
     let share = |frame: usize| smoothstep(frame as f32 / frames as f32);
-    let mut poses = vec![figure.rest.pose().clone()];
->>>>>>> wip-measure
+    let mut poses = vec![figure.rest.rest_pose().clone()];
     for exercise in UPPER_BODY {
         let home = [0.0; 3];
         let stops: Vec<[f32; 3]> = [&[home][..], exercise.keys, &[home]].concat();

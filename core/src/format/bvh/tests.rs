@@ -2,8 +2,7 @@ use std::path::Path;
 
 use glam::{EulerRot, Quat, Vec3};
 
-use crate::format::motion::from_bytes;
-use crate::format::{Found, Motion, ReadOptions};
+use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::space::{Axis, Unit};
 
 const SMALL: &str = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 1 0\n\tCHANNELS 6 Xposition Zposition Yposition Zrotation Xrotation Yrotation\n\
@@ -15,7 +14,7 @@ fn metres() -> ReadOptions {
 }
 
 fn read(text: &str) -> Result<Motion, String> {
-    from_bytes(text.as_bytes(), Path::new("walk.bvh"), &metres()).map_err(|e| e.to_string())
+    read_motion_from_bytes(text.as_bytes(), Path::new("walk.bvh"), &metres()).map_err(|e| e.to_string())
 }
 
 #[test]
@@ -78,7 +77,7 @@ fn a_second_joint_of_a_name_is_renamed() {
 #[test]
 fn a_rate_that_was_asked_for_wins() {
     let options = ReadOptions { frames_per_second: Some(120.0), ..metres() };
-    let motion = from_bytes(SMALL.as_bytes(), Path::new("a.bvh"), &options).unwrap();
+    let motion = read_motion_from_bytes(SMALL.as_bytes(), Path::new("a.bvh"), &options).unwrap();
     assert_eq!((motion.clips[0].frames_per_second(), motion.report.rate_found), (120.0, Found::Asked));
 }
 
@@ -134,7 +133,9 @@ fn damage_is_an_error_or_another_motion() {
         for byte in [b'9', b'-', b' ', b'\n', b'{', 0xff] {
             let mut bytes = SMALL.as_bytes().to_vec();
             bytes[at] = byte;
-            read += usize::from(from_bytes(&bytes, Path::new("a.bvh"), &ReadOptions::default()).is_ok());
+            read += usize::from(
+                read_motion_from_bytes(&bytes, Path::new("a.bvh"), &ReadOptions::default()).is_ok(),
+            );
         }
     }
     assert!(read > 0, "a changed digit leaves a motion");

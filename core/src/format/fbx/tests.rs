@@ -4,8 +4,7 @@ use std::path::Path;
 use glam::{Quat, Vec3};
 
 use super::binary::binary;
-use crate::format::motion::from_bytes;
-use crate::format::{Found, Motion, ReadOptions};
+use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::space::{Axis, Unit};
 
 /// Hips above a leg, in centimetres, +Y up, 30 frames a second: the hips rise by 20 cm in a second; the leg, which
@@ -126,7 +125,8 @@ Connections: {
 "#;
 
 fn read(text: &str) -> Result<Motion, String> {
-    from_bytes(text.as_bytes(), Path::new("a.fbx"), &ReadOptions::default()).map_err(|e| e.to_string())
+    read_motion_from_bytes(text.as_bytes(), Path::new("a.fbx"), &ReadOptions::default())
+        .map_err(|e| e.to_string())
 }
 
 #[test]
@@ -173,12 +173,14 @@ fn units_axes_and_rates_are_the_files() {
             )
     };
     let z_up = up("2", "1", "1", "-1");
-    let motion = from_bytes(z_up.as_bytes(), Path::new("a.fbx"), &ReadOptions::default()).unwrap();
+    let motion =
+        read_motion_from_bytes(z_up.as_bytes(), Path::new("a.fbx"), &ReadOptions::default()).unwrap();
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Z, Found::File));
     assert!(motion.clips[0].pose(0).locals[0].translation.distance(Vec3::NEG_Z) < 1e-5);
 
     let y_down = up("1", "-1", "2", "-1");
-    let motion = from_bytes(y_down.as_bytes(), Path::new("a.fbx"), &ReadOptions::default()).unwrap();
+    let motion =
+        read_motion_from_bytes(y_down.as_bytes(), Path::new("a.fbx"), &ReadOptions::default()).unwrap();
     assert!(motion.report.warnings[0].contains("neither +Y nor +Z up"), "{:?}", motion.report.warnings);
     assert!(motion.clips[0].pose(0).locals[0].translation.distance(Vec3::NEG_Y) < 1e-5);
 
@@ -188,7 +190,10 @@ fn units_axes_and_rates_are_the_files() {
     let film = SMALL.replace("\"TimeMode\", \"enum\", \"\", \"\",6", "\"TimeMode\", \"enum\", \"\", \"\",11");
     assert_eq!(read(&film).unwrap().clips[0].frame_count(), 25);
     let asked = ReadOptions { frames_per_second: Some(60.0), ..Default::default() };
-    assert_eq!(from_bytes(SMALL.as_bytes(), Path::new("a.fbx"), &asked).unwrap().clips[0].frame_count(), 61);
+    assert_eq!(
+        read_motion_from_bytes(SMALL.as_bytes(), Path::new("a.fbx"), &asked).unwrap().clips[0].frame_count(),
+        61
+    );
 }
 
 #[test]
@@ -205,7 +210,7 @@ fn a_scaled_joint_moves_its_children_away() {
 
 /// What a reader makes of damage: a motion of finite numbers, or a reason that is ours.
 fn or_reason(bytes: &[u8]) -> Result<(), String> {
-    match from_bytes(bytes, Path::new("a.fbx"), &ReadOptions::default()) {
+    match read_motion_from_bytes(bytes, Path::new("a.fbx"), &ReadOptions::default()) {
         // Numbers are finite, or there is no clip.
         Ok(motion) => {
             assert!(!motion.clips.is_empty());
@@ -231,7 +236,7 @@ fn or_reason(bytes: &[u8]) -> Result<(), String> {
 #[test]
 fn a_binary_file_is_the_same_motion() {
     let bytes = binary(SMALL);
-    let motion = from_bytes(&bytes, Path::new("a.fbx"), &ReadOptions::default()).unwrap();
+    let motion = read_motion_from_bytes(&bytes, Path::new("a.fbx"), &ReadOptions::default()).unwrap();
     let text = read(SMALL).unwrap();
     assert_eq!(motion.report, text.report);
     assert_eq!(motion.clips, text.clips);

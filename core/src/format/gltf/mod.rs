@@ -1,10 +1,40 @@
-//! glTF 2.0, binary and JSON.
+//! glTF 2.0, binary and JSON. EXT_meshopt_compression is undone.
 
+mod animation;
+mod character;
 pub(crate) mod document;
-pub(crate) mod motion;
-pub(crate) mod read;
-pub(crate) mod track;
+mod meshes;
+mod motion;
 pub(crate) mod write;
 
-pub use read::{from_bytes, scene_from_bytes};
+use std::path::Path;
+
+use self::document::Document;
+use super::kind::{Description, Holds, Write};
+use crate::error::Outcome;
+use crate::{Error, Result};
+
 pub use write::{GltfFiles, GltfOptions, to_glb, to_glb_with, to_gltf, to_gltf_with};
+
+pub(super) const GLB: Description = Description {
+    ending: "glb",
+    title: "glTF 2.0, binary",
+    holds: Holds { meshes: true, skeleton: true, clips: true },
+    read_motion: Some(|bytes, path, options| opened(bytes, path, |document| motion::read(document, options))),
+    read_scene: Some(|bytes, path| opened(bytes, path, character::scene)),
+    read_meshes: Some(|bytes, path| opened(bytes, path, meshes::scene)),
+    write: Some(Write::Alone(|scene, options| to_glb_with(scene, &options.gltf))),
+};
+
+pub(super) const GLTF: Description = Description {
+    ending: "gltf",
+    title: "glTF 2.0, JSON",
+    write: Some(Write::WithBuffer(|scene, bin_name, options| to_gltf_with(scene, bin_name, &options.gltf))),
+    ..GLB
+};
+
+/// Parses a file, whose buffers may lie beside it, and reads something of it.
+fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Outcome<T>) -> Result<T> {
+    let document = Document::open(bytes, path)?;
+    read(&document).map_err(|message| Error::file(path, message))
+}

@@ -2,7 +2,7 @@
 //! Capture as Surface Shapes" (2019), and the SMPL, SMPL-H and SMPL-X body models' tools write them.
 //!
 //! The files hold no skeleton, which comes from the body model. The rest pose here has the public names of the
-//! joints and **assumed lengths of bones**, round numbers for a person of 1.70 m: see [`smpl`]. World axes are AMASS'
+//! joints and **assumed lengths of bones**, round numbers for a person of 1.70 m: see `smpl`. World axes are AMASS'
 //! +Z up, unless the body stands along Y; rest poses of the body models are +Y up, facing +Z.
 //!
 //! The pelvis is put where `trans` says. The body models put it at `trans` + J₀, where J₀ is the pelvis' place in the
@@ -12,151 +12,19 @@
 //! alone, and the height is found from the feet ([`plant`](crate::retarget::feet::plant)).
 
 mod array;
+mod motion;
 mod smpl;
-
 #[cfg(test)]
 mod tests;
 
-use glam::{DVec3, Quat, Vec3};
+use super::kind::{Description, Holds};
 
-use super::raw::{Raw, Recorder};
-use super::{Found, ReadOptions};
-use crate::clip::MAX_FRAMES;
-use crate::error::Outcome;
-use crate::space::{Axis, Unit};
-use array::Archive;
-
-/// Reads an archive; the clip is named `name`.
-pub(super) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<Raw> {
-    let mut archive = Archive::open(bytes)?;
-    let poses = read_poses(&mut archive)?;
-    let skeleton = smpl::skeleton(poses.width / 3).ok_or_else(|| {
-        let width = poses.width;
-        format!("poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got {width}")
-    })?;
-    let Some((key, trans)) = archive.first(&["trans", "transl", "smpl_trans"])? else {
-        return Err(archive.missing("trans"));
-    };
-    if trans.shape.len() != 2 || trans.width() != 3 || trans.rows() != poses.frames {
-        let frames = poses.frames;
-        return Err(format!("{key}: expected a shape of ({frames}, 3), got {:?}", trans.shape));
-    }
-    let mut rate_found = Found::File;
-    let rate = match options.frames_per_second {
-        Some(rate) => {
-            rate_found = Found::Asked;
-            rate
-        }
-        None => match archive.first(&["mocap_framerate", "mocap_frame_rate", "fps"])? {
-            Some((key, rate)) => match rate.values.as_slice() {
-                [rate] if (0.1..=1000.0).contains(rate) => *rate,
-                other => {
-                    let got = other.iter().take(3).collect::<Vec<_>>();
-                    return Err(format!("{key}: expected one number of 0.1 to 1000, got {got:?}"));
-                }
-            },
-            None => return Err(archive.missing("mocap_framerate")),
-        },
-    };
-
-    let mut recorder = Recorder::new(skeleton.rest.len());
-    let mut pose = skeleton.rest.clone();
-    for (turns, at) in poses.values.chunks_exact(poses.width).zip(trans.values.chunks_exact(3)) {
-        for (local, turn) in pose.iter_mut().zip(turns.chunks_exact(3)) {
-            local.rotation = rotation(DVec3::from_slice(turn));
-        }
-        pose[0].translation = DVec3::from_slice(at).as_vec3();
-        recorder.push(&pose);
-    }
-    let take = recorder.take(name.to_owned(), rate, &skeleton.rest);
-    Ok(Raw {
-        format: skeleton.model,
-        names: skeleton.names,
-        parents: skeleton.parents,
-        rest: skeleton.rest,
-        ends: skeleton.ends,
-        takes: vec![take],
-        unit: Some(Unit::Metre),
-        up: Some(Axis::Z),
-        rest_is_upright: true,
-        rate_found,
-        warnings: vec![
-            "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
-            format!(
-                "`{key}` is taken for the place of the pelvis: the {} body model adds a constant of its own, by which the \
-                 whole clip is shifted",
-                skeleton.model
-            ),
-        ],
-    })
-}
-
-/// A turn about an axis by its length; `NaN` where it is not finite.
-fn rotation(turn: DVec3) -> Quat {
-    let angle = turn.length();
-    let (sin, cos) = libm::sincos(angle / 2.0);
-    // sin(a/2) / a, whose limit at none is one half.
-    let scale = if angle < 1e-9 { 0.5 } else { sin / angle };
-    let axis: Vec3 = (turn * scale).as_vec3();
-    Quat::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
-}
-
-/// Frames × width numbers, three a joint.
-struct Poses {
-    frames: usize,
-    width: usize,
-    values: Vec<f64>,
-}
-
-/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body may lack.
-fn read_poses(archive: &mut Archive) -> Outcome<Poses> {
-    if let Some((key, poses)) = archive.first(&["poses", "smpl_poses", "fullpose"])? {
-        let (frames, width) = (poses.rows(), poses.width());
-        check_frames(key, &poses.shape, frames)?;
-        return Ok(Poses { frames, width, values: poses.values });
-    }
-    let Some((key, root)) = archive.first(&["root_orient", "global_orient"])? else {
-        return Err(archive.missing("poses, or root_orient and pose_body"));
-    };
-    let frames = root.rows();
-    check_frames(key, &root.shape, frames)?;
-    let Some(body) = archive.first(&["pose_body", "body_pose"])? else {
-        return Err(archive.missing("pose_body"));
-    };
-    let mut parts = vec![(key, root), body];
-    let one_of: [(&[&'static str], &[&'static str]); 3] = [
-        (&["pose_jaw", "jaw_pose"], &[]),
-        (&["pose_eye"], &["leye_pose", "reye_pose"]),
-        (&["pose_hand"], &["left_hand_pose", "right_hand_pose"]),
-    ];
-    for (whole, halves) in one_of {
-        if let Some(part) = archive.first(whole)? {
-            parts.push(part);
-            continue;
-        }
-        for half in halves {
-            parts.extend(archive.first(&[half])?);
-        }
-    }
-    for (key, part) in &parts {
-        if part.rows() != frames {
-            return Err(format!("{key}: expected {frames} frames, got a shape of {:?}", part.shape));
-        }
-    }
-    let width = parts.iter().map(|(_, part)| part.width()).sum();
-    let mut values = Vec::with_capacity(parts.iter().map(|(_, part)| part.values.len()).sum());
-    for frame in 0..frames {
-        for (_, part) in &parts {
-            let width = part.width();
-            values.extend_from_slice(&part.values[frame * width..(frame + 1) * width]);
-        }
-    }
-    Ok(Poses { frames, width, values })
-}
-
-fn check_frames(key: &str, shape: &[u64], frames: usize) -> Outcome<()> {
-    if shape.len() < 2 || frames == 0 || frames > MAX_FRAMES {
-        return Err(format!("{key}: expected 1 to {MAX_FRAMES} frames by joints, got a shape of {shape:?}"));
-    }
-    Ok(())
-}
+pub(super) const NPZ: Description = Description {
+    ending: "npz",
+    title: "AMASS and SMPL motion",
+    holds: Holds { meshes: false, skeleton: false, clips: true },
+    read_motion: Some(motion::read),
+    read_scene: None,
+    read_meshes: None,
+    write: None,
+};

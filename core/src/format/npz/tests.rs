@@ -7,8 +7,7 @@ use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
 
 use super::array::decode;
-use crate::format::motion::from_bytes;
-use crate::format::{Found, Motion, ReadOptions};
+use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::space::Axis;
 
 /// An array: name, shape, numbers.
@@ -28,7 +27,7 @@ fn archive(arrays: &[Named]) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) -> Result<Motion, String> {
-    from_bytes(bytes, Path::new("walk.npz"), &ReadOptions::default()).map_err(|e| e.to_string())
+    read_motion_from_bytes(bytes, Path::new("walk.npz"), &ReadOptions::default()).map_err(|e| e.to_string())
 }
 
 /// Two frames of somebody standing with +Z up, the left knee bent in the second.

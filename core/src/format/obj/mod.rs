@@ -1,7 +1,18 @@
-//! Wavefront OBJ.
+//! Wavefront OBJ: surfaces in the bind pose. Skeleton, motion, morph targets and materials have no place in it.
 
-pub(crate) mod read;
-pub(crate) mod write;
+mod read;
+mod write;
 
-pub use read::from_bytes;
+use super::kind::{Description, Holds, Write};
+
 pub use write::to_obj;
+
+pub(super) const OBJ: Description = Description {
+    ending: "obj",
+    title: "Wavefront OBJ",
+    holds: Holds { meshes: true, skeleton: false, clips: false },
+    read_motion: None,
+    read_scene: None,
+    read_meshes: Some(read::read),
+    write: Some(Write::Alone(|scene, _| to_obj(scene))),
+};

@@ -9,16 +9,17 @@ use glam::Vec3;
 
 use super::write::COUNTS;
 use crate::error::Outcome;
-use crate::format::input::MAX_ELEMENTS;
-use crate::format::meshes::{ImportedMesh, ImportedScene};
+use crate::format::limits::MAX_ELEMENTS;
+use crate::scene::titles::Titles;
+use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
 use crate::{Error, Result};
 
-/// Reads an `.obj` that is already in memory; `path` is for messages.
+/// Reads an `.obj`; `path` is for messages. All meshes have one material, white.
 ///
 /// # Errors
 /// [`Error::File`] with the line for a number that is none or not finite, an index of nothing, too few corners, a
 /// file of ours that lost its end, or a file without any vertices.
-pub fn from_bytes(bytes: &[u8], path: &Path) -> Result<ImportedScene> {
+pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Scene> {
     let mut reader = Reader::default();
     for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
         reader.line(line).map_err(|message| Error::file(path, format!("line {}: {message}", i + 1)))?;
@@ -133,7 +134,7 @@ impl Reader {
         Ok((position, normal.transpose()?))
     }
 
-    fn finish(self) -> Outcome<ImportedScene> {
+    fn finish(self) -> Outcome<Scene> {
         if let Some((vertices, faces)) = self.announced
             && (vertices, faces) != (self.positions.len(), self.faces)
         {
@@ -150,11 +151,14 @@ impl Reader {
         let any_faces = self.sections.iter().any(|s| !s.triangles.is_empty());
         let sections = self.sections.iter().filter(|s| !any_faces || !s.triangles.is_empty());
         let sections = sections.filter(|s| any_faces || s.end_vertex > s.first_vertex);
-        let meshes = sections.map(|section| self.mesh(section)).collect();
-        Ok(ImportedScene { meshes, ..ImportedScene::default() })
+        let mut names = Titles::default();
+        let meshes =
+            sections.map(|section| SceneMesh { name: names.unique(&section.name), ..self.mesh(section) });
+        let materials = vec![SceneMaterial::dielectric("Material", [1.0; 4], 0.5)];
+        Ok(Scene { meshes: meshes.collect(), materials, ..Scene::default() })
     }
 
-    fn mesh(&self, section: &Section) -> ImportedMesh {
+    fn mesh(&self, section: &Section) -> SceneMesh {
         // Vertices that are not the section's own, in the file's order, then the place of each.
         let own = section.first_vertex as u32..section.end_vertex as u32;
         let corners = || section.triangles.iter().flatten();
@@ -183,14 +187,12 @@ impl Reader {
                 }
             }
         }
-        ImportedMesh {
-            name: section.name.clone(),
-            model_vertices: positions.len(),
-            triangles: section.triangles.iter().map(|t| t.map(|corner| place(corner.0))).collect(),
-            positions,
-            normals: normals.into_iter().map(Option::unwrap_or_default).collect(),
-            base_color: [1.0; 4],
-            skinned: false,
+        let triangles = section.triangles.iter().map(|t| t.map(|corner| place(corner.0))).collect();
+        SceneMesh {
+            positions: positions.iter().map(Vec3::to_array).collect(),
+            normals: normals.into_iter().map(|normal| normal.unwrap_or_default().to_array()).collect(),
+            triangles: Corners { positions: triangles, uvs: Vec::new() },
+            ..SceneMesh::default()
         }
     }
 }
@@ -228,24 +230,22 @@ mod tests {
     use crate::format::obj::to_obj;
     use crate::testing::scene::arm;
 
-    fn read(text: &str) -> std::result::Result<ImportedScene, String> {
-        from_bytes(text.as_bytes(), Path::new("a.obj")).map_err(|e| e.to_string())
+    fn read(text: &str) -> std::result::Result<Scene, String> {
+        super::read(text.as_bytes(), Path::new("a.obj")).map_err(|e| e.to_string())
     }
 
     #[test]
     fn reads_back_what_was_written() {
         let scene = arm(4);
-        let read = from_bytes(&to_obj(&scene).unwrap(), Path::new("a.obj")).unwrap();
+        let read = super::read(&to_obj(&scene).unwrap(), Path::new("a.obj")).unwrap();
         assert_eq!(read.meshes.len(), 2);
         for (read, written) in read.meshes.iter().zip(&scene.meshes) {
             assert_eq!(read.name, written.name);
-            assert_eq!(read.positions, written.positions.iter().map(|p| Vec3::from(*p)).collect::<Vec<_>>());
+            assert_eq!(read.positions, written.positions);
             let triangles: Vec<_> = written.triangulated().iter().map(|t| t.map(|c| c.0)).collect();
-            assert_eq!(read.triangles, triangles);
-            assert_eq!(read.model_vertices, written.positions.len());
-            assert!(
-                read.normals.iter().zip(&written.normals).all(|(a, b)| a.distance(Vec3::from(*b)) < 1e-6)
-            );
+            assert_eq!(read.triangles.positions, triangles);
+            let far = |a: &[f32; 3], b: &[f32; 3]| Vec3::from(*a).distance(Vec3::from(*b)) >= 1e-6;
+            assert!(!read.normals.iter().zip(&written.normals).any(|(a, b)| far(a, b)));
         }
         assert_eq!(read.meshes[0].normals.len(), 15);
     }
@@ -258,15 +258,18 @@ mod tests {
         )
         .unwrap();
         let [b, a] = &scene.meshes[..] else { panic!("{scene:?}") };
-        let x = |mesh: &ImportedMesh| mesh.positions.iter().map(|p| p.x).collect::<Vec<_>>();
-        assert_eq!((x(b), &b.triangles[..]), (vec![1.0, 3.0, 4.0], &[[2, 0, 1]][..]));
-        assert_eq!((x(a), &a.triangles[..]), (vec![0.0, 1.0, 2.0, 5.0], &[[0, 1, 2], [0, 2, 3]][..]));
+        let x = |mesh: &SceneMesh| mesh.positions.iter().map(|p| p[0]).collect::<Vec<_>>();
+        assert_eq!((x(b), &b.triangles.positions[..]), (vec![1.0, 3.0, 4.0], &[[2, 0, 1]][..]));
+        assert_eq!(
+            (x(a), &a.triangles.positions[..]),
+            (vec![0.0, 1.0, 2.0, 5.0], &[[0, 1, 2], [0, 2, 3]][..])
+        );
     }
 
     #[test]
     fn points_alone_are_a_mesh() {
         let scene = read("v 1 2 3\nv 4 5 6").unwrap();
-        assert_eq!(scene.meshes[0].positions, [Vec3::new(1., 2., 3.), Vec3::new(4., 5., 6.)]);
+        assert_eq!(scene.meshes[0].positions, [[1., 2., 3.], [4., 5., 6.]]);
     }
 
     #[test]
@@ -290,7 +293,7 @@ mod tests {
             let message = read(text).unwrap_err();
             assert!(message.contains(expected), "`{expected}` in `{message}`");
         }
-        let message = from_bytes(b"v 1 2 3\n\xff\xfe", Path::new("a.obj")).unwrap_err().to_string();
+        let message = super::read(b"v 1 2 3\n\xff\xfe", Path::new("a.obj")).unwrap_err().to_string();
         assert!(message.contains("line 2: is not text"), "{message}");
     }
 
@@ -298,7 +301,7 @@ mod tests {
     fn a_file_of_ours_that_lost_its_end_is_told() {
         let bytes = to_obj(&arm(4)).unwrap();
         let last_face = bytes.len() - b"f 16 17 18\n".len();
-        let message = from_bytes(&bytes[..last_face], Path::new("a.obj")).unwrap_err().to_string();
+        let message = super::read(&bytes[..last_face], Path::new("a.obj")).unwrap_err().to_string();
         assert!(message.contains("expected 18 vertices and 11 faces, got 18 and 10"), "{message}");
     }
 }

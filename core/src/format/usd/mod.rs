@@ -1,13 +1,47 @@
 //! USD with UsdSkel: text, crate and package.
 
-pub(crate) mod document;
-pub(crate) mod motion;
-pub(crate) mod read;
-pub(crate) mod skeleton;
-mod track;
-pub(crate) mod values;
+mod character;
+mod document;
+mod motion;
 pub(crate) mod write;
-pub(crate) mod xform;
 
-pub use read::{from_bytes, scene_from_bytes};
+use std::path::Path;
+
+use self::document::Document;
+use super::kind::{Description, Holds, Write};
+use super::motion::clip_name;
+use crate::error::Outcome;
+use crate::{Error, Result};
+
 pub use write::{to_usda, to_usdc, to_usdz};
+
+pub(super) const USDA: Description = Description {
+    ending: "usda",
+    title: "USD, text",
+    holds: Holds { meshes: true, skeleton: true, clips: true },
+    read_motion: Some(|bytes, path, options| {
+        opened(bytes, path, |d| motion::read(d, &clip_name(path), options))
+    }),
+    read_scene: Some(|bytes, path| opened(bytes, path, |document| character::scene(document, path))),
+    read_meshes: Some(|bytes, path| opened(bytes, path, character::meshes)),
+    write: Some(Write::Alone(|scene, _| to_usda(scene))),
+};
+
+pub(super) const USDC: Description = Description {
+    ending: "usdc",
+    title: "USD, crate",
+    write: Some(Write::Alone(|scene, _| to_usdc(scene))),
+    ..USDA
+};
+
+pub(super) const USDZ: Description = Description {
+    ending: "usdz",
+    title: "USD, package",
+    write: Some(Write::Alone(|scene, _| to_usdz(scene))),
+    ..USDA
+};
+
+/// Parses a file and reads something of it.
+fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Outcome<T>) -> Result<T> {
+    Document::open(bytes).and_then(|document| read(&document)).map_err(|message| Error::file(path, message))
+}

@@ -7,12 +7,24 @@
 use gltf_json::{Value, extensions};
 use serde_json::{Map, json};
 
+use super::gltf;
 use super::gltf::write::{GltfOptions, document, finished, glb};
+use super::kind::{Description, Holds, Write};
 use crate::scene::Scene;
 use crate::skeleton::humanoid::{HumanoidBone, humanoid_bones};
 use crate::{Error, Result};
 
 const NAME: &str = "VRMC_vrm";
+
+/// Read as the glTF that it is, but for motion, for which VRM has no words.
+pub(super) const VRM: Description = Description {
+    ending: "vrm",
+    title: "VRM 1.0",
+    holds: Holds { meshes: true, skeleton: true, clips: false },
+    read_motion: None,
+    write: Some(Write::Alone(|scene, options| to_vrm(scene, &options.vrm))),
+    ..gltf::GLB
+};
 
 /// Who made a figure, and what others may do with it.
 #[derive(Clone, Debug, PartialEq, Eq)]

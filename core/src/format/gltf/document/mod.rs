@@ -15,7 +15,7 @@ use gltf_json::{
 };
 
 use crate::error::Outcome;
-use crate::format::input::MAX_ELEMENTS;
+use crate::format::limits::MAX_ELEMENTS;
 use crate::{Error, Result};
 
 /// Required extensions that change no geometry.

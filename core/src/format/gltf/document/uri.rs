@@ -20,7 +20,7 @@ pub(crate) fn load(
     {
         return Err(Err(format!("expected a file beside or below the document, got `{uri}`")));
     }
-    crate::format::input::read(&document.with_file_name("").join(relative)).map_err(Ok)
+    crate::format::disk::read(&document.with_file_name("").join(relative)).map_err(Ok)
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {

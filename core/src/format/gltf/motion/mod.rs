@@ -4,141 +4,75 @@
 //! stands between and above them is folded in. They rest in the pose of the nodes, which is the one that the format
 //! calls initial. Every animation is sampled at the rate of its keys.
 
-#[cfg(test)]
-mod tests;
-
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
+use gltf_json::Node;
 use gltf_json::animation::Property;
-use gltf_json::{Node, Value};
 
-use super::track::{self, Track};
+use super::animation::{self, FALLBACK_RATE, ON_FRAME, Timing, Track, unit};
+use super::document::{Document, Tree};
 use crate::error::Outcome;
-use crate::format::gltf::document::{Document, Tree};
-use crate::format::raw::{self, Raw, Recorder, Rigid};
-use crate::format::{Found, ReadOptions};
+use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
+use crate::format::motion::{Found, ReadOptions};
+use crate::math::RigidTransform;
 use crate::skeleton::MAX_JOINTS;
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
 
 /// Most nodes of a document.
 const MAX_NODES: usize = 1 << 16;
 
-/// Reads a document, whose buffers may lie beside `path`.
-pub(crate) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Raw> {
-    let document = Document::open(bytes, path)?;
-    motion(&document, options).map_err(|message| Error::file(path, message))
-}
-
-fn motion(document: &Document, options: &ReadOptions) -> Outcome<Raw> {
+/// Every animation of nodes.
+pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMotion> {
     let nodes = &document.root.nodes;
     if nodes.len() > MAX_NODES {
         return Err(format!("expected at most {MAX_NODES} nodes, got {}", nodes.len()));
     }
     let tree = document.tree()?;
-    let mut left = track::MAX_NUMBERS;
-    let animations = document
-        .root
-        .animations
-        .iter()
-        .enumerate()
-        .map(|(i, animation)| {
-            track::read(document, animation, &mut left).map_err(|e| format!("animations[{i}]: {e}"))
-        })
-        .collect::<Outcome<Vec<Vec<Track>>>>()?;
-    if animations.iter().all(Vec::is_empty) {
-        return Err("expected an animation of nodes, got none".to_owned());
-    }
-    let joints = joints(document, &tree, &animations)?;
-    let mut place = vec![None; nodes.len()];
-    for (joint, &node) in joints.iter().enumerate() {
-        place[node] = Some(joint as u32);
-    }
-    let mut above: Vec<Option<u32>> = vec![None; nodes.len()];
-    for &node in &tree.order {
-        above[node] = tree.parents[node].and_then(|parent| place[parent].or(above[parent]));
-    }
-    let parents: Vec<Option<u32>> = joints.iter().map(|&node| above[node]).collect();
-    // Only what moves joints is evaluated.
-    let mut needed = place.iter().map(Option::is_some).collect::<Vec<_>>();
-    for &node in tree.order.iter().rev().filter(|&&node| needed[node]).collect::<Vec<_>>() {
-        let mut up = tree.parents[node];
-        while let Some(node) = up.filter(|&node| !needed[node]) {
-            needed[node] = true;
-            up = tree.parents[node];
-        }
-    }
-    let order: Vec<usize> = tree.order.iter().copied().filter(|&node| needed[node]).collect();
-
+    let animations = tracks(document)?;
+    let rig = Rig::of(document, &tree, &animations)?;
+    let at_rest: Vec<Transform> = nodes.iter().map(Transform::of).collect();
     let mut warnings = Vec::new();
-    let rest_nodes: Vec<Transform> = nodes.iter().map(Transform::of).collect();
     let scales = |node: &usize| {
         let animated = |track: &Track| track.node == *node && track.property == Property::Scale;
-        !rest_nodes[*node].scale.abs_diff_eq(DVec3::ONE, 1e-3) || animations.iter().flatten().any(animated)
+        !at_rest[*node].scale.abs_diff_eq(DVec3::ONE, 1e-3) || animations.iter().flatten().any(animated)
     };
-    if let Some(&node) = joints.iter().find(|node| scales(node)) {
+    if let Some(&node) = rig.joints.iter().find(|node| scales(node)) {
         let name = name(&nodes[node], node);
         warnings.push(format!("joint `{name}` and perhaps others are scaled: folded into translations"));
     }
-    let pose = |transforms: &[Transform]| {
-        let mut world = vec![DAffine3::IDENTITY; transforms.len()];
-        for &node in &order {
-            let own = transforms[node].to_affine();
-            world[node] = tree.parents[node].map_or(own, |parent| world[parent] * own);
-        }
-        let rigid: Vec<Rigid> = joints.iter().map(|&node| Rigid::of(&world[node])).collect();
-        Rigid::locals(&rigid, &parents)
-    };
-    let rest = pose(&rest_nodes);
+    let rest = rig.pose(&at_rest);
 
     let mut takes = Vec::new();
     let mut rate_found = Found::Asked;
     let mut frames_so_far = 0;
     for (i, tracks) in animations.iter().enumerate().filter(|(_, tracks)| !tracks.is_empty()) {
-        let title = document.root.animations[i].name.clone();
-        let title = title.filter(|t| !t.is_empty()).unwrap_or_else(|| format!("animation{i}"));
-        let told = told(&document.root.animations[i]);
-        let (start, end) =
-            told.map_or_else(|| track::span(tracks), |(rate, frames)| (0.0, (frames - 1.0) / rate));
-        let (rate, found) = if let Some(rate) = options.frames_per_second {
-            (rate, Found::Asked)
-        } else if let Some((rate, _)) = told {
-            (rate, Found::File)
-        } else if let Some(rate) = track::rate(tracks) {
-            (rate, Found::Detected)
-        } else {
-            let rate = track::FALLBACK_RATE;
-            warnings.push(format!("`{title}`: keys lie on the frames of no usual rate: sampled at {rate}"));
-            (rate, Found::Assumed)
-        };
+        let animation = &document.root.animations[i];
+        let title =
+            animation.name.clone().filter(|t| !t.is_empty()).unwrap_or_else(|| format!("animation{i}"));
+        let timing = Timing::of(animation, tracks, options.frames_per_second);
+        if timing.found == Found::Assumed {
+            warnings.push(format!(
+                "`{title}`: keys lie on the frames of no usual rate: sampled at {FALLBACK_RATE}"
+            ));
+        }
         if takes.is_empty() {
-            rate_found = found;
+            rate_found = timing.found;
         }
-        let frames =
-            raw::frame_count(end - start, rate, order.len()).map_err(|e| format!("`{title}`: {e}"))?;
+        let frames = raw::frame_count(timing.end - timing.start, timing.rate, rig.order.len());
+        let frames = frames.map_err(|e| format!("`{title}`: {e}"))?;
         frames_so_far += frames;
-        raw::frame_count(frames_so_far as f64, 1.0, order.len())?;
-        let mut recorder = Recorder::new(joints.len());
-        let mut transforms = rest_nodes.clone();
-        for frame in 0..frames {
-            let time = (start + frame as f64 / rate).min(end);
-            for track in tracks {
-                track.sample(time, track::ON_FRAME / rate, &mut transforms[track.node]);
-            }
-            recorder.push(&pose(&transforms));
-        }
-        takes.push(recorder.take(title, rate, &rest));
+        raw::frame_count(frames_so_far as f64, 1.0, rig.order.len())?;
+        takes.push(rig.take(title, tracks, &timing, frames, (&at_rest, &rest)));
     }
 
-    let mut names: Vec<String> = joints.iter().map(|&node| name(&nodes[node], node)).collect();
+    let mut names: Vec<String> = rig.joints.iter().map(|&node| name(&nodes[node], node)).collect();
     raw::make_unique(&mut names, &mut warnings);
-    Ok(Raw {
+    Ok(RawMotion {
         format: "glTF",
         ends: vec![None; names.len()],
         names,
-        parents,
+        parents: rig.parents,
         rest,
         takes,
         unit: Some(Unit::Metre),
@@ -149,12 +83,85 @@ fn motion(document: &Document, options: &ReadOptions) -> Outcome<Raw> {
     })
 }
 
-/// Rate and number of frames, which our own files say: keys that change nothing are left out of them.
-pub(crate) fn told(animation: &gltf_json::Animation) -> Option<(f64, f64)> {
-    let extras: Value = gltf_json::deserialize::from_str(animation.extras.as_ref()?.get()).ok()?;
-    let number = |key: &str| extras.get("anthronet")?.get(key)?.as_f64();
-    let (rate, frames) = (number("frames_per_second")?, number("frames")?);
-    ((0.1..=1000.0).contains(&rate) && frames >= 1.0).then_some((rate, frames))
+/// What moves nodes, of every animation; of one at least something.
+fn tracks(document: &Document) -> Outcome<Vec<Vec<Track>>> {
+    let mut left = animation::MAX_NUMBERS;
+    let mut animations = Vec::with_capacity(document.root.animations.len());
+    for (i, animation) in document.root.animations.iter().enumerate() {
+        let tracks = animation::read(document, animation, &mut left);
+        animations.push(tracks.map_err(|e| format!("animations[{i}]: {e}"))?);
+    }
+    if animations.iter().all(Vec::is_empty) {
+        return Err("expected an animation of nodes, got none".to_owned());
+    }
+    Ok(animations)
+}
+
+/// The nodes that are joints, and what it takes to pose them.
+struct Rig<'a> {
+    tree: &'a Tree,
+    /// Nodes, parents first.
+    joints: Vec<usize>,
+    /// For each joint the place of the one above it.
+    parents: Vec<Option<u32>>,
+    /// Joints and all nodes above them, parents first: no other moves a joint.
+    order: Vec<usize>,
+}
+
+impl<'a> Rig<'a> {
+    fn of(document: &Document, tree: &'a Tree, animations: &[Vec<Track>]) -> Outcome<Self> {
+        let joints = joints(document, tree, animations)?;
+        let nodes = document.root.nodes.len();
+        let mut place = vec![None; nodes];
+        for (joint, &node) in joints.iter().enumerate() {
+            place[node] = Some(joint as u32);
+        }
+        let mut above: Vec<Option<u32>> = vec![None; nodes];
+        for &node in &tree.order {
+            above[node] = tree.parents[node].and_then(|parent| place[parent].or(above[parent]));
+        }
+        let parents = joints.iter().map(|&node| above[node]).collect();
+        let mut needed = place.iter().map(Option::is_some).collect::<Vec<_>>();
+        for &node in tree.order.iter().rev() {
+            if let (true, Some(parent)) = (needed[node], tree.parents[node]) {
+                needed[parent] = true;
+            }
+        }
+        let order = tree.order.iter().copied().filter(|&node| needed[node]).collect();
+        Ok(Self { tree, joints, parents, order })
+    }
+
+    /// The joints in their parents, of the transforms of all nodes.
+    fn pose(&self, transforms: &[Transform]) -> Vec<RigidTransform> {
+        let mut world = vec![DAffine3::IDENTITY; transforms.len()];
+        for &node in &self.order {
+            let own = transforms[node].to_affine();
+            world[node] = self.tree.parents[node].map_or(own, |parent| world[parent] * own);
+        }
+        let rigid: Vec<Rigid> = self.joints.iter().map(|&node| Rigid::of(&world[node])).collect();
+        Rigid::locals(&rigid, &self.parents)
+    }
+
+    /// An animation sampled at its frames. At rest are all nodes, and the joints in their parents.
+    fn take(
+        &self,
+        name: String,
+        tracks: &[Track],
+        timing: &Timing,
+        frames: usize,
+        (at_rest, rest): (&[Transform], &[RigidTransform]),
+    ) -> Take {
+        let mut recorder = Recorder::new(self.joints.len());
+        let mut transforms = at_rest.to_vec();
+        for frame in 0..frames {
+            let time = (timing.start + frame as f64 / timing.rate).min(timing.end);
+            for track in tracks {
+                transforms[track.node].set(track.property, track.value(time, ON_FRAME / timing.rate));
+            }
+            recorder.push(&self.pose(&transforms));
+        }
+        recorder.take(name, timing.rate, rest)
+    }
 }
 
 /// The nodes that are joints, parents first.
@@ -189,10 +196,10 @@ fn name(node: &Node, index: usize) -> String {
 
 /// A node's transform to its parent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Transform {
-    pub(super) translation: DVec3,
-    pub(super) rotation: DQuat,
-    pub(super) scale: DVec3,
+struct Transform {
+    translation: DVec3,
+    rotation: DQuat,
+    scale: DVec3,
 }
 
 impl Transform {
@@ -221,13 +228,21 @@ impl Transform {
         }
     }
 
+    /// Sets a property to the value of a track.
+    fn set(&mut self, property: Property, value: [f64; 4]) {
+        let [x, y, z, _] = value;
+        match property {
+            Property::Translation => self.translation = DVec3::new(x, y, z),
+            Property::Scale => self.scale = DVec3::new(x, y, z),
+            Property::Rotation => self.rotation = unit(DQuat::from_array(value)),
+            Property::MorphTargetWeights => {}
+        }
+    }
+
     fn to_affine(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
 }
 
-/// A rotation of unit length; none for what is too short.
-pub(super) fn unit(q: DQuat) -> DQuat {
-    let length = q.length();
-    if length > 1e-6 { q * (1.0 / length) } else { DQuat::IDENTITY }
-}
+#[cfg(test)]
+mod tests;

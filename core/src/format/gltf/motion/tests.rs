@@ -3,8 +3,7 @@ use std::path::Path;
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
-use crate::format::motion::from_bytes;
-use crate::format::{Found, Motion, ReadOptions};
+use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::space::{Axis, Unit};
 
 /// Numbers of a buffer, with where they lie.
@@ -73,7 +72,8 @@ fn glb((json, data): &(Value, Vec<u8>)) -> Vec<u8> {
 }
 
 fn read(document: &(Value, Vec<u8>)) -> Result<Motion, String> {
-    from_bytes(&glb(document), Path::new("a.glb"), &ReadOptions::default()).map_err(|e| e.to_string())
+    read_motion_from_bytes(&glb(document), Path::new("a.glb"), &ReadOptions::default())
+        .map_err(|e| e.to_string())
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn the_rate_is_that_of_the_keys() {
 #[test]
 fn steps_hold_lines_run_and_splines_curve() {
     let options = ReadOptions { frames_per_second: Some(40.0), ..Default::default() };
-    let motion = from_bytes(&glb(&small(&[0.0, 0.1])), Path::new("a.glb"), &options).unwrap();
+    let motion = read_motion_from_bytes(&glb(&small(&[0.0, 0.1])), Path::new("a.glb"), &options).unwrap();
     let clip = &motion.clips[0];
     let heights: Vec<f32> = (0..5).map(|f| clip.pose(f).locals[0].translation.y).collect();
     for (height, expected) in heights.iter().zip([1.0, 1.0, 1.0, 1.0, 1.1]) {
@@ -132,7 +132,7 @@ fn steps_hold_lines_run_and_splines_curve() {
     json["animations"][0]["samplers"][1]["interpolation"] = json!("CUBICSPLINE");
     data.extend(keys.iter().flat_map(|x| x.to_le_bytes()));
     json["buffers"][0]["byteLength"] = json!(data.len());
-    let motion = from_bytes(&glb(&(json, data)), Path::new("a.glb"), &options).unwrap();
+    let motion = read_motion_from_bytes(&glb(&(json, data)), Path::new("a.glb"), &options).unwrap();
     let height = motion.clips[0].pose(1).locals[0].translation.y;
     let expected = 0.01 * ((54.0 * 100.0 + 10.0 * 110.0) / 64.0 + 0.1 * 9.0 / 64.0 * 200.0);
     assert!((height - expected).abs() < 1e-5, "{height} {expected}");
@@ -244,7 +244,7 @@ fn numbers_that_are_none_are_found_where_they_are() {
 #[test]
 fn damage_is_an_error_or_another_motion() {
     let bytes = glb(&small(&[0.0, 0.1]));
-    let read = |bytes: &[u8]| from_bytes(bytes, Path::new("a.glb"), &ReadOptions::default());
+    let read = |bytes: &[u8]| read_motion_from_bytes(bytes, Path::new("a.glb"), &ReadOptions::default());
     for end in 0..bytes.len() {
         assert!(read(&bytes[..end]).is_err(), "{end}");
     }

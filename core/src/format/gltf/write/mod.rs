@@ -10,7 +10,7 @@
 //!   The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
 //! - **Weights** are `f32`, exact, their sum made 1 to the last bit that `f32` has; unused slots hold joint 0, weight 0.
 //! - **Clips** are animations of the joint nodes, with all keys on frames; see `animation.rs`.
-//! - The same scene gives the same bytes, and so does the scene that [`open_scene`](crate::format::open_scene)
+//! - The same scene gives the same bytes, and so does the scene that [`read_scene`](crate::format::read_scene)
 //!   reads from a file that is not compressed.
 
 mod accessor;

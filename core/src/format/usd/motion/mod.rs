@@ -3,16 +3,19 @@
 //! One layer is read: what it refers to in other files is not. Sizes, turns and moves above the skeleton, animated or
 //! not, become part of its root joints; scales of joints are folded into the translations below them.
 
+mod track;
+
 use glam::DAffine3;
 use openusd::sdf::Path;
 
-use super::document::Layer;
-use super::skeleton::{Joints, chosen};
-use super::track::{Track, merged};
-use super::xform::Xforms;
+use self::track::{Track, merged};
+use super::document::Document;
+use super::document::layer::Layer;
+use super::document::skeleton::{Joints, Skeleton};
+use super::document::xform::Xforms;
 use crate::error::Outcome;
-use crate::format::raw::{Raw, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
-use crate::format::{Found, ReadOptions};
+use crate::format::motion::raw::{RawMotion, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
+use crate::format::motion::{Found, ReadOptions};
 use crate::space::{Axis, Unit};
 
 /// Most joints of an animation; those beyond the skeleton's are for nobody.
@@ -20,55 +23,51 @@ const MAX_JOINTS: usize = crate::skeleton::MAX_JOINTS;
 /// Below this, keys stand for poses to blend between, not for frames.
 const LEAST_FRAME_RATE: f64 = 10.0;
 
-/// Reads every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
-pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<Raw> {
-    let layer = Layer::open(bytes)?;
-    let prims = layer.prims()?;
-    let of_type = |wanted: &str| -> Outcome<Vec<&Path>> {
-        let mut found = Vec::new();
-        for prim in &prims {
-            if layer.type_name(prim)? == wanted {
-                found.push(prim);
-            }
-        }
-        Ok(found)
-    };
-    let (skeletons, animations) = (of_type("Skeleton")?, of_type("SkelAnimation")?);
-    if animations.is_empty() {
-        return Err(format!("expected a SkelAnimation, found none among {} prims", prims.len()));
+/// Every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
+pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+    if document.animations.is_empty() {
+        return Err(format!("expected a SkelAnimation, found none among {} prims", document.prims.len()));
     }
-    let mut warnings = Vec::new();
-    let (skeleton, bound) =
-        chosen(&layer, &skeletons)?.ok_or("expected a Skeleton beside the SkelAnimation, found none")?;
-    if skeletons.len() > 1 {
-        warnings.push(format!("{} skeletons: {skeleton} is read", skeletons.len()));
-    }
-    let joints = Joints::read(&layer, skeleton)?;
-    let above = Xforms::read(&layer, skeleton)?;
+    let skeleton = document.skeleton()?.ok_or("expected a Skeleton beside the SkelAnimation, found none")?;
+    of_skeleton(document, &skeleton, name, options)
+}
 
-    let rate = TimeCodes::read(&layer)?;
+/// Every animation that moves this skeleton, the one that is bound to it first.
+pub(super) fn of_skeleton(
+    document: &Document,
+    skeleton: &Skeleton,
+    name: &str,
+    options: &ReadOptions,
+) -> Outcome<RawMotion> {
+    let (layer, Skeleton { prim, joints, above, animation: bound }) = (&document.layer, skeleton);
+    let mut warnings = Vec::new();
+    let skeletons = document.skeleton_count();
+    if skeletons > 1 {
+        warnings.push(format!("{skeletons} skeletons: {prim} is read"));
+    }
+    let rate = TimeCodes::read(layer)?;
     let mut takes = Vec::new();
-    let mut ordered = animations;
+    let mut ordered: Vec<&Path> = document.animations.iter().collect();
     ordered.sort_by_key(|path| Some(*path) != bound.as_ref());
     let rest = joints.locals(&above.at_start()?);
     for path in ordered {
-        let animation = Animation::read(&layer, path, &joints)?;
+        let animation = Animation::read(layer, path, joints)?;
         if animation.joints.iter().all(Option::is_none) {
-            warnings.push(format!("{path}: moves no joint of {skeleton}, left out"));
+            warnings.push(format!("{path}: moves no joint of {prim}, left out"));
             continue;
         }
         let title = layer.text(path, "displayName")?.or_else(|| path.name().map(String::from));
         let title = title.unwrap_or_else(|| name.to_owned());
-        takes.push(animation.take(title, &joints, &above, &rate, options)?);
+        takes.push(animation.take(title, joints, above, &rate, options)?);
     }
     if takes.is_empty() {
-        return Err(format!("no SkelAnimation moves a joint of {skeleton}"));
+        return Err(format!("no SkelAnimation moves a joint of {prim}"));
     }
-    let mut names = joints.names;
+    let mut names = joints.names.clone();
     make_unique(&mut names, &mut warnings);
-    Ok(Raw {
+    Ok(RawMotion {
         format: "USD",
-        parents: joints.parents,
+        parents: joints.parents.clone(),
         ends: vec![None; names.len()],
         names,
         rest,

@@ -46,8 +46,12 @@ def Xform "World"
 }
 "#;
 
-fn read(text: &str) -> Outcome<Raw> {
-    super::read(text.as_bytes(), "file", &ReadOptions::default())
+fn read(text: &str) -> Outcome<RawMotion> {
+    read_with(text.as_bytes(), &ReadOptions::default())
+}
+
+fn read_with(bytes: &[u8], options: &ReadOptions) -> Outcome<RawMotion> {
+    super::read(&Document::open(bytes)?, "file", options)
 }
 
 #[test]
@@ -85,7 +89,7 @@ fn files_of_others_are_read() {
 #[test]
 fn a_rate_that_is_asked_for_is_sampled_between_keys() {
     let options = ReadOptions { frames_per_second: Some(48.0), ..Default::default() };
-    let raw = super::read(OTHERS.as_bytes(), "file", &options).unwrap();
+    let raw = read_with(OTHERS.as_bytes(), &options).unwrap();
     let take = &raw.takes[0];
     assert_eq!((take.rotations.len(), take.frames_per_second), (5 * 3, 48.0));
     let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
@@ -152,7 +156,7 @@ fn names_what_is_wrong() {
         let error = read(&OTHERS.replacen(from, to, 1)).unwrap_err();
         assert!(error.contains(expected), "{to}: {error}");
     }
-    let error = super::read(b"\xff\xfe", "file", &ReadOptions::default()).unwrap_err();
+    let error = read_with(b"\xff\xfe", &ReadOptions::default()).unwrap_err();
     assert!(error.contains("not UTF-8 from byte 0"), "{error}");
 }
 

@@ -1,0 +1,189 @@
+//! A scene as `ufbx` reads it, and its nodes as a tree.
+
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use ufbx::{Node, Scene};
+
+use crate::error::Outcome;
+
+/// Most bytes that `ufbx` may take for a scene and while it reads one.
+const MAX_MEMORY: usize = 1 << 31;
+/// Most nodes of a file.
+const MAX_NODES: usize = 1 << 16;
+/// Deepest nesting of nodes.
+const MAX_DEPTH: u32 = 1 << 12;
+/// The scene of a file's bytes, without its surfaces.
+pub(super) fn open(bytes: &[u8]) -> Outcome<ufbx::SceneRoot> {
+    let memory = || ufbx::AllocatorOpts { memory_limit: MAX_MEMORY, ..Default::default() };
+    let opts = ufbx::LoadOpts {
+        temp_allocator: memory(),
+        result_allocator: memory(),
+        ignore_geometry: true,
+        ignore_embedded: true,
+        node_depth_limit: MAX_DEPTH,
+        file_format: ufbx::FileFormat::Fbx,
+        ..Default::default()
+    };
+    if !bytes.starts_with(b"Kaydara FBX Binary") {
+        check_braces(bytes)?;
+    }
+    ufbx::load_memory(bytes, opts).map_err(|error| {
+        let info = error.info();
+        let more = if info.is_empty() { String::new() } else { format!(" ({info})") };
+        format!("is damaged or truncated: {}{more}", &*error.description)
+    })
+}
+
+/// Refuses numbers that are none: places and turns would become others of them.
+pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Outcome<()> {
+    let is = |t: &ufbx::Transform| {
+        vec3(t.translation).is_finite() && quat(t.rotation).is_finite() && vec3(t.scale).is_finite()
+    };
+    match locals.iter().position(|local| !is(local)) {
+        None => Ok(()),
+        Some(node) => {
+            Err(format!("node `{}`: its transform is not finite", &*scene.nodes[node].element.name))
+        }
+    }
+}
+
+/// Refuses text that ends within a node, which the parser takes for the end of it.
+fn check_braces(text: &[u8]) -> Outcome<()> {
+    let (mut open, mut quoted, mut comment, mut line) = (Vec::new(), false, false, 1);
+    for byte in text {
+        match byte {
+            b'\n' => (comment, line) = (false, line + 1),
+            _ if comment => {}
+            b'"' => quoted = !quoted,
+            _ if quoted => {}
+            b';' => comment = true,
+            b'{' => open.push(line),
+            b'}' => drop(open.pop()),
+            _ => {}
+        }
+    }
+    match open.last() {
+        Some(line) => Err(format!("is damaged or truncated: what line {line} opens has no end")),
+        None => Ok(()),
+    }
+}
+
+/// The nodes of a scene by their place in `Scene::nodes`, which is their `typed_id`.
+pub(super) struct Nodes {
+    parents: Vec<Option<usize>>,
+    /// Parents first.
+    pub(super) order: Vec<usize>,
+}
+
+impl Nodes {
+    pub(super) fn of(scene: &Scene) -> Outcome<Self> {
+        let count = scene.nodes.len();
+        if count > MAX_NODES {
+            return Err(format!("expected at most {MAX_NODES} nodes, got {count}"));
+        }
+        let parent = |node: &Node| node.parent.as_ref().map(|p| p.element.typed_id as usize);
+        let parents: Vec<Option<usize>> = scene.nodes.iter().map(|node| parent(node)).collect();
+        let mut children = vec![Vec::new(); count];
+        let mut order: Vec<usize> = Vec::with_capacity(count);
+        for (node, parent) in parents.iter().enumerate() {
+            match parent {
+                Some(parent) => children.get_mut(*parent).ok_or("a node's parent does not exist")?.push(node),
+                None => order.push(node),
+            }
+        }
+        let mut next = 0;
+        while let Some(&node) = order.get(next) {
+            order.extend(&children[node]);
+            next += 1;
+        }
+        if order.len() != count {
+            return Err("nodes are their own ancestors".to_owned());
+        }
+        Ok(Self { parents, order })
+    }
+
+    pub(super) fn ancestors(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(self.parents[node], |&above| self.parents[above])
+    }
+
+    /// World transforms of all nodes, by the way that each takes on its parent's scale.
+    pub(super) fn world(&self, scene: &Scene, locals: &[ufbx::Transform]) -> Vec<DAffine3> {
+        let mut world = vec![DAffine3::IDENTITY; locals.len()];
+        // Rotations alone, for nodes that do without their parent's scale.
+        let mut turned = vec![DQuat::IDENTITY; locals.len()];
+        for &node in &self.order {
+            let local = &locals[node];
+            let rotation = quat(local.rotation);
+            let own = DAffine3::from_scale_rotation_translation(
+                vec3(local.scale),
+                rotation,
+                vec3(local.translation),
+            );
+            let Some(parent) = self.parents[node] else {
+                (world[node], turned[node]) = (own, rotation);
+                continue;
+            };
+            world[node] = world[parent] * own;
+            turned[node] = turned[parent] * rotation;
+            if scene.nodes[node].inherit_mode != ufbx::InheritMode::Normal {
+                world[node].matrix3 =
+                    DMat3::from_quat(turned[node]) * DMat3::from_diagonal(vec3(local.scale));
+            }
+        }
+        world
+    }
+
+    /// World transforms of joints in the bind pose: of a skin, else of a pose, else as the nodes stand without
+    /// motion. Joints that the bind pose does not know follow their parents.
+    pub(super) fn bind_pose(
+        &self,
+        scene: &Scene,
+        joints: &[usize],
+        still: &[ufbx::Transform],
+    ) -> Vec<DAffine3> {
+        let mut known = BTreeMap::new();
+        for pose in scene.poses.iter().filter(|pose| pose.is_bind_pose) {
+            for bone in &pose.bone_poses {
+                known.entry(bone.bone_node.element.typed_id as usize).or_insert(affine(&bone.bone_to_world));
+            }
+        }
+        for cluster in &scene.skin_clusters {
+            if let Some(bone) = &cluster.bone_node {
+                known.insert(bone.element.typed_id as usize, affine(&cluster.bind_to_world));
+            }
+        }
+        let mut world = self.world(scene, still);
+        let is_joint: std::collections::BTreeSet<usize> = joints.iter().copied().collect();
+        if !joints.iter().any(|joint| known.contains_key(joint)) {
+            return joints.iter().map(|&joint| world[joint]).collect();
+        }
+        let standing = world.clone();
+        for &node in &self.order {
+            let bind =
+                known.get(&node).filter(|m| is_joint.contains(&node) && m.matrix3.determinant() != 0.0);
+            if let Some(bind) = bind {
+                world[node] = *bind;
+            } else if let Some(parent) = self.parents[node]
+                && standing[parent].matrix3.determinant() != 0.0
+            {
+                world[node] = world[parent] * (standing[parent].inverse() * standing[node]);
+            }
+        }
+        joints.iter().map(|&joint| world[joint]).collect()
+    }
+}
+
+pub(super) fn vec3(v: ufbx::Vec3) -> DVec3 {
+    DVec3::new(v.x, v.y, v.z)
+}
+
+pub(super) fn quat(q: ufbx::Quat) -> DQuat {
+    DQuat::from_xyzw(q.x, q.y, q.z, q.w)
+}
+
+pub(super) fn affine(m: &ufbx::Matrix) -> DAffine3 {
+    DAffine3::from_cols_array(&[
+        m.m00, m.m10, m.m20, m.m01, m.m11, m.m21, m.m02, m.m12, m.m22, m.m03, m.m13, m.m23,
+    ])
+}

@@ -1,0 +1,195 @@
+//! Animations of the skeleton as clips: every joint sampled at the frames of one rate.
+//!
+//! Our own files say the rate and the number of frames. For others the rate is that on whose frames all keys lie, else
+//! [`FALLBACK_RATE`]. Key values on frames are taken as they are. Motion of what is no part of the skeleton is passed
+//! over.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
+use gltf_json::{Animation, animation::Property};
+
+use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
+use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
+use crate::error::Outcome;
+use crate::format::gltf::animation::{self, MAX_NUMBERS, ON_FRAME, Timing, Track};
+use crate::format::gltf::document::Document;
+use crate::math::RigidTransform;
+use crate::scene::titles::Titles;
+use crate::skeleton::Skeleton as RestSkeleton;
+
+/// How far scale may be from 1.
+const SCALE_TOLERANCE: f32 = 1e-4;
+/// Most rotations of all clips of a document together.
+const MAX_ROTATIONS: usize = 1 << 25;
+
+/// All animations that move a joint.
+pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Clip>> {
+    if document.root.animations.is_empty() {
+        return Ok(Vec::new());
+    }
+    let rest = RestSkeleton::new(
+        skeleton.joints.iter().map(|j| j.name.clone()).collect(),
+        skeleton.joints.iter().map(|j| j.parent).collect(),
+        skeleton.locals.clone(),
+        vec![None; skeleton.joints.len()],
+    );
+    let rest = Arc::new(rest.map_err(|e| e.to_string())?);
+    let mut motions = Vec::new();
+    let (mut left, mut keys) = (MAX_ROTATIONS, MAX_NUMBERS);
+    for (i, animation) in document.root.animations.iter().enumerate() {
+        let fault = |m: String| format!("animations[{i}]: {m}");
+        let Some(motion) = Motion::read(document, skeleton, animation, &mut keys).map_err(fault)? else {
+            continue;
+        };
+        let (frames, joints) = (motion.frames, skeleton.joints.len());
+        let rotations = frames.checked_mul(joints).and_then(|rotations| left.checked_sub(rotations));
+        left = rotations.ok_or_else(|| fault(format!("{frames} frames of {joints} joints are too many")))?;
+        motions.push((i, animation, motion));
+    }
+    let mut names = Titles::default();
+    let mut clips = Vec::new();
+    for (i, animation, motion) in motions {
+        let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));
+        let clip = motion.clip(document, skeleton, &rest, name);
+        clips.push(clip.map_err(|m| format!("animations[{i}]: {m}"))?);
+    }
+    Ok(clips)
+}
+
+/// What moves a node.
+#[derive(Default)]
+struct NodeTracks {
+    translation: Option<Track>,
+    rotation: Option<Track>,
+}
+
+struct Motion {
+    nodes: BTreeMap<usize, NodeTracks>,
+    start: f64,
+    rate: f64,
+    frames: usize,
+}
+
+impl Motion {
+    /// `None` if no joint moves.
+    fn read(
+        document: &Document,
+        skeleton: &Skeleton,
+        animation: &Animation,
+        left: &mut usize,
+    ) -> Outcome<Option<Self>> {
+        let mut nodes: BTreeMap<usize, NodeTracks> = BTreeMap::new();
+        for node in skeleton.chains.iter().flatten() {
+            nodes.entry(*node).or_default();
+        }
+        let mut tracks = animation::read(document, animation, left)?;
+        tracks.retain(|track| nodes.contains_key(&track.node));
+        if tracks.is_empty() {
+            return Ok(None);
+        }
+        let Timing { start, rate, frames, .. } = Timing::of(animation, &tracks, None);
+        for track in tracks {
+            let node = track.node;
+            let Some(of_node) = nodes.get_mut(&node) else { continue };
+            let place = match track.property {
+                Property::Translation => &mut of_node.translation,
+                Property::Rotation => &mut of_node.rotation,
+                _ => {
+                    let mut scale = track.keys().flat_map(|[x, y, z, _]| [x, y, z]);
+                    if let Some(scale) = scale.find(|s| (s - 1.0).abs() > SCALE_TOLERANCE) {
+                        let node = named(document, node);
+                        return Err(format!("{node} is scaled by {scale}, expected a rigid skeleton"));
+                    }
+                    continue;
+                }
+            };
+            if place.replace(track).is_some() {
+                return Err(format!("a second track of {}", named(document, node)));
+            }
+        }
+        if !(1.0..=MAX_FRAMES as f64).contains(&frames) {
+            return Err(format!("expected 1 to {MAX_FRAMES} frames, got {frames} at {rate} a second"));
+        }
+        Ok(Some(Self { nodes, start, rate, frames: frames as usize }))
+    }
+
+    fn clip(
+        &self,
+        document: &Document,
+        skeleton: &Skeleton,
+        rest: &Arc<RestSkeleton>,
+        name: String,
+    ) -> Outcome<Clip> {
+        let joints = skeleton.joints.len();
+        let mut rotations = vec![Quat::IDENTITY; self.frames * joints];
+        let mut translations = Vec::new();
+        for (j, (chain, at_rest)) in skeleton.chains.iter().zip(&skeleton.locals).enumerate() {
+            let still = chain.iter().all(|n| self.nodes.get(n).is_none_or(|t| t.is_still()));
+            let locals: Vec<RigidTransform> = (0..if still { 1 } else { self.frames })
+                .map(|frame| self.local(document, chain, frame))
+                .collect::<Outcome<_>>()?;
+            let local = |frame: usize| locals[frame.min(locals.len() - 1)];
+            for frame in 0..self.frames {
+                rotations[frame * joints + j] = local(frame).rotation;
+            }
+            if locals.iter().any(|l| l.translation != at_rest.translation) {
+                let values = (0..self.frames).map(|frame| local(frame).translation).collect();
+                translations.push(TranslationTrack { joint: j as u32, values });
+            }
+        }
+        Clip::new(name, rest.clone(), self.rate, rotations, translations).map_err(|e| e.to_string())
+    }
+
+    /// A joint in its parent.
+    fn local(&self, document: &Document, chain: &[usize], frame: usize) -> Outcome<RigidTransform> {
+        let time = self.start + frame as f64 / self.rate;
+        let near = ON_FRAME / self.rate;
+        let mut product: Option<DAffine3> = None;
+        for (n, &node) in chain.iter().enumerate() {
+            let tracks = self.nodes.get(&node);
+            let rotation = tracks.and_then(|t| t.rotation.as_ref()).map(|t| quaternion(t.value(time, near)));
+            let translation =
+                tracks.and_then(|t| t.translation.as_ref()).map(|t| vector(t.value(time, near)));
+            let found = document.root.nodes.get(node);
+            let at_rest = match found.and_then(written) {
+                Some(node) => RigidTransform {
+                    rotation: Quat::from_array(node.rotation),
+                    translation: Vec3::from(node.translation),
+                },
+                None => to_local(&chain_transform(document, &chain[n..=n])?),
+            };
+            let local = RigidTransform {
+                rotation: rotation.unwrap_or(at_rest.rotation),
+                translation: translation.unwrap_or(at_rest.translation),
+            };
+            if chain.len() == 1 {
+                // The file's numbers, without a detour.
+                return Ok(local);
+            }
+            let q = local.rotation;
+            let affine = DAffine3::from_rotation_translation(
+                DQuat::from_array(q.to_array().map(f64::from)).normalize(),
+                DVec3::from_array(local.translation.to_array().map(f64::from)),
+            );
+            product = Some(product.map_or(affine, |above| above * affine));
+        }
+        Ok(to_local(&product.unwrap_or(DAffine3::IDENTITY)))
+    }
+}
+
+fn quaternion(value: [f64; 4]) -> Quat {
+    Quat::from_array(value.map(|v| v as f32))
+}
+
+fn vector([x, y, z, _]: [f64; 4]) -> Vec3 {
+    DVec3::new(x, y, z).as_vec3()
+}
+
+impl NodeTracks {
+    /// Whether there is one key at the most of each.
+    fn is_still(&self) -> bool {
+        [&self.translation, &self.rotation].into_iter().flatten().all(Track::is_still)
+    }
+}

@@ -1,0 +1,150 @@
+//! A document as a whole [`Scene`]: its meshes over its joints, and its clips.
+
+mod clips;
+mod skeleton;
+
+use gltf_json::{
+    Accessor, Index,
+    mesh::{Primitive, Semantic},
+};
+
+use self::skeleton::{Skeleton, hung_on};
+use super::document::{Document, Tree};
+use super::meshes::{Part, attribute, bring_normals_to_length, merge_copies, parts, place, with_materials};
+use crate::error::Outcome;
+use crate::scene::{Scene, SceneMesh};
+
+/// How far weights may sum away from 1 to be taken as they are; those of others are made to.
+const SUM_TOLERANCE: f64 = 1e-6;
+
+/// Joints, meshes with texture coordinates and weights, materials, clips.
+pub(super) fn scene(document: &Document) -> Outcome<Scene> {
+    let tree = document.tree()?;
+    let skeleton = Skeleton::read(document, &tree)?;
+    let world = document.world_from_nodes(&tree);
+    let mut meshes = Vec::new();
+    for part in parts(document)? {
+        let node = part.node;
+        let mesh = match &skeleton {
+            Some(skeleton) => skinned(document, skeleton, &tree, part),
+            // Where it is in the scene.
+            None => still(part, &world[node]),
+        };
+        meshes.push(mesh.map_err(|m| format!("nodes[{node}].mesh: {m}"))?);
+    }
+    let mut scene = with_materials(document, meshes)?;
+    if let Some(skeleton) = skeleton {
+        scene.clips = clips::read(document, &skeleton)?;
+        scene.joints = skeleton.joints;
+    }
+    scene.validate().map_err(|e| e.to_string())?;
+    Ok(scene)
+}
+
+fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Outcome<SceneMesh> {
+    let Part { mut mesh, vertices, .. } = part;
+    place(&mut mesh, world_from_node)?;
+    bring_normals_to_length(&mut mesh);
+    merge_copies(&mut mesh, vertices)?;
+    Ok(mesh)
+}
+
+/// A mesh with its own weights, or one without that hangs on a joint.
+fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>) -> Outcome<SceneMesh> {
+    let Part { node, primitive, mut mesh, vertices } = part;
+    let written = mesh.positions.len();
+    match document.root.nodes[node].skin {
+        Some(skin) => weights(document, skeleton, skin.value(), &sets(primitive), &mut mesh)?,
+        None => {
+            let (joint, model_from_node) = hung_on(document, tree, skeleton, node)?;
+            place(&mut mesh, &model_from_node)?;
+            mesh.influences_per_vertex = 4;
+            mesh.joint_indices = [joint, 0, 0, 0].repeat(written);
+            mesh.joint_weights = [1.0, 0.0, 0.0, 0.0].repeat(written);
+        }
+    }
+    let slots = written * mesh.influences_per_vertex;
+    if mesh.joint_indices.len() != slots {
+        return Err(format!("JOINTS: expected {slots} slots, got {}", mesh.joint_indices.len()));
+    }
+    bring_normals_to_length(&mut mesh);
+    merge_copies(&mut mesh, vertices)?;
+    Ok(mesh)
+}
+
+/// Accessors of the sets of joints and weights.
+type Sets = Vec<(Index<Accessor>, Index<Accessor>)>;
+
+fn sets(primitive: &Primitive) -> Sets {
+    let set = |set: u32| {
+        let of = |semantic| attribute(primitive, semantic);
+        Some((of(Semantic::Joints(set))?, of(Semantic::Weights(set))?))
+    };
+    (0..).map_while(set).collect()
+}
+
+/// Weights over the scene's joints: as they are where they are sorted and sum to 1, else sorted, at most eight, and
+/// made to.
+fn weights(
+    document: &Document,
+    skeleton: &Skeleton,
+    skin: usize,
+    sets: &[(Index<Accessor>, Index<Accessor>)],
+    out: &mut SceneMesh,
+) -> Outcome<()> {
+    let skin = document.root.skins.get(skin).ok_or("skin does not exist")?;
+    let places: Vec<u16> =
+        skin.joints.iter().filter_map(|joint| skeleton.places.get(&joint.value())).copied().collect();
+    if sets.is_empty() {
+        return Err("has a skin, but no JOINTS_0 and WEIGHTS_0".into());
+    }
+    let mut rows: Vec<Vec<(u16, f32)>> = Vec::new();
+    for (set, (joints, weights)) in sets.iter().enumerate() {
+        let joints = document.quadruples(*joints).map_err(|m| format!("JOINTS_{set}: {m}"))?;
+        let weights = document.numbers::<4>(*weights).map_err(|m| format!("WEIGHTS_{set}: {m}"))?;
+        if joints.len() != weights.len() || (set > 0 && joints.len() != rows.len()) {
+            return Err(format!(
+                "JOINTS_{set}, WEIGHTS_{set}: {} and {} of them",
+                joints.len(),
+                weights.len()
+            ));
+        }
+        rows.resize(joints.len(), Vec::new());
+        for (v, (row, (joints, weights))) in rows.iter_mut().zip(joints.iter().zip(&weights)).enumerate() {
+            for (joint, weight) in joints.iter().zip(weights) {
+                if *weight < 0.0 {
+                    return Err(format!("WEIGHTS_{set}: element {v} is negative"));
+                }
+                // What an unused slot says does not matter.
+                if *weight > 0.0 {
+                    let place = places.get(usize::from(*joint));
+                    let place = place
+                        .ok_or_else(|| format!("JOINTS_{set}: element {v} is {joint} of {}", places.len()))?;
+                    match row.iter_mut().find(|(joint, _)| joint == place) {
+                        Some((_, sum)) => *sum += weight,
+                        None => row.push((*place, *weight)),
+                    }
+                }
+            }
+        }
+    }
+    out.influences_per_vertex = if sets.len() == 1 { 4 } else { 8 };
+    for (v, row) in rows.iter_mut().enumerate() {
+        row.sort_by(|a, b| b.1.total_cmp(&a.1));
+        row.truncate(out.influences_per_vertex);
+        let sum: f64 = row.iter().map(|(_, w)| f64::from(*w)).sum();
+        if row.is_empty() || !sum.is_finite() {
+            return Err(format!("WEIGHTS: those of vertex {v} sum to {sum}, expected 1"));
+        }
+        if (sum - 1.0).abs() > SUM_TOLERANCE {
+            row.iter_mut().for_each(|(_, w)| *w = (f64::from(*w) / sum) as f32);
+        }
+        row.resize(out.influences_per_vertex, (0, 0.0));
+        out.joint_indices.extend(row.iter().map(|(joint, _)| *joint));
+        out.joint_weights.extend(row.iter().map(|(_, weight)| *weight));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,220 @@
+//! The surfaces of a document: triangles with `f32` positions, as every exporter writes them by default. Sparse geometry
+//! is refused by name.
+
+mod copies;
+mod material;
+
+use glam::{Affine3A, Vec3};
+use gltf_json::{
+    Accessor, Index, Value,
+    mesh::{Mode, Primitive, Semantic},
+    validation::Checked,
+};
+
+use self::copies::{merge, originals};
+use super::document::Document;
+use crate::error::Outcome;
+use crate::format::limits::{MAX_ELEMENTS, MAX_MESHES};
+use crate::scene::titles::Titles;
+use crate::scene::{Corners, Scene, SceneMesh};
+
+/// How far a normal's length may be from 1 to be taken as it is.
+const LENGTH_TOLERANCE: f32 = 1e-3;
+
+/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes put them.
+pub(super) fn scene(document: &Document) -> Outcome<Scene> {
+    let world = document.world_from_nodes(&document.tree()?);
+    let mut meshes = Vec::new();
+    for Part { node, mut mesh, vertices, .. } in parts(document)? {
+        // glTF 2.0, section 3.7.3.3: the transform of a skinned mesh's own node is ignored.
+        let skinned = document.root.nodes[node].skin.is_some();
+        if !skinned {
+            place(&mut mesh, &world[node]).map_err(|m| format!("nodes[{node}]: {m}"))?;
+        }
+        bring_normals_to_length(&mut mesh);
+        // Where a tool has moved a copy away from what it was one of, the vertices stay as they are.
+        let bits = |v: usize| mesh.positions[v].map(f32::to_bits);
+        if let Ok(originals) = originals(&mesh, vertices, |a, b| bits(a) == bits(b)) {
+            merge(&mut mesh, vertices, &originals);
+        }
+        meshes.push((skinned, mesh));
+    }
+    // Stable, so each kind keeps its order.
+    meshes.sort_by_key(|(skinned, _)| !skinned);
+    with_materials(document, meshes.into_iter().map(|(_, mesh)| mesh).collect())
+}
+
+/// A scene of meshes whose materials are places in the document's, one beyond the last for none.
+pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Outcome<Scene> {
+    let root = &document.root;
+    let mut names = Titles::default();
+    let mut materials: Vec<_> = root.materials.iter().map(|m| material::read(m, &mut names)).collect();
+    if meshes.iter().any(|mesh| mesh.material as usize == materials.len()) {
+        materials.push(material::read(&gltf_json::Material::default(), &mut names));
+    }
+    let name = root.scene.and_then(|s| root.get(s)).or(root.scenes.first()).and_then(|s| s.name.clone());
+    let extras = match &root.extras {
+        Some(raw) => gltf_json::deserialize::from_str(raw.get()).map_err(|e| format!("extras: {e}"))?,
+        None => Value::Null,
+    };
+    Ok(Scene { name: name.unwrap_or_default(), meshes, materials, extras, ..Scene::default() })
+}
+
+/// A primitive as a mesh of its own.
+pub(super) struct Part<'a> {
+    /// The node that it hangs on.
+    pub(super) node: usize,
+    pub(super) primitive: &'a Primitive,
+    /// In the space of the mesh, with the file's vertices; its name is unique.
+    pub(super) mesh: SceneMesh,
+    /// How many of the first vertices are those of the model; those after them are copies that texture seams needed. All
+    /// of them where the file does not say.
+    pub(super) vertices: usize,
+}
+
+/// The primitives of all nodes, in the file's order; at least one.
+pub(super) fn parts(document: &Document) -> Outcome<Vec<Part<'_>>> {
+    let root = &document.root;
+    let mut names = Titles::default();
+    let mut parts = Vec::new();
+    let (mut vertices, mut triangles) = (0, 0);
+    for (node, of_node) in root.nodes.iter().enumerate() {
+        let Some(index) = of_node.mesh else { continue };
+        let Some(of_mesh) = root.get(index) else {
+            return Err(format!("nodes[{node}].mesh: {} of {}", index.value(), root.meshes.len()));
+        };
+        for primitive in &of_mesh.primitives {
+            let fault = |message: String| format!("nodes[{node}].mesh: {message}");
+            let mut mesh = surface(document, primitive).map_err(fault)?;
+            let name = of_mesh.name.as_deref().or(of_node.name.as_deref()).unwrap_or_default();
+            mesh.name = names.unique(name);
+            vertices += mesh.positions.len();
+            triangles += mesh.triangles.positions.len();
+            if vertices.max(triangles) > MAX_ELEMENTS {
+                return Err(format!("expected at most {MAX_ELEMENTS} vertices and triangles in all"));
+            }
+            let of_model = model_vertices(of_mesh, mesh.positions.len()).map_err(fault)?;
+            parts.push(Part { node, primitive, mesh, vertices: of_model });
+            if parts.len() > MAX_MESHES {
+                return Err(format!("expected at most {MAX_MESHES} meshes"));
+            }
+        }
+    }
+    if parts.is_empty() { Err("holds no mesh".into()) } else { Ok(parts) }
+}
+
+/// How many of its vertices are the model's, which our own files say.
+fn model_vertices(mesh: &gltf_json::Mesh, written: usize) -> Outcome<usize> {
+    let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
+    let stated = extras.and_then(|e| e.pointer("/anthronet/vertices").and_then(Value::as_u64));
+    match stated.map(usize::try_from) {
+        None => Ok(written),
+        Some(Ok(stated)) if stated <= written => Ok(stated),
+        Some(_) => Err("extras.anthronet.vertices exceeds the vertices".into()),
+    }
+}
+
+/// A primitive's accessor of this meaning.
+pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Index<Accessor>> {
+    primitive.attributes.get(&Checked::Valid(semantic)).copied()
+}
+
+/// Positions, normals, texture coordinates, triangles and the place of the material.
+fn surface(document: &Document, primitive: &Primitive) -> Outcome<SceneMesh> {
+    if primitive.mode != Checked::Valid(Mode::Triangles) {
+        return Err("expected triangles, got another kind of primitive".into());
+    }
+    let positions = attribute(primitive, Semantic::Positions).ok_or("has no POSITION")?;
+    let positions = document.vectors(positions).map_err(|m| format!("POSITION: {m}"))?;
+    if positions.is_empty() {
+        return Err("POSITION: is empty".into());
+    }
+    let normals = match attribute(primitive, Semantic::Normals) {
+        Some(normals) => document.vectors(normals).map_err(|m| format!("NORMAL: {m}"))?,
+        None => Vec::new(),
+    };
+    let uvs = match attribute(primitive, Semantic::TexCoords(0)) {
+        Some(uvs) => document.numbers::<2>(uvs).map_err(|m| format!("TEXCOORD_0: {m}"))?,
+        None => Vec::new(),
+    };
+    for (name, count) in [("NORMAL", normals.len()), ("TEXCOORD_0", uvs.len())] {
+        if count != 0 && count != positions.len() {
+            return Err(format!("{name}: expected {} of them, got {count}", positions.len()));
+        }
+    }
+    let corners = match primitive.indices {
+        Some(indices) => document.indices(indices, positions.len()).map_err(|m| format!("indices: {m}"))?,
+        None => (0..positions.len() as u32).collect(),
+    };
+    let (triangles, []) = corners.as_chunks::<3>() else {
+        return Err(format!("expected three corners per triangle, got {} corners in all", corners.len()));
+    };
+    let materials = document.root.materials.len();
+    let material = primitive.material.map_or(materials, |material| material.value());
+    if primitive.material.is_some() && material >= materials {
+        return Err(format!("material {material} of {materials}"));
+    }
+    let uv_corners = if uvs.is_empty() { Vec::new() } else { triangles.to_vec() };
+    Ok(SceneMesh {
+        positions: positions.iter().map(Vec3::to_array).collect(),
+        normals: normals.iter().map(Vec3::to_array).collect(),
+        uvs,
+        triangles: Corners { positions: triangles.to_vec(), uvs: uv_corners },
+        material: material as u32,
+        ..SceneMesh::default()
+    })
+}
+
+/// Moves a mesh without a skin to where its node puts it.
+pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Outcome<()> {
+    if *world == Affine3A::IDENTITY {
+        return Ok(());
+    }
+    let inverse = world.matrix3.inverse();
+    if !world.is_finite() || !inverse.is_finite() {
+        return Err("its transform is not finite or flattens space".into());
+    }
+    let normal_matrix = inverse.transpose();
+    for position in &mut mesh.positions {
+        *position = world.transform_point3(Vec3::from_array(*position)).to_array();
+    }
+    for normal in &mut mesh.normals {
+        *normal = (normal_matrix * Vec3::from_array(*normal)).normalize_or_zero().to_array();
+    }
+    if !mesh.positions.as_flattened().iter().all(|v| v.is_finite()) {
+        return Err("its transform moves vertices to infinity".into());
+    }
+    if world.matrix3.determinant() < 0.0 {
+        let Corners { positions, uvs } = &mut mesh.triangles;
+        positions.iter_mut().chain(uvs).for_each(|triangle| triangle.swap(1, 2));
+    }
+    Ok(())
+}
+
+/// Normals that are clearly longer or shorter than 1 are made to be.
+pub(super) fn bring_normals_to_length(mesh: &mut SceneMesh) {
+    for normal in &mut mesh.normals {
+        let vector = Vec3::from_array(*normal);
+        if (vector.length() - 1.0).abs() > LENGTH_TOLERANCE {
+            *normal = vector.normalize_or_zero().to_array();
+        }
+    }
+}
+
+/// Puts the copies that texture seams needed back onto what they are copies of, in every respect.
+pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Outcome<()> {
+    let per_vertex = mesh.influences_per_vertex;
+    let slots = |v: usize| v * per_vertex..(v + 1) * per_vertex;
+    let same = |a: usize, b: usize| {
+        mesh.normals.get(a) == mesh.normals.get(b)
+            && mesh.joint_indices[slots(a)] == mesh.joint_indices[slots(b)]
+            && mesh.joint_weights[slots(a)] == mesh.joint_weights[slots(b)]
+    };
+    let originals = originals(mesh, vertices, same)
+        .map_err(|copy| format!("vertex {copy} is no copy of one of the first {vertices}"))?;
+    merge(mesh, vertices, &originals);
+    Ok(())
+}
+
+#[cfg(test)]
+pub(super) mod tests;

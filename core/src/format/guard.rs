@@ -1,0 +1,72 @@
+//! Parsers of others that may panic on damaged files: the panic becomes an error.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::error::Outcome;
+
+thread_local! {
+    /// Whether this thread is within [`guarded`].
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether a panic of this thread would become an error about a damaged file, of which nobody has to hear.
+///
+/// The parser of USD promises errors, but it is young, and where a damaged file makes it panic the library catches that.
+/// Rust's own panic hook still writes to standard error, which belongs to the program, and so does the choice of the hook.
+/// A program that wants it quiet installs one at its start:
+///
+/// ```
+/// let before = std::panic::take_hook();
+/// std::panic::set_hook(Box::new(move |info| {
+///     if !anthronet::format::panic_becomes_error() {
+///         before(info);
+///     }
+/// }));
+/// ```
+pub fn panic_becomes_error() -> bool {
+    GUARDED.get()
+}
+
+/// Runs what decodes bytes that nobody vouches for: its errors, with their causes, and its panics become messages.
+pub(super) fn guarded<T, E: std::error::Error>(decode: impl FnOnce() -> Result<T, E>) -> Outcome<T> {
+    let outer = GUARDED.replace(true);
+    let decoded = catch_unwind(AssertUnwindSafe(decode));
+    GUARDED.set(outer);
+    match decoded {
+        Ok(result) => result.map_err(|error| chain(&error)),
+        Err(_) => Err("is damaged in a way that the parser does not understand".into()),
+    }
+}
+
+/// An error with its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut message = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let next = error.to_string();
+        if !message.contains(&next) {
+            message = format!("{message}: {next}");
+        }
+        cause = error.source();
+    }
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_and_is_told_from_others() {
+        assert!(!panic_becomes_error());
+        let message = guarded(|| -> std::io::Result<()> {
+            assert!(panic_becomes_error());
+            panic!("said by a test, as it should be")
+        });
+        assert!(message.unwrap_err().contains("damaged"));
+        assert!(!panic_becomes_error());
+        let fault = guarded(|| Err::<(), _>(std::io::Error::other("why"))).unwrap_err();
+        assert_eq!(fault, "why");
+    }
+}

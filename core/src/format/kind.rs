@@ -1,0 +1,247 @@
+//! The formats, and what can be done with each.
+
+use std::{ffi::OsStr, path::Path};
+
+use super::motion::{ReadOptions, raw::RawMotion};
+use super::write::WriteOptions;
+use super::{bvh, fbx, gltf, npz, obj, usd, vrm};
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// Declares [`Format`] of one line per format: the documentation, the name, and the description in its folder.
+macro_rules! formats {
+    ($($(#[$doc:meta])* $format:ident = $description:path,)*) => {
+        /// A file format, told by the ending of a path. More may come.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum Format {
+            $($(#[$doc])* $format,)*
+        }
+
+        impl Format {
+            /// Every format.
+            pub const ALL: &[Self] = &[$(Self::$format,)*];
+
+            const fn description(self) -> &'static Description {
+                match self {
+                    $(Self::$format => &$description,)*
+                }
+            }
+        }
+    };
+}
+
+// In this order the endings stand in messages.
+formats! {
+    /// BVH, a hierarchy of joints and one motion, as text.
+    Bvh = bvh::BVH,
+    /// Motion of AMASS and of the SMPL family, an archive of numpy arrays.
+    Npz = npz::NPZ,
+    /// FBX, binary or text.
+    Fbx = fbx::FBX,
+    /// glTF 2.0 in one binary file.
+    Glb = gltf::GLB,
+    /// glTF 2.0 as JSON, its buffers beside it.
+    Gltf = gltf::GLTF,
+    /// VRM 1.0, a character in a binary glTF.
+    Vrm = vrm::VRM,
+    /// USD as text.
+    Usda = usd::USDA,
+    /// USD as a crate file, its binary form.
+    Usdc = usd::USDC,
+    /// USD as a package, a zip archive of a crate file.
+    Usdz = usd::USDZ,
+    /// Wavefront OBJ, surfaces alone.
+    Obj = obj::OBJ,
+}
+
+/// What a format has words for, whether or not it is read or written here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Holds {
+    /// Surfaces.
+    pub meshes: bool,
+    /// Joints and how they hang together.
+    pub skeleton: bool,
+    /// Motions.
+    pub clips: bool,
+}
+
+/// What a file is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// [`read_motion`](super::read_motion).
+    ReadMotion,
+    /// [`read_scene`](super::read_scene).
+    ReadScene,
+    /// [`read_meshes`](super::read_meshes).
+    ReadMeshes,
+    /// [`write_scene`](super::write_scene).
+    WriteScene,
+}
+
+/// From a file's bytes to a motion. The path is for messages, for files beside it and for the name of a clip without one.
+pub(crate) type ReadMotion = fn(&[u8], &Path, &ReadOptions) -> Result<RawMotion>;
+/// From a file's bytes to a scene. The path is for messages and for files beside it.
+pub(crate) type ReadScene = fn(&[u8], &Path) -> Result<Scene>;
+
+/// How a format is written.
+#[derive(Clone, Copy)]
+pub(crate) enum Write {
+    /// As one file.
+    Alone(fn(&Scene, &WriteOptions) -> Result<Vec<u8>>),
+    /// As a document with a buffer beside it, under the name that is given.
+    WithBuffer(fn(&Scene, &str, &WriteOptions) -> Result<gltf::GltfFiles>),
+}
+
+/// What a format's folder says of itself.
+pub(crate) struct Description {
+    /// The ending of its files, in lower case, without the dot.
+    pub(crate) ending: &'static str,
+    /// What people call it.
+    pub(crate) title: &'static str,
+    pub(crate) holds: Holds,
+    pub(crate) read_motion: Option<ReadMotion>,
+    pub(crate) read_scene: Option<ReadScene>,
+    pub(crate) read_meshes: Option<ReadScene>,
+    pub(crate) write: Option<Write>,
+}
+
+impl Format {
+    /// The ending of its files, in lower case, without the dot: `glb`.
+    pub const fn ending(self) -> &'static str {
+        self.description().ending
+    }
+
+    /// What people call it: `glTF 2.0, binary`.
+    pub const fn title(self) -> &'static str {
+        self.description().title
+    }
+
+    /// What the format has words for.
+    pub const fn holds(self) -> Holds {
+        self.description().holds
+    }
+
+    /// Whether it serves a purpose here.
+    pub fn serves(self, purpose: Purpose) -> bool {
+        purpose.is_served_by(self.description())
+    }
+
+    /// The formats that serve a purpose, in the order in which messages list them.
+    pub fn serving(purpose: Purpose) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |format| format.serves(purpose))
+    }
+
+    /// The format of an ending, without its dot, in any case.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.ending().eq_ignore_ascii_case(ending))
+    }
+
+    /// The format of a path's ending, in any case, for a purpose.
+    ///
+    /// # Errors
+    /// [`Error::File`] for a path without an ending or with one that does not serve the purpose; it lists those that do.
+    pub fn of_path(path: &Path, purpose: Purpose) -> Result<Self> {
+        able(path, |description| purpose.is_served_by(description).then_some(())).map(|(format, ())| format)
+    }
+
+    /// The format that hosts name by an ending, of those that are written as one file.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for any other; it lists those that are.
+    pub fn of_one_file(name: &str) -> Result<Self> {
+        Self::of_ending(name).filter(|format| format.is_one_file()).ok_or_else(|| Self::one_file_fault(name))
+    }
+
+    fn is_one_file(self) -> bool {
+        matches!(self.description().write, Some(Write::Alone(_)))
+    }
+
+    /// What is said of a format that is not written as one file.
+    pub(super) fn one_file_fault(name: &str) -> Error {
+        let one_file = Self::ALL.iter().copied().filter(|format| format.is_one_file());
+        let known: Vec<&str> = one_file.map(Self::ending).collect();
+        let expected = format!("expected one of {}, which are one file each", known.join(" "));
+        Error::request("format", format!("{expected}, got `{name}`"))
+    }
+
+    /// How it is written, if it is.
+    pub(super) fn writer(self) -> Option<Write> {
+        self.description().write
+    }
+}
+
+impl Purpose {
+    fn is_served_by(self, description: &Description) -> bool {
+        match self {
+            Self::ReadMotion => description.read_motion.is_some(),
+            Self::ReadScene => description.read_scene.is_some(),
+            Self::ReadMeshes => description.read_meshes.is_some(),
+            Self::WriteScene => description.write.is_some(),
+        }
+    }
+}
+
+/// The format of a path's ending, in any case, of those that have an ability; and the ability.
+///
+/// # Errors
+/// [`Error::File`] for any other ending; it lists those that have it.
+pub(super) fn able<T>(
+    path: &Path,
+    ability: impl Fn(&'static Description) -> Option<T>,
+) -> Result<(Format, T)> {
+    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    let found = Format::of_ending(ending).and_then(|format| Some((format, ability(format.description())?)));
+    found.ok_or_else(|| {
+        let able = Format::ALL.iter().filter(|format| ability(format.description()).is_some());
+        let known: Vec<String> = able.map(|format| format!(".{}", format.ending())).collect();
+        Error::file(path, format!("unknown ending, expected one of {}", known.join(" ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn endings(purpose: Purpose) -> String {
+        Format::serving(purpose).map(Format::ending).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn each_purpose_has_its_formats() {
+        assert_eq!(endings(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz");
+        assert_eq!(endings(Purpose::ReadScene), "glb gltf vrm usda usdc usdz");
+        assert_eq!(endings(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj");
+        assert_eq!(endings(Purpose::WriteScene), "glb gltf vrm usda usdc usdz obj");
+    }
+
+    #[test]
+    fn what_a_format_is_used_for_it_has_words_for() {
+        for format in Format::ALL.iter().copied() {
+            let holds = format.holds();
+            assert!(holds.clips || !format.serves(Purpose::ReadMotion), "{format:?}");
+            assert!(holds.skeleton || !format.serves(Purpose::ReadScene), "{format:?}");
+            assert!(holds.meshes || !format.serves(Purpose::ReadMeshes), "{format:?}");
+            assert_eq!(format.ending(), format!("{format:?}").to_lowercase());
+            assert_eq!(Format::of_ending(&format.ending().to_uppercase()), Some(format));
+            assert!(!format.title().is_empty());
+        }
+    }
+
+    #[test]
+    fn the_ending_of_a_path_tells_the_format() {
+        let of = |path: &str| Format::of_path(Path::new(path), Purpose::ReadScene);
+        assert_eq!(of("a/b.c.GLB").unwrap(), Format::Glb);
+        for path in ["b.bvh", "b", "glb", "b.", "b.glb.txt", ""] {
+            let message = of(path).unwrap_err().to_string();
+            let expected = "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz";
+            assert!(message.ends_with(expected), "{message}");
+        }
+        assert_eq!(Format::of_one_file("GLB").unwrap(), Format::Glb);
+        let message = Format::of_one_file("gltf").unwrap_err().to_string();
+        assert!(
+            message
+                .contains("expected one of glb vrm usda usdc usdz obj, which are one file each, got `gltf`")
+        );
+    }
+}

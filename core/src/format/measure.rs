@@ -1,0 +1,22 @@
+//! Measuring the body of a file.
+
+use std::path::Path;
+
+use glam::Vec3;
+
+use crate::model::{MeasuredMesh, Model};
+use crate::{Error, Result};
+
+/// Measures the body of a file: its first mesh, at any level of detail, in any format that
+/// [`read_meshes`](super::read_meshes) reads.
+///
+/// # Errors
+/// As [`read_meshes`](super::read_meshes); [`Error::File`] for a file without a mesh, or whose first mesh is no body of the
+/// model's vertex order.
+pub fn measure_file(model: &Model, path: impl AsRef<Path>) -> Result<MeasuredMesh> {
+    let path = path.as_ref();
+    let scene = super::read_meshes(path)?;
+    let mesh = scene.meshes.first().ok_or_else(|| Error::file(path, "has no mesh"))?;
+    let vertices: Vec<Vec3> = mesh.positions.iter().copied().map(Vec3::from_array).collect();
+    model.measure_mesh(&vertices).map_err(|error| Error::file(path, error.to_string()))
+}

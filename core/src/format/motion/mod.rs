@@ -1,0 +1,131 @@
+//! What the readers of motion share: what they are asked, what they hand on ([`raw`]), and how units and axes are found
+//! for all of them ([`units_and_axes`], by the body's [`proportions`]).
+
+mod proportions;
+pub(crate) mod raw;
+pub(crate) mod units_and_axes;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::clip::Clip;
+use crate::error::Outcome;
+use crate::space::{Axis, Unit};
+use crate::{Error, Result};
+
+/// What is said of a file beforehand; it wins over what the file says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ReadOptions {
+    /// The unit of lengths.
+    pub unit: Option<Unit>,
+    /// The axis that points up.
+    pub up: Option<Axis>,
+    /// Frames per second. Formats of frames (BVH, npz) are taken to be recorded at this rate; formats of curves (FBX,
+    /// glTF) are sampled at it.
+    pub frames_per_second: Option<f64>,
+}
+
+impl ReadOptions {
+    /// From plain numbers, as hosts pass them: 0 metres per unit and 0 frames per second leave that to the file.
+    ///
+    /// # Errors
+    /// [`Error::Request`] for a unit that is no length.
+    pub fn of_numbers(metres_per_unit: f64, up: Option<Axis>, frames_per_second: f64) -> Result<Self> {
+        let unit = match metres_per_unit {
+            0.0 => None,
+            metres => Some(Unit::of_metres(metres).ok_or_else(|| {
+                Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
+            })?),
+        };
+        Ok(Self { unit, up, frames_per_second: (frames_per_second != 0.0).then_some(frames_per_second) })
+    }
+
+    /// Refuses a rate that is none.
+    pub(super) fn check(&self) -> Result<()> {
+        match self.frames_per_second {
+            Some(rate) if !(0.1..=1000.0).contains(&rate) => {
+                Err(Error::request("frames_per_second", format!("expected 0.1 to 1000, got {rate}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Where a value is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Found {
+    /// The file, or its format, says so.
+    File,
+    /// From the proportions and stance of the body, or the times of keys.
+    Detected,
+    /// From [`ReadOptions`].
+    Asked,
+    /// Nothing tells: the format's habit.
+    Assumed,
+}
+
+/// How a file was understood.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReadReport {
+    /// The format's name.
+    pub format: &'static str,
+    /// The unit that its lengths were taken to be in.
+    pub unit: Unit,
+    /// How the unit was found.
+    pub unit_found: Found,
+    /// The axis that was taken to point up.
+    pub up: Axis,
+    /// How the axis was found.
+    pub up_found: Found,
+    /// Frames per second of the first clip.
+    pub frames_per_second: f64,
+    /// How the rate was found.
+    pub rate_found: Found,
+    /// About how tall the body is, metres, from the lengths of its bones; 0 where they tell nothing.
+    pub stature: f64,
+    /// What was mended, assumed or looks wrong.
+    pub warnings: Vec<String>,
+}
+
+/// What was read of a motion file: at least one clip; metres, +Y up, facing as in the file.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The clips, which share a rest pose.
+    pub clips: Vec<Clip>,
+    /// How the file was understood.
+    pub report: ReadReport,
+}
+
+impl Motion {
+    /// A clip that was made by a program instead of read from a file: metres, +Y up.
+    pub fn of_clip(clip: Clip) -> Self {
+        let report = ReadReport {
+            format: "poses",
+            unit: Unit::Metre,
+            unit_found: Found::Asked,
+            up: Axis::Y,
+            up_found: Found::Asked,
+            frames_per_second: clip.frames_per_second(),
+            rate_found: Found::Asked,
+            stature: 0.0,
+            warnings: Vec::new(),
+        };
+        Self { clips: vec![clip], report }
+    }
+}
+
+/// The file's name without its ending: what a clip is called that has no other name.
+pub(crate) fn clip_name(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "clip".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Refuses bytes that do not start as those of a format do.
+pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> Outcome<()> {
+    if magics.iter().any(|magic| bytes.starts_with(magic)) {
+        return Ok(());
+    }
+    let came = bytes[..bytes.len().min(8)].escape_ascii();
+    Err(format!("expected {expected}, which this is not: it starts with `{came}`"))
+}

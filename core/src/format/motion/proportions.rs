@@ -1,0 +1,150 @@
+//! The size and stance of a skeleton that nothing is known of: what [`units_and_axes`](super::units_and_axes) decides by.
+
+use glam::Vec3;
+
+use super::raw::{RawMotion, Take};
+use crate::math::RigidTransform;
+use crate::skeleton::model_from_joints;
+use crate::space::Axis;
+
+/// How many times a person is as long from fingertip to toe, along the bones, as tall. Of skeletons that end at wrists
+/// and ankles 1.25, of those with fingers and toes 1.5.
+const SPAN_PER_STATURE: f64 = 1.4;
+/// How much longer one extent has to be than another to tell how a body stands.
+const CLEAR: f32 = 1.5;
+/// The fewest joints of a person.
+const FIGURE: usize = 10;
+/// Most frames that are looked at.
+const SAMPLES: usize = 24;
+
+/// How far a pose reaches, on average over the poses of a kind.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stance {
+    extents: Vec3,
+    lowest: Vec3,
+}
+
+impl Stance {
+    /// The axis along which the body clearly stands.
+    fn upright(self) -> Option<Axis> {
+        let [_, y, z] = self.extents.to_array();
+        if y > CLEAR * z { Some(Axis::Y) } else { (z > CLEAR * y).then_some(Axis::Z) }
+    }
+
+    /// Whether the lowest joints are about at zero, as on a floor.
+    fn on_floor(self, axis: Axis) -> bool {
+        self.lowest[axis.index()].abs() < 0.2 * self.extents[axis.index()]
+    }
+}
+
+/// The body within a file's joints: those that hang together by bones of fixed length. A root on the floor that the
+/// hips fly away from is none of it.
+pub(super) struct Proportions {
+    lengths: Vec<f32>,
+    member: Vec<bool>,
+}
+
+impl Proportions {
+    pub(super) fn of(raw: &RawMotion) -> Self {
+        let mut steps: Vec<Vec3> = raw.rest.iter().map(|l| l.translation).collect();
+        let longest = steps.iter().map(|s| s.length()).fold(0.0, f32::max);
+        let mut loose = vec![false; raw.names.len()];
+        for track in raw.takes.iter().flat_map(|take| &take.tracks) {
+            let (joint, count) = (track.joint as usize, track.values.len().max(1));
+            let mean = track.values.iter().sum::<Vec3>() / count as f32;
+            let spread = track.values.iter().map(|v| v.distance(mean)).fold(0.0, f32::max);
+            // Bones that stretch a little are still bones.
+            loose[joint] |= spread > 0.25 * mean.length() + 0.05 * longest;
+            steps[joint] = mean;
+        }
+        let mut lengths: Vec<f32> = steps.iter().map(|s| s.length()).collect();
+        let mut top = Vec::with_capacity(loose.len());
+        let mut sizes = vec![0usize; loose.len()];
+        for (joint, parent) in raw.parents.iter().enumerate() {
+            let above = parent.filter(|_| !loose[joint]).and_then(|p| top.get(p as usize).copied());
+            top.push(above.unwrap_or(joint));
+            sizes[top[joint]] += 1;
+            if above.is_none() {
+                lengths[joint] = 0.0;
+            }
+        }
+        let largest = (0..sizes.len()).rev().max_by_key(|&joint| sizes[joint]);
+        Self { lengths, member: top.iter().map(|&t| Some(t) == largest).collect() }
+    }
+
+    /// Whether there are joints enough for limbs: a door is not to be scaled to a person.
+    pub(super) fn is_figure(&self) -> bool {
+        self.member.iter().filter(|m| **m).count() >= FIGURE
+    }
+
+    /// How tall the body is in the file's unit, from the longest way along its bones, which no pose changes; 0 where
+    /// there are no bones.
+    pub(super) fn stature(&self, raw: &RawMotion) -> f64 {
+        let count = self.lengths.len();
+        // The longest way down from each joint; children stand after their parents.
+        let (mut down, mut span) = (vec![0.0f64; count], 0.0f64);
+        for joint in (0..count).rev().filter(|&j| self.member[j]) {
+            let end = raw.ends[joint].map_or(0.0, |end| f64::from(end.length()));
+            span = span.max(down[joint] + end);
+            down[joint] = down[joint].max(end);
+            if let Some(parent) = raw.parents[joint].map(|p| p as usize).filter(|&p| self.member[p]) {
+                let way = down[joint] + f64::from(self.lengths[joint]);
+                span = span.max(down[parent] + way);
+                down[parent] = down[parent].max(way);
+            }
+        }
+        span / SPAN_PER_STATURE
+    }
+
+    /// The axis that the body clearly stands along: from its rest pose and its motion, which may contradict each
+    /// other, as when somebody lies, or a root turns the file's axes. Against the file's own word it takes both, or
+    /// feet on a floor.
+    pub(super) fn upright(&self, raw: &RawMotion) -> Option<Axis> {
+        let rest = (!raw.rest_is_upright).then(|| self.stance(raw, std::iter::once(raw.rest.clone())));
+        let rest = rest.and_then(Stance::upright);
+        let stance = self.stance(raw, raw.takes.iter().flat_map(|take| poses(raw, take)));
+        match (rest, stance.upright()) {
+            (_, Some(moved)) if rest == Some(moved) || stance.on_floor(moved) => Some(moved),
+            (Some(rest), Some(_)) => Some(rest),
+            (rest, moved) if raw.up.is_none() => rest.or(moved),
+            _ => None,
+        }
+    }
+
+    fn stance(&self, raw: &RawMotion, poses: impl Iterator<Item = Vec<RigidTransform>>) -> Stance {
+        let (mut sum, mut count, mut world) = (Stance::default(), 0.0f32, Vec::new());
+        for pose in poses {
+            model_from_joints(&raw.parents, &pose, &mut world);
+            let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            for joint in (0..world.len()).filter(|&j| self.member[j]) {
+                let RigidTransform { rotation, translation } = world[joint];
+                let end = translation + rotation * raw.ends[joint].unwrap_or(Vec3::ZERO);
+                low = low.min(translation).min(end);
+                high = high.max(translation).max(end);
+            }
+            sum.extents += high - low;
+            sum.lowest += low;
+            count += 1.0;
+        }
+        Stance { extents: sum.extents / count.max(1.0), lowest: sum.lowest / count.max(1.0) }
+    }
+}
+
+/// Poses of a take, evenly spread.
+fn poses<'a>(raw: &'a RawMotion, take: &'a Take) -> impl Iterator<Item = Vec<RigidTransform>> + 'a {
+    let frames = take.rotations.len() / raw.rest.len().max(1);
+    let samples = frames.min((SAMPLES / raw.takes.len().max(1)).max(1));
+    (0..samples).map(move |i| {
+        let frame = i * frames / samples;
+        let mut pose = raw.rest.clone();
+        for (local, rotation) in pose.iter_mut().zip(&take.rotations[frame * raw.rest.len()..]) {
+            local.rotation = *rotation;
+        }
+        for track in &take.tracks {
+            if let (Some(local), Some(v)) = (pose.get_mut(track.joint as usize), track.values.get(frame)) {
+                local.translation = *v;
+            }
+        }
+        pose
+    })
+}

@@ -1,0 +1,198 @@
+//! What the readers of the formats hand on: a motion in the units and axes of its file.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+
+use super::Found;
+use crate::clip::TranslationTrack;
+use crate::error::Outcome;
+use crate::math::RigidTransform;
+use crate::space::{Axis, Unit};
+
+/// A skeleton and its motions as a file has them.
+#[derive(Debug)]
+pub(crate) struct RawMotion {
+    /// The format's name.
+    pub(crate) format: &'static str,
+    /// Joints, parents first; unique names.
+    pub(crate) names: Vec<String>,
+    pub(crate) parents: Vec<Option<u32>>,
+    pub(crate) rest: Vec<RigidTransform>,
+    pub(crate) ends: Vec<Option<Vec3>>,
+    pub(crate) takes: Vec<Take>,
+    /// What the file says of its unit; `None` where the format does not.
+    pub(crate) unit: Option<Unit>,
+    /// What the file says of its axis; `None` where the format does not.
+    pub(crate) up: Option<Axis>,
+    /// The rest pose is ours (+Y up) whatever the motion's axis is.
+    pub(crate) rest_is_upright: bool,
+    pub(crate) rate_found: Found,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// One motion.
+#[derive(Debug)]
+pub(crate) struct Take {
+    pub(crate) name: String,
+    pub(crate) frames_per_second: f64,
+    /// Frames × joints.
+    pub(crate) rotations: Vec<Quat>,
+    pub(crate) tracks: Vec<TranslationTrack>,
+}
+
+/// Gives the second and later joints of a name another one, and says so.
+pub(crate) fn make_unique(names: &mut [String], warnings: &mut Vec<String>) {
+    let all: std::collections::BTreeSet<String> = names.iter().cloned().collect();
+    let mut counts = std::collections::BTreeMap::<String, usize>::new();
+    let mut taken = std::collections::BTreeSet::new();
+    for name in names {
+        if taken.insert(name.clone()) {
+            continue;
+        }
+        let count = counts.entry(name.clone()).or_default();
+        let fresh = loop {
+            *count += 1;
+            let candidate = format!("{name}.{count}");
+            if !all.contains(&candidate) && !taken.contains(&candidate) {
+                break candidate;
+            }
+        };
+        warnings.push(format!("a second joint `{name}` was renamed to `{fresh}`"));
+        taken.insert(fresh.clone());
+        *name = fresh;
+    }
+}
+
+/// The rate that a rounded number was meant to be: a whole one within 0.02 %, as 1 / 0.0333 is 30.
+pub(crate) fn snapped_rate(rate: f64) -> f64 {
+    let whole = rate.round();
+    if whole >= 1.0 && (rate / whole - 1.0).abs() < 2e-4 { whole } else { rate }
+}
+
+/// Translation tracks of those joints that leave their rest; `columns` holds every joint's translations.
+pub(crate) fn moving(rest: &[RigidTransform], columns: Vec<Vec<Vec3>>) -> Vec<TranslationTrack> {
+    let longest = rest.iter().map(|l| l.translation.length()).fold(0.0, f32::max);
+    // Rounding of the sums that led here, relative to the size of the skeleton.
+    let tolerance = 4e-6 * longest;
+    let moves = |joint: usize, values: &[Vec3]| {
+        let rest = rest[joint].translation;
+        // Written so that what is not a number moves, and is found by the clip's own check.
+        !values.iter().all(|v| v.distance(rest) <= tolerance)
+    };
+    let tracks = columns.into_iter().enumerate().filter(|(joint, values)| moves(*joint, values));
+    tracks.map(|(joint, values)| TranslationTrack { joint: joint as u32, values }).collect()
+}
+
+/// A joint in the world without its scale.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rigid {
+    rotation: DQuat,
+    position: DVec3,
+}
+
+impl Rigid {
+    /// The rigid part of a transform: scale goes, places stay, which folds scale into translations.
+    pub(crate) fn of(world: &DAffine3) -> Self {
+        let x = world.matrix3.x_axis.try_normalize().unwrap_or(DVec3::X);
+        let y = (world.matrix3.y_axis - x * x.dot(world.matrix3.y_axis)).try_normalize();
+        let y = y.unwrap_or_else(|| x.any_orthonormal_vector());
+        let rotation = DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)));
+        Self { rotation, position: world.translation }
+    }
+
+    pub(crate) fn rotation(&self) -> DQuat {
+        self.rotation
+    }
+
+    pub(crate) fn to_affine(self) -> DAffine3 {
+        DAffine3::from_rotation_translation(self.rotation, self.position)
+    }
+
+    /// Each joint's transform to its parent, for joints that stand after their parents.
+    pub(crate) fn locals(world: &[Self], parents: &[Option<u32>]) -> Vec<RigidTransform> {
+        let local = |(joint, parent): (&Self, &Option<u32>)| {
+            let (rotation, translation) = match parent.and_then(|p| world.get(p as usize)) {
+                Some(parent) => {
+                    let back = parent.rotation.conjugate();
+                    (back * joint.rotation, back * (joint.position - parent.position))
+                }
+                None => (joint.rotation, joint.position),
+            };
+            RigidTransform { rotation: rotation.as_quat(), translation: translation.as_vec3() }
+        };
+        world.iter().zip(parents).map(local).collect()
+    }
+}
+
+/// Collects frames given as local transforms into a take.
+pub(crate) struct Recorder {
+    rotations: Vec<Quat>,
+    columns: Vec<Vec<Vec3>>,
+}
+
+impl Recorder {
+    pub(crate) fn new(joints: usize) -> Self {
+        Self { rotations: Vec::new(), columns: vec![Vec::new(); joints] }
+    }
+
+    pub(crate) fn push(&mut self, locals: &[RigidTransform]) {
+        for (local, column) in locals.iter().zip(&mut self.columns) {
+            self.rotations.push(local.rotation);
+            column.push(local.translation);
+        }
+    }
+
+    pub(crate) fn take(self, name: String, frames_per_second: f64, rest: &[RigidTransform]) -> Take {
+        Take { name, frames_per_second, rotations: self.rotations, tracks: moving(rest, self.columns) }
+    }
+}
+
+/// How many frames a motion of so many seconds has, if a clip of so many joints may have them.
+pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Outcome<usize> {
+    // Each frame of each joint is evaluated from curves: what a few bytes of a file may ask for has to end.
+    const MOST: f64 = (1u32 << 24) as f64;
+    let frames = (seconds * rate).round() + 1.0;
+    if (0.0..=crate::clip::MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= MOST {
+        return Ok(frames as usize);
+    }
+    Err(format!("{seconds} s at {rate} frames a second of {joints} joints are too many frames"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_unique() {
+        let mut names = ["a", "b", "a", "a.1", "a"].map(String::from);
+        let mut warnings = Vec::new();
+        make_unique(&mut names, &mut warnings);
+        assert_eq!(names, ["a", "b", "a.2", "a.1", "a.3"]);
+        assert_eq!(warnings.len(), 2);
+    }
+
+    #[test]
+    fn rates_snap_to_what_was_meant() {
+        let rates = [1.0 / 0.0333333, 1.0 / 0.008333, 1.0 / 0.03333, 30_000.0 / 1001.0];
+        assert_eq!(rates.map(snapped_rate), [30.0, 120.0, 30.0, 30_000.0 / 1001.0]);
+    }
+
+    #[test]
+    fn scale_is_folded_into_translations() {
+        let turn = DQuat::from_rotation_z(0.4);
+        let parent = DAffine3::from_scale_rotation_translation(DVec3::splat(2.0), turn, DVec3::X);
+        let child = parent * DAffine3::from_translation(DVec3::Y);
+        let locals = Rigid::locals(&[Rigid::of(&parent), Rigid::of(&child)], &[None, Some(0)]);
+        assert!(locals[1].translation.distance(Vec3::Y * 2.0) < 1e-6);
+        assert!(locals[1].rotation.angle_between(Quat::IDENTITY) < 1e-3);
+        assert!(locals[0].rotation.dot(turn.as_quat()) > 0.999_999);
+    }
+
+    #[test]
+    fn a_long_motion_is_refused() {
+        assert_eq!(frame_count(2.0, 30.0, 50), Ok(61));
+        for seconds in [1e9, f64::NAN, f64::INFINITY, -1.0] {
+            assert!(frame_count(seconds, 30.0, 50).unwrap_err().contains("too many"));
+        }
+        assert!(frame_count(10_000.0, 30.0, 4000).is_err());
+    }
+}

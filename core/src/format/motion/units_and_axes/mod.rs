@@ -1,0 +1,159 @@
+//! From a file's unit and axes to ours: what was asked for, what the file says, or what its body tells.
+//!
+//! Files lie about both: programs export centimetres as metres, or stand bodies up along another axis than they say.
+//! People are 1.3 to 2.3 m tall and stand upright most of the time, which tells most such mistakes.
+
+use std::sync::Arc;
+
+use super::proportions::Proportions;
+use super::raw::RawMotion;
+use super::{Found, Motion, ReadOptions, ReadReport};
+use crate::clip::Clip;
+use crate::error::Outcome;
+use crate::skeleton::{Skeleton};
+use crate::space::{Axis, Unit};
+use crate::{Error, Result};
+
+/// What a body of unknown unit is taken to be tall, metres.
+const TYPICAL: f64 = 1.7;
+/// Bodies that a file's own unit is believed for, metres: from babies to giants of games.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.4..=3.2;
+/// Bodies for which a found unit is not doubted, metres.
+const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
+
+/// A file's motion as clips in metres, +Y up. An error says what of the joints or motions contradicts itself.
+pub(crate) fn resolve(raw: RawMotion, options: &ReadOptions) -> Outcome<Motion> {
+    convert(raw, options).map_err(|error| match error {
+        Error::Invalid { what, message } => format!("{what}: {message}"),
+        other => other.to_string(),
+    })
+}
+
+fn convert(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
+    let mut rest = Skeleton::new(
+        std::mem::take(&mut raw.names),
+        raw.parents.clone(),
+        std::mem::take(&mut raw.rest),
+        raw.ends.clone(),
+    )?;
+    raw.names = rest.names().to_vec();
+    raw.rest = rest.rest_pose().locals.clone();
+    let body = Proportions::of(&raw);
+    let height = body.stature(&raw);
+    let (unit, unit_found) = unit(&mut raw, &body, height, options);
+    let (up, up_found) = up(&mut raw, &body, options);
+    let mut warnings = std::mem::take(&mut raw.warnings);
+    let stature = height * unit.metres();
+    if unit_found != Found::File && height > 0.0 && !ORDINARY.contains(&stature) {
+        warnings.push(format!("with lengths in {unit} the body is about {stature:.2} m tall"));
+    }
+
+    bring_into_ours(&mut raw, unit, up);
+    rest = Skeleton::new(raw.names, raw.parents, raw.rest, raw.ends)?;
+    let rest = Arc::new(rest);
+    let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
+    let clip = |take: super::raw::Take| {
+        Clip::new(take.name, Arc::clone(&rest), take.frames_per_second, take.rotations, take.tracks)
+    };
+    let clips = raw.takes.into_iter().map(clip).collect::<Result<Vec<_>>>()?;
+    let report = ReadReport {
+        format: raw.format,
+        unit,
+        unit_found,
+        up,
+        up_found,
+        frames_per_second: rate,
+        rate_found: raw.rate_found,
+        stature,
+        warnings,
+    };
+    Ok(Motion { clips, report })
+}
+
+fn unit(raw: &mut RawMotion, body: &Proportions, height: f64, options: &ReadOptions) -> (Unit, Found) {
+    if let Some(unit) = options.unit {
+        return (unit, Found::Asked);
+    }
+    if !(height.is_finite() && height > 0.0) {
+        let unit = raw.unit.unwrap_or(Unit::Metre);
+        return (unit, if raw.unit.is_some() { Found::File } else { Found::Assumed });
+    }
+    let off = |unit: &Unit| libm::log(height * unit.metres() / TYPICAL).abs();
+    // Beside units, mistakes in the file's own: scaled by a hundred once too often, mostly.
+    let powers =
+        raw.unit.into_iter().flat_map(|said| [1e-4, 1e-3, 1e-2, 1e2, 1e3, 1e4].map(|p| said.metres() * p));
+    let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::of_metres));
+    let mut likely = candidates.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
+    if let Some(said) = raw.unit {
+        let was = height * said.metres();
+        if !body.is_figure() || PLAUSIBLE.contains(&was) {
+            return (said, Found::File);
+        }
+        raw.warnings.push(format!("the file says {said}, by which the body is {was:.3} m tall"));
+    }
+    if body.is_figure() && !ORDINARY.contains(&(height * likely.metres())) {
+        likely = Unit::Metres(TYPICAL / height);
+        raw.warnings.push(format!("no usual unit makes the body a person: it was scaled to {TYPICAL:.2} m"));
+    } else if raw.unit.is_some() {
+        raw.warnings.push(format!(
+            "lengths were taken to be in {likely}, which makes it {:.2} m",
+            height * likely.metres()
+        ));
+    }
+    (likely, Found::Detected)
+}
+
+fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, Found) {
+    if let Some(up) = options.up {
+        return (up, Found::Asked);
+    }
+    match (raw.up, body.upright(raw)) {
+        (Some(said), Some(seen)) if said != seen && body.is_figure() => {
+            raw.warnings.push(format!(
+                "the file says that {said} points up, but the body stands along {seen}: taken as {seen} up"
+            ));
+            (seen, Found::Detected)
+        }
+        (Some(said), _) => (said, Found::File),
+        (None, Some(seen)) => (seen, Found::Detected),
+        (None, None) => (Axis::Y, Found::Assumed),
+    }
+}
+
+/// Scales all lengths, and turns what stands at the roots.
+fn bring_into_ours(raw: &mut RawMotion, unit: Unit, up: Axis) {
+    let metres = unit.metres() as f32;
+    let turn = up.ours_from_file();
+    for (local, parent) in raw.rest.iter_mut().zip(&raw.parents) {
+        local.translation *= metres;
+        if parent.is_none() && up != Axis::Y && !raw.rest_is_upright {
+            local.rotation = turn * local.rotation;
+            local.translation = up.vector_to_ours(local.translation);
+        }
+    }
+    for end in raw.ends.iter_mut().flatten() {
+        *end *= metres;
+    }
+    let joints = raw.parents.len();
+    for take in &mut raw.takes {
+        for track in &mut take.tracks {
+            let root = raw.parents.get(track.joint as usize).is_some_and(Option::is_none);
+            for v in &mut track.values {
+                *v *= metres;
+                if root {
+                    *v = up.vector_to_ours(*v);
+                }
+            }
+        }
+        if up != Axis::Y {
+            for frame in take.rotations.chunks_mut(joints) {
+                for (rotation, _) in frame.iter_mut().zip(&raw.parents).filter(|(_, p)| p.is_none()) {
+                    *rotation = turn * *rotation;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

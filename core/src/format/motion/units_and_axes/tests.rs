@@ -1,0 +1,166 @@
+use std::path::Path;
+
+use glam::{Quat, Vec3};
+
+use super::*;
+use crate::format::read_motion_from_bytes;
+
+/// A standing person of 1.7 m as BVH, with lengths divided by `unit`, and +Z up where asked.
+fn person(unit: f64, up: Axis) -> String {
+    let v = |x: f64, y: f64, z: f64| {
+        let [x, y, z] = match up {
+            Axis::Y => [x, y, z],
+            Axis::Z => [x, -z, y],
+        };
+        format!("{} {} {}", x / unit, y / unit, z / unit)
+    };
+    let bone = |name: &str, at: String, inner: String| {
+        format!("JOINT {name}\n{{\nOFFSET {at}\nCHANNELS 1 Xrotation\n{inner}}}\n")
+    };
+    let end = |at: String| format!("End Site\n{{\nOFFSET {at}\n}}\n");
+    let mut body = bone(
+        "Spine",
+        v(0.0, 0.25, 0.0),
+        [
+            bone("Neck", v(0.0, 0.3, 0.0), end(v(0.0, 0.25, 0.0))),
+            bone("LeftArm", v(0.2, 0.2, 0.0), bone("LeftHand", v(0.5, 0.0, 0.0), end(v(0.18, 0.0, 0.0)))),
+            bone(
+                "RightArm",
+                v(-0.2, 0.2, 0.0),
+                bone("RightHand", v(-0.5, 0.0, 0.0), end(v(-0.18, 0.0, 0.0))),
+            ),
+        ]
+        .concat(),
+    );
+    for (side, x) in [("Left", 0.1), ("Right", -0.1)] {
+        let foot = bone(&format!("{side}Foot"), v(0.0, -0.82, 0.0), end(v(0.0, -0.05, 0.2)));
+        body += &bone(&format!("{side}Leg"), v(x, -0.05, 0.0), foot);
+    }
+    let root =
+        format!("OFFSET {}\nCHANNELS 4 Xposition Yposition Zposition Xrotation\n{body}", v(0.0, 0.0, 0.0));
+    let frame = format!("{} {}\n", v(0.0, 0.92, 0.0), ["0"; 11].join(" "));
+    format!("HIERARCHY\nROOT Hips\n{{\n{root}}}\nMOTION\nFrames: 1\nFrame Time: 0.04\n{frame}")
+}
+
+fn read(text: &str, options: &ReadOptions) -> Motion {
+    read_motion_from_bytes(text.as_bytes(), Path::new("a.bvh"), options).unwrap()
+}
+
+/// Joints of the first frame.
+fn joint(motion: &Motion, name: &str) -> Vec3 {
+    let clip = &motion.clips[0];
+    let joints = clip.pose(0).model_from_joints(clip.skeleton().parents());
+    joints[clip.skeleton().find(name).unwrap()].translation
+}
+
+#[test]
+fn units_and_axes_are_found_from_the_body() {
+    let units = [Unit::Metre, Unit::Decimetre, Unit::Centimetre, Unit::Millimetre, Unit::Inch, Unit::Acclaim];
+    for unit in units {
+        for up in [Axis::Y, Axis::Z] {
+            let motion = read(&person(unit.metres(), up), &ReadOptions::default());
+            let report = &motion.report;
+            assert_eq!((report.unit, report.unit_found), (unit, Found::Detected));
+            assert_eq!((report.up, report.up_found), (up, Found::Detected));
+            // As far as a ratio of all people goes.
+            assert!((report.stature - 1.7).abs() < 0.1, "{}", report.stature);
+            assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+            for (name, place) in
+                [("Hips", [0.0, 0.92, 0.0]), ("Neck", [0.0, 1.47, 0.0]), ("LeftArm", [0.2, 1.37, 0.0])]
+            {
+                assert!(joint(&motion, name).distance(place.into()) < 1e-5, "{name} in {unit}, {up} up");
+            }
+            let rest = motion.clips[0].skeleton();
+            let neck = rest.model_from_joints()[rest.find("Neck").unwrap()].translation;
+            assert!(neck.distance(Vec3::new(0.0, 0.55, 0.0)) < 1e-5, "the rest pose stands, too");
+            let toes = rest.ends()[rest.find("LeftFoot").unwrap()].unwrap();
+            let turn = if up == Axis::Z {
+                Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)
+            } else {
+                Quat::IDENTITY
+            };
+            assert!((turn * toes).distance(Vec3::new(0.0, -0.05, 0.2)) < 1e-5, "joint spaces are the file's");
+        }
+    }
+}
+
+#[test]
+fn what_is_asked_for_wins() {
+    let options = ReadOptions { unit: Some(Unit::Inch), up: Some(Axis::Z), frames_per_second: None };
+    let motion = read(&person(1.0, Axis::Y), &options);
+    assert_eq!((motion.report.unit_found, motion.report.up_found), (Found::Asked, Found::Asked));
+    assert!(joint(&motion, "Hips").distance(Vec3::new(0.0, 0.0, -0.92 * 0.0254)) < 1e-6);
+    assert!(
+        motion.report.warnings[0].contains("with lengths in in the body is about 0.04 m"),
+        "{:?}",
+        motion.report.warnings
+    );
+}
+
+/// The person in metres, as a file that claims something.
+fn claiming(unit: Unit, up: Axis, claim: (Unit, Axis)) -> Motion {
+    let text = person(unit.metres(), up);
+    let mut raw = crate::format::bvh::BVH.read_motion.unwrap()(
+        text.as_bytes(),
+        Path::new("a"),
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    (raw.unit, raw.up) = (Some(claim.0), Some(claim.1));
+    resolve(raw, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn a_file_is_believed_unless_its_body_is_impossible() {
+    let motion = claiming(Unit::Inch, Axis::Z, (Unit::Inch, Axis::Z));
+    assert_eq!((motion.report.unit_found, motion.report.up_found), (Found::File, Found::File));
+    assert!(motion.report.warnings.is_empty());
+
+    // 170 m and 0.017 m tall, and lying on the floor with every frame.
+    for (unit, claim) in [(Unit::Centimetre, Unit::Metre), (Unit::Metre, Unit::Centimetre)] {
+        let motion = claiming(unit, Axis::Z, (claim, Axis::Y));
+        assert_eq!((motion.report.unit, motion.report.unit_found), (unit, Found::Detected));
+        assert_eq!((motion.report.up, motion.report.up_found), (Axis::Z, Found::Detected));
+        let warnings = motion.report.warnings.join("\n");
+        assert!(warnings.contains(&format!("the file says {claim}, by which the body is")), "{warnings}");
+        assert!(warnings.contains("says that Y points up, but the body stands along Z"), "{warnings}");
+        assert!(joint(&motion, "Neck").distance(Vec3::new(0.0, 1.47, 0.0)) < 1e-5);
+    }
+    // A child's size is no mistake.
+    assert_eq!(
+        claiming(Unit::Centimetre, Axis::Y, (Unit::Metres(0.005), Axis::Y)).report.unit_found,
+        Found::File
+    );
+}
+
+#[test]
+fn a_body_of_no_usual_unit_is_scaled_to_a_person() {
+    let report = read(&person(0.04, Axis::Y), &ReadOptions::default()).report;
+    assert!((report.stature - TYPICAL).abs() < 1e-6 && report.unit_found == Found::Detected);
+    assert!((report.unit.metres() / 0.04 - 1.0).abs() < 0.1, "{}", report.unit);
+    assert!(report.warnings[0].contains("scaled to 1.70 m"), "{:?}", report.warnings);
+}
+
+#[test]
+fn a_scale_of_a_hundred_too_much_is_seen() {
+    // Millimetres, said to be decimetres.
+    let motion = claiming(Unit::Millimetre, Axis::Y, (Unit::Decimetre, Axis::Y));
+    assert_eq!(motion.report.unit, Unit::Millimetre);
+    // A hundredth of a centimetre, for which there is no name.
+    let motion = claiming(Unit::Metres(1e-4), Axis::Y, (Unit::Centimetre, Axis::Y));
+    assert!((motion.report.unit.metres() - 1e-4).abs() < 1e-12);
+    assert!(joint(&motion, "Neck").distance(Vec3::new(0.0, 1.47, 0.0)) < 1e-5);
+}
+
+#[test]
+fn a_body_that_tells_nothing_is_taken_as_it_is() {
+    let text = "HIERARCHY ROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.04\n7\n";
+    let report = read(text, &ReadOptions::default()).report;
+    assert_eq!((report.unit, report.unit_found), (Unit::Metre, Found::Assumed));
+    assert_eq!((report.up, report.up_found), (Axis::Y, Found::Assumed));
+    let json = serde_json::to_value(&report).unwrap();
+    assert_eq!(
+        (&json["unit"], &json["unit_found"], &json["up"]),
+        (&"m".into(), &"assumed".into(), &"Y".into())
+    );
+}

@@ -1,0 +1,128 @@
+//! Reading: the format by the ending, then the reader of its folder.
+
+use std::path::Path;
+
+use super::disk;
+use super::kind::able;
+use super::motion::{Motion, ReadOptions, units_and_axes};
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// Reads a character: joints and bind pose, meshes with texture coordinates and weights, materials, extras, clips. From
+/// `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usda`, `.usdc`, `.usdz`. Metres, +Y up. The scene validates.
+///
+/// What a scene has no place for is not read: pictures, cameras, lights, motion of anything but the skeleton and the
+/// morph targets. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model
+/// order, with texture seams merged; those of others as they are. A skeleton must have one root and no scale; nodes
+/// above and between its joints are folded into the joints. Where the rest pose is not the bind pose, the scene is in
+/// the bind pose. Meshes of a character without a skin have to hang on a joint and are bound to it.
+///
+/// # Errors
+/// [`Error::File`] says what is wrong and where: another ending, damage, several roots, scale in the skeleton, a mesh
+/// that hangs on nothing; [`Error::Io`] when reading fails.
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene> {
+    let path = path.as_ref();
+    let (_, read) = able(path, |format| format.read_scene)?;
+    read(&disk::read(path)?, path)
+}
+
+/// [`read_scene`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// looked for.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Scene> {
+    let path = path.as_ref();
+    let (_, read) = able(path, |format| format.read_scene)?;
+    read(bytes, path)
+}
+
+/// Reads the surfaces alone, to measure or to draw them: from all that [`read_scene`] reads, and `.obj`. Metres, +Y up,
+/// as the file has them.
+///
+/// The scene has meshes, materials and extras, but neither joints nor clips. Meshes with a skin come first, so that the
+/// body of our own files is the first mesh, and are in the bind pose; the others are where the file puts them. Files of
+/// ours come back in model order, with texture seams merged. The scene need not [validate](Scene::validate): a mesh may
+/// be of points alone.
+///
+/// # Errors
+/// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
+pub fn read_meshes(path: impl AsRef<Path>) -> Result<Scene> {
+    let path = path.as_ref();
+    let (_, read) = able(path, |format| format.read_meshes)?;
+    read(&disk::read(path)?, path)
+}
+
+/// [`read_meshes`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// looked for.
+///
+/// # Errors
+/// As [`read_meshes`].
+pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Scene> {
+    let path = path.as_ref();
+    let (_, read) = able(path, |format| format.read_meshes)?;
+    read(bytes, path)
+}
+
+/// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
+/// `.usda`, `.usdc`, `.usdz`. The ending tells the format, the first bytes confirm it.
+///
+/// # Errors
+/// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails,
+/// [`Error::Request`] for a rate that is none.
+pub fn read_motion(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
+    let path = path.as_ref();
+    able(path, |format| format.read_motion)?;
+    read_motion_from_bytes(&disk::read(path)?, path, options)
+}
+
+/// [`read_motion`] of a file that is already in memory; `path` tells the format, where buffers of a `.gltf` are looked
+/// for, and the name of a clip that has none.
+///
+/// # Errors
+/// As [`read_motion`].
+pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
+    let path = path.as_ref();
+    options.check()?;
+    let (_, read) = able(path, |format| format.read_motion)?;
+    let raw = read(bytes, path, options)?;
+    units_and_axes::resolve(raw, options).map_err(|message| Error::file(path, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_tells_the_format_and_the_first_bytes_confirm_it() {
+        let error = |path: &str, bytes: &[u8]| {
+            read_motion_from_bytes(bytes, path, &ReadOptions::default()).unwrap_err().to_string()
+        };
+        let unknown = error("walk.mov", b"");
+        assert!(unknown.contains("walk.mov") && unknown.contains(".bvh .npz .fbx .glb"), "{unknown}");
+        assert!(error("walk", b"").contains("unknown ending"));
+        for (path, expected) in [
+            ("a.BVH", "expected HIERARCHY"),
+            ("a.npz", "expected a zip archive"),
+            ("a.fbx", "an FBX file, which this is not: it starts with `\\x7fELF`"),
+            ("a.glb", "glTF"),
+        ] {
+            let error = error(path, b"\x7fELF");
+            assert!(error.contains(expected), "{error}");
+        }
+        assert!(matches!(read_motion("missing.bvh", &ReadOptions::default()), Err(Error::Io { .. })));
+        let rate = ReadOptions { frames_per_second: Some(f64::NAN), ..Default::default() };
+        assert!(matches!(read_motion_from_bytes(b"", "a.bvh", &rate), Err(Error::Request { .. })));
+    }
+
+    #[test]
+    fn an_ending_is_looked_at_before_the_disk() {
+        for message in [
+            read_scene("missing.obj").unwrap_err().to_string(),
+            read_meshes("missing.bvh").unwrap_err().to_string(),
+            read_motion("missing.vrm", &ReadOptions::default()).unwrap_err().to_string(),
+        ] {
+            assert!(message.contains("unknown ending, expected one of ."), "{message}");
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! One mesh of a USD file, in our space.
+
+use glam::{DAffine3, DMat4, DVec3};
+use openusd::sdf::{Path, Value};
+
+use crate::error::Outcome;
+use crate::format::limits::MAX_ELEMENTS;
+use crate::format::usd::document::layer::Layer;
+use crate::format::usd::document::skeleton::Skeleton;
+use crate::format::usd::document::values;
+use crate::format::usd::document::xform::Xforms;
+use crate::scene::SceneMesh;
+use crate::scene::flip_v;
+
+/// What the meshes are skinned to.
+pub(super) struct Skin<'a> {
+    pub(super) skeleton: &'a Skeleton,
+    /// Our space from the skeleton's.
+    pub(super) above: DAffine3,
+}
+
+/// A mesh without name and material.
+pub(super) struct Read {
+    pub(super) mesh: SceneMesh,
+    pub(super) double_sided: bool,
+}
+
+/// The mesh at this path, in the bind pose where it is skinned.
+pub(super) fn read(
+    layer: &Layer,
+    prim: &Path,
+    skin: Option<&Skin>,
+    ours_from_file: &DAffine3,
+) -> Outcome<Read> {
+    let fault = |attribute: &str, why: &str| format!("{prim}.{attribute}: {why}");
+    let vectors = |name: &str| -> Outcome<Option<Vec<[f64; 3]>>> {
+        let Some(value) = layer.default(prim, name)? else { return Ok(None) };
+        values::rows::<3>(&value).map(Some).ok_or_else(|| fault(name, "expected vectors"))
+    };
+    let points = vectors("points")?.ok_or_else(|| fault("points", "expected a value, found none"))?;
+    if points.is_empty() || points.len() > MAX_ELEMENTS {
+        let why = format!("expected 1 to {MAX_ELEMENTS} of them, got {}", points.len());
+        return Err(fault("points", &why));
+    }
+
+    let mut mesh = SceneMesh::default();
+    let influences = match skin {
+        Some(skin) => influences(layer, prim, skin.skeleton, points.len())?,
+        None => None,
+    };
+    let ours_from_mesh = match (skin, &influences) {
+        (Some(skin), Some(_)) => skin.above * geometry_bind(layer, prim)?,
+        _ => *ours_from_file * Xforms::read(layer, prim)?.at_start()?,
+    };
+    let normal_matrix = ours_from_mesh.matrix3.inverse().transpose();
+    let single = |v: DVec3| v.as_vec3().to_array();
+    mesh.positions =
+        points.iter().map(|p| single(ours_from_mesh.transform_point3(DVec3::from_array(*p)))).collect();
+    let normals = match vectors("primvars:normals")? {
+        Some(normals) => normals,
+        None => vectors("normals")?.unwrap_or_default(),
+    };
+    // Normals of corners are of no use to a mesh with one per vertex.
+    if normals.len() == points.len() {
+        let normal = |n: &[f64; 3]| (normal_matrix * DVec3::from_array(*n)).normalize_or(DVec3::Y);
+        mesh.normals = normals.iter().map(|n| single(normal(n))).collect();
+    }
+    faces(layer, prim, &mut mesh)?;
+
+    if let Some(skin) = skin {
+        let rigid =
+            || Influences { width: 1, joints: vec![0; points.len()], weights: vec![1.0; points.len()] };
+        let count = skin.skeleton.joints.names.len();
+        influences.unwrap_or_else(rigid).into_mesh(&mut mesh, count).map_err(|m| format!("{prim}: {m}"))?;
+    }
+    let double_sided = layer.default(prim, "doubleSided")? == Some(Value::Bool(true));
+    Ok(Read { mesh, double_sided })
+}
+
+fn integers(layer: &Layer, prim: &Path, name: &str) -> Outcome<Option<Vec<i32>>> {
+    match layer.default(prim, name)? {
+        Some(Value::IntVec(numbers)) => Ok(Some(numbers)),
+        None => Ok(None),
+        Some(_) => Err(format!("{prim}.{name}: expected integers")),
+    }
+}
+
+/// Faces and texture coordinates.
+fn faces(layer: &Layer, prim: &Path, mesh: &mut SceneMesh) -> Outcome<()> {
+    let required = |name: &str| {
+        integers(layer, prim, name)?.ok_or_else(|| format!("{prim}.{name}: expected a value, found none"))
+    };
+    let (counts, corners) = (required("faceVertexCounts")?, required("faceVertexIndices")?);
+    let total = counts.iter().try_fold(0_usize, |sum, n| sum.checked_add(usize::try_from(*n).ok()?));
+    if total != Some(corners.len()) || corners.len() > 4 * MAX_ELEMENTS {
+        let got = corners.len();
+        return Err(format!(
+            "{prim}.faceVertexIndices: {got} corners are not what faceVertexCounts adds up to"
+        ));
+    }
+    let vertices = mesh.positions.len();
+    let index = |corner: &i32| usize::try_from(*corner).ok().filter(|v| *v < vertices).map(|v| v as u32);
+    let corners: Vec<u32> = corners.iter().map(index).collect::<Option<_>>().ok_or_else(|| {
+        format!("{prim}.faceVertexIndices: expected places among {vertices} points, got another")
+    })?;
+    let uvs = texture_coordinates(layer, prim, &corners, mesh)?;
+    let left_handed = layer.text_value(prim, "orientation")?.as_deref() == Some("leftHanded");
+
+    let mut start = 0;
+    for count in counts.iter().map(|count| *count as usize) {
+        let mut around: Vec<usize> = (start..start + count).collect();
+        start += count;
+        if left_handed {
+            around.reverse();
+        }
+        let uv = |at: usize| uvs.as_ref().map(|uvs| uvs[at]);
+        if let [a, b, c, d] = around[..] {
+            let quad = [a, b, c, d];
+            mesh.quads.positions.push(quad.map(|at| corners[at]));
+            mesh.quads.uvs.extend(uvs.as_ref().map(|uvs| quad.map(|at| uvs[at])));
+            continue;
+        }
+        for at in 2..around.len() {
+            let triangle = [around[0], around[at - 1], around[at]];
+            mesh.triangles.positions.push(triangle.map(|at| corners[at]));
+            mesh.triangles.uvs.extend(uv(0).map(|_| triangle.map(|at| uv(at).unwrap_or_default())));
+        }
+    }
+    Ok(())
+}
+
+/// Fills the mesh's texture coordinates; the place of each corner's.
+fn texture_coordinates(
+    layer: &Layer,
+    prim: &Path,
+    corners: &[u32],
+    mesh: &mut SceneMesh,
+) -> Outcome<Option<Vec<u32>>> {
+    let Some(value) = layer.default(prim, "primvars:st")? else { return Ok(None) };
+    let st = values::rows::<2>(&value).ok_or_else(|| format!("{prim}.primvars:st: expected pairs"))?;
+    let indices: Vec<i32> = match integers(layer, prim, "primvars:st:indices")? {
+        Some(indices) => indices,
+        None => (0..st.len() as i32).collect(),
+    };
+    let per_corner = indices.len() == corners.len();
+    if !per_corner && indices.len() != mesh.positions.len() {
+        let (got, expected) = (indices.len(), corners.len());
+        return Err(format!("{prim}.primvars:st: expected {expected} values, one per corner, got {got}"));
+    }
+    let place = |(corner, vertex): (usize, &u32)| {
+        let index = indices.get(if per_corner { corner } else { *vertex as usize })?;
+        usize::try_from(*index).ok().filter(|i| *i < st.len()).map(|i| i as u32)
+    };
+    let places: Option<Vec<u32>> = corners.iter().enumerate().map(place).collect();
+    let places = places
+        .ok_or_else(|| format!("{prim}.primvars:st:indices: expected places among {} values", st.len()))?;
+    mesh.uvs = st.iter().map(|uv| flip_v(uv.map(|n| n as f32))).collect();
+    Ok(Some(places))
+}
+
+fn geometry_bind(layer: &Layer, prim: &Path) -> Outcome<DAffine3> {
+    let Some(value) = layer.default(prim, "primvars:skel:geomBindTransform")? else {
+        return Ok(DAffine3::IDENTITY);
+    };
+    let rows = values::rows::<16>(&value).unwrap_or_default();
+    let [matrix] = rows[..] else {
+        return Err(format!("{prim}.primvars:skel:geomBindTransform: expected a matrix"));
+    };
+    Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix)))
+}
+
+/// Joints and weights as a file has them: `width` slots per vertex, joints in our order.
+struct Influences {
+    width: usize,
+    joints: Vec<usize>,
+    weights: Vec<f64>,
+}
+
+/// The mesh's own influences; `None` for a mesh without, or bound to another skeleton.
+fn influences(
+    layer: &Layer,
+    prim: &Path,
+    skeleton: &Skeleton,
+    vertices: usize,
+) -> Outcome<Option<Influences>> {
+    const JOINTS: &str = "primvars:skel:jointIndices";
+    const WEIGHTS: &str = "primvars:skel:jointWeights";
+    let Some(slots) = integers(layer, prim, JOINTS)? else { return Ok(None) };
+    // The binding is inherited from the prims above.
+    for above in prim.ancestors_below_root() {
+        if let Some(target) = layer.target(&above, "skel:skeleton")? {
+            if target != skeleton.prim {
+                return Err(format!("{prim}: is bound to {target}, and {} is read", skeleton.prim));
+            }
+            break;
+        }
+    }
+    let weights = layer.default(prim, WEIGHTS)?.and_then(|value| values::numbers(&value)).unwrap_or_default();
+    let count = slots.len();
+    if count != weights.len() || count == 0 {
+        return Err(format!(
+            "{prim}.{WEIGHTS}: expected {count} weights, one per joint index, got {}",
+            weights.len()
+        ));
+    }
+    let constant = layer.interpolation(prim, JOINTS)?.as_deref() == Some("constant");
+    let width = if constant { count } else { count / vertices };
+    if !constant && (width == 0 || width * vertices != count) {
+        return Err(format!("{prim}.{JOINTS}: {count} of them for {vertices} points"));
+    }
+    // Indices are into the mesh's own list of joints where it has one, else into the skeleton's.
+    let paths = &skeleton.joints.paths;
+    let listed: Vec<Option<usize>> = match layer.tokens(prim, "skel:joints")? {
+        Some(own) => own.iter().map(|joint| paths.iter().position(|path| path == joint)).collect(),
+        None => {
+            let mut ours = vec![None; paths.len()];
+            skeleton.joints.places.iter().enumerate().for_each(|(new, &old)| ours[old] = Some(new));
+            ours
+        }
+    };
+    let joint = |(slot, weight): (&i32, &f64)| {
+        let joint = usize::try_from(*slot).ok().and_then(|slot| listed.get(slot).copied().flatten());
+        // What stands in an unused slot does not matter.
+        joint.or((*weight == 0.0).then_some(0))
+    };
+    let joints: Option<Vec<usize>> = slots.iter().zip(&weights).map(joint).collect();
+    let mut joints =
+        joints.ok_or_else(|| format!("{prim}.{JOINTS}: expected places among {} joints", listed.len()))?;
+    let mut weights = weights;
+    if constant {
+        if width * vertices > 8 * MAX_ELEMENTS {
+            return Err(format!("{prim}.{JOINTS}: {width} influences for {vertices} points are too many"));
+        }
+        (joints, weights) = (joints.repeat(vertices), weights.repeat(vertices));
+    }
+    Ok(Some(Influences { width, joints, weights }))
+}
+
+impl Influences {
+    /// The strongest four or eight of each vertex, sorted, with sum 1.
+    fn into_mesh(self, mesh: &mut SceneMesh, joint_count: usize) -> Outcome<()> {
+        let slots = if self.width <= 4 { 4 } else { 8 };
+        mesh.influences_per_vertex = slots;
+        let mut merged = vec![0.0; joint_count];
+        for (vertex, (joints, weights)) in
+            self.joints.chunks_exact(self.width).zip(self.weights.chunks_exact(self.width)).enumerate()
+        {
+            if let Some(weight) = weights.iter().find(|w| !w.is_finite() || **w < 0.0) {
+                return Err(format!("weight {weight} at vertex {vertex}, expected none below 0"));
+            }
+            // A joint may come twice.
+            joints.iter().zip(weights).for_each(|(joint, weight)| merged[*joint] += weight);
+            let mut used: Vec<(usize, f64)> = Vec::with_capacity(self.width);
+            for joint in joints {
+                let weight = std::mem::take(&mut merged[*joint]);
+                if weight > 0.0 {
+                    used.push((*joint, weight));
+                }
+            }
+            used.sort_by(|a, b| b.1.total_cmp(&a.1));
+            used.truncate(slots);
+            let sum: f64 = used.iter().map(|slot| slot.1).sum();
+            if sum <= 0.0 || sum.is_infinite() {
+                return Err(format!("weights of vertex {vertex} sum to {sum}"));
+            }
+            // Weights that sum to 1 but for rounding stay what they are.
+            let whole = if (sum - 1.0).abs() < 1e-6 { 1.0 } else { sum };
+            used.resize(slots, (0, 0.0));
+            mesh.joint_indices.extend(used.iter().map(|slot| slot.0 as u16));
+            mesh.joint_weights.extend(used.iter().map(|slot| (slot.1 / whole) as f32));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,52 @@
+//! A parsed file: one layer, its prims by kind.
+
+pub(super) mod layer;
+pub(super) mod skeleton;
+pub(super) mod values;
+pub(super) mod xform;
+
+use openusd::sdf::Path;
+
+use self::layer::Layer;
+use self::skeleton::Skeleton;
+use crate::error::Outcome;
+
+/// One layer; what it refers to in other files is not read.
+pub(super) struct Document {
+    /// Values are decoded when they are asked for.
+    pub(super) layer: Layer,
+    /// All active, defined prims, parents first, in the file's order.
+    pub(super) prims: Vec<Path>,
+    /// Those of them that are a `Skeleton`, a `SkelAnimation`, a `Mesh`.
+    skeletons: Vec<Path>,
+    pub(super) animations: Vec<Path>,
+    pub(super) meshes: Vec<Path>,
+}
+
+impl Document {
+    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, told apart by how they start.
+    pub(super) fn open(bytes: &[u8]) -> Outcome<Self> {
+        let layer = Layer::open(bytes)?;
+        let prims = layer.prims()?;
+        let (mut skeletons, mut animations, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for prim in &prims {
+            match layer.type_name(prim)?.as_str() {
+                "Skeleton" => skeletons.push(prim.clone()),
+                "SkelAnimation" => animations.push(prim.clone()),
+                "Mesh" => meshes.push(prim.clone()),
+                _ => {}
+            }
+        }
+        Ok(Self { layer, prims, skeletons, animations, meshes })
+    }
+
+    /// How many skeletons there are, of which one is read.
+    pub(super) fn skeleton_count(&self) -> usize {
+        self.skeletons.len()
+    }
+
+    /// The first skeleton with an animation of its own, else the first.
+    pub(super) fn skeleton(&self) -> Outcome<Option<Skeleton>> {
+        Skeleton::read(&self.layer, &self.skeletons)
+    }
+}

@@ -1,0 +1,213 @@
+//! The Skeleton that is read: its joints and their rest pose, its animation.
+
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use openusd::sdf::Path;
+
+use super::layer::Layer;
+use super::values;
+use super::xform::Xforms;
+use crate::error::Outcome;
+use crate::format::motion::raw::Rigid;
+use crate::math::RigidTransform;
+use crate::skeleton::MAX_JOINTS;
+
+/// The skeleton that is read of a file.
+pub(crate) struct Skeleton {
+    pub(crate) prim: Path,
+    /// The animation that is bound to it.
+    pub(crate) animation: Option<Path>,
+    pub(crate) joints: Joints,
+    /// What stands above it.
+    pub(crate) above: Xforms,
+}
+
+impl Skeleton {
+    /// Of these the first with an animation of its own, else the first.
+    pub(super) fn read(layer: &Layer, skeletons: &[Path]) -> Outcome<Option<Self>> {
+        let Some((prim, animation)) = chosen(layer, skeletons)? else { return Ok(None) };
+        let (joints, above) = (Joints::read(layer, prim)?, Xforms::read(layer, prim)?);
+        Ok(Some(Self { prim: prim.clone(), animation, joints, above }))
+    }
+}
+
+fn chosen<'a>(layer: &Layer, skeletons: &'a [Path]) -> Outcome<Option<(&'a Path, Option<Path>)>> {
+    for skeleton in skeletons {
+        // The binding is inherited from the prims above.
+        for prim in skeleton.ancestors_below_root() {
+            if let Some(source) = layer.target(&prim, "skel:animationSource")? {
+                return Ok(Some((skeleton, Some(source))));
+            }
+        }
+    }
+    Ok(skeletons.first().map(|first| (first, None)))
+}
+
+/// A joint's transform to its parent, with scale: scale first, then rotation, then translation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Transform {
+    pub(crate) rotation: DQuat,
+    pub(crate) translation: DVec3,
+    pub(crate) scale: DVec3,
+}
+
+impl Transform {
+    /// Sets the rotation to a quaternion w, x, y, z of any length but none.
+    pub(crate) fn rotate(&mut self, [w, x, y, z]: [f64; 4]) {
+        let rotation = DQuat::from_xyzw(x, y, z, w);
+        if rotation.length_squared() > 1e-24 {
+            self.rotation = rotation.normalize();
+        }
+    }
+
+    pub(crate) fn to_affine(self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+}
+
+/// The joints of a skeleton, parents first.
+pub(crate) struct Joints {
+    /// Paths from the root joint, as the file has them.
+    pub(crate) paths: Vec<String>,
+    /// Names: `jointNames` where the file has them, else the last part of the path.
+    pub(crate) names: Vec<String>,
+    pub(crate) parents: Vec<Option<u32>>,
+    /// Rest pose.
+    pub(crate) rest: Vec<Transform>,
+    /// Where each joint stands in the file's own list.
+    pub(crate) places: Vec<usize>,
+}
+
+impl Joints {
+    pub(crate) fn read(layer: &Layer, prim: &Path) -> Outcome<Self> {
+        let listed = layer.tokens(prim, "joints")?.unwrap_or_default();
+        if listed.is_empty() || listed.len() > MAX_JOINTS {
+            return Err(format!("{prim}.joints: expected 1 to {MAX_JOINTS} joints, got {}", listed.len()));
+        }
+        // A parent's path is shorter than its joint's; where it stands first already nothing is moved.
+        let place_of: BTreeMap<&str, usize> =
+            listed.iter().enumerate().map(|(i, path)| (path.as_str(), i)).collect();
+        if place_of.len() != listed.len() {
+            return Err(format!("{prim}.joints: a joint is listed twice"));
+        }
+        let parent_of = |path: &str| {
+            let mut above = path;
+            loop {
+                above = &above[..above.rfind('/')?];
+                if let Some(place) = place_of.get(above) {
+                    return Some(*place);
+                }
+            }
+        };
+        let mut places: Vec<usize> = (0..listed.len()).collect();
+        if places.iter().any(|&i| parent_of(&listed[i]).is_some_and(|parent| parent > i)) {
+            places.sort_by_key(|&i| listed[i].matches('/').count());
+        }
+        let mut new_place = vec![0; listed.len()];
+        places.iter().enumerate().for_each(|(new, &old)| new_place[old] = new as u32);
+        let parents: Vec<Option<u32>> =
+            places.iter().map(|&i| parent_of(&listed[i]).map(|parent| new_place[parent])).collect();
+
+        let titles = layer.tokens(prim, "jointNames")?.filter(|titles| titles.len() == listed.len());
+        let name = |&i: &usize| match &titles {
+            Some(titles) if !titles[i].is_empty() => titles[i].clone(),
+            _ => listed[i].rsplit('/').next().unwrap_or(&listed[i]).to_owned(),
+        };
+        let names = places.iter().map(name).collect();
+        let rest = Self::rest(layer, prim, &places, &parents)?;
+        let paths = places.iter().map(|&i| listed[i].clone()).collect();
+        Ok(Self { paths, names, parents, rest, places })
+    }
+
+    /// The bind pose, `model_from_joint` without scale, below what stands above the skeleton; the file's own numbers where
+    /// it has none. The rest pose where the file has no other.
+    pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Outcome<Vec<DAffine3>> {
+        let world: Vec<DAffine3> = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
+            Some(bind) => bind.iter().map(|joint| *above * *joint).collect(),
+            None => self.world(above),
+        };
+        Ok(world
+            .iter()
+            .map(|joint| if is_rigid(joint) { *joint } else { Rigid::of(joint).to_affine() })
+            .collect())
+    }
+
+    fn rest(
+        layer: &Layer,
+        prim: &Path,
+        places: &[usize],
+        parents: &[Option<u32>],
+    ) -> Outcome<Vec<Transform>> {
+        let locals = match Self::matrices(layer, prim, "restTransforms", places)? {
+            Some(locals) => locals,
+            None => {
+                let bind = Self::matrices(layer, prim, "bindTransforms", places)?.ok_or_else(|| {
+                    format!("{prim}: expected restTransforms or bindTransforms, one per joint")
+                })?;
+                let local = |(joint, parent): (&DAffine3, &Option<u32>)| match parent {
+                    Some(parent) => bind[*parent as usize].inverse() * *joint,
+                    None => *joint,
+                };
+                bind.iter().zip(parents).map(local).collect()
+            }
+        };
+        let transform = |(joint, local): (usize, DAffine3)| {
+            let (scale, rotation, translation) = local.to_scale_rotation_translation();
+            let rest = Transform { rotation: rotation.normalize(), translation, scale };
+            if rest.rotation.is_finite() && scale.is_finite() && translation.is_finite() {
+                return Ok(rest);
+            }
+            Err(format!("{prim}: rest transform of joint {joint} is not finite or flattens space"))
+        };
+        locals.into_iter().enumerate().map(transform).collect()
+    }
+
+    fn matrices(
+        layer: &Layer,
+        prim: &Path,
+        attribute: &str,
+        places: &[usize],
+    ) -> Outcome<Option<Vec<DAffine3>>> {
+        let Some(value) = layer.default(prim, attribute)? else { return Ok(None) };
+        let rows = values::rows::<16>(&value).unwrap_or_default();
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        if rows.len() != places.len() {
+            let (expected, got) = (places.len(), rows.len());
+            return Err(format!("{prim}.{attribute}: expected {expected} matrices, got {got}"));
+        }
+        let matrices = places.iter().map(|&i| DAffine3::from_mat4(DMat4::from_cols_array(&rows[i])));
+        let matrices: Vec<DAffine3> = matrices.collect();
+        match matrices.iter().position(|m| !m.is_finite() || m.matrix3.determinant() == 0.0) {
+            Some(joint) => {
+                let place = places[joint];
+                Err(format!("{prim}.{attribute}: matrix {place} is not finite or flattens space"))
+            }
+            None => Ok(Some(matrices)),
+        }
+    }
+
+    /// The rest pose without scale, which goes into the translations, below what stands above the skeleton.
+    pub(crate) fn locals(&self, above: &DAffine3) -> Vec<RigidTransform> {
+        let rigid: Vec<Rigid> = self.world(above).iter().map(Rigid::of).collect();
+        Rigid::locals(&rigid, &self.parents)
+    }
+
+    fn world(&self, above: &DAffine3) -> Vec<DAffine3> {
+        let mut world: Vec<DAffine3> = Vec::with_capacity(self.rest.len());
+        for (joint, parent) in self.rest.iter().zip(&self.parents) {
+            let parent = parent.and_then(|p| world.get(p as usize)).unwrap_or(above);
+            world.push(*parent * joint.to_affine());
+        }
+        world
+    }
+}
+
+/// Whether there is neither scale nor shear but for the rounding of numbers of `f32`.
+fn is_rigid(transform: &DAffine3) -> bool {
+    let m = transform.matrix3;
+    let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
+    off.iter().all(|v| v.abs() < 1e-6) && m.determinant() > 0.0
+}

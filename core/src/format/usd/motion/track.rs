@@ -1,0 +1,112 @@
+//! An array that changes over time codes.
+
+use glam::{DQuat, DVec4};
+use openusd::sdf::{Path, Value};
+
+use crate::error::Outcome;
+use crate::format::usd::document::layer::Layer;
+use crate::format::usd::document::values;
+
+/// One row of `N` numbers per joint.
+type Rows<const N: usize> = Vec<[f64; N]>;
+
+/// Samples of vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint.
+pub(super) struct Track<const N: usize> {
+    /// In order of time; one at time 0 stands for a value that does not change, none for no value.
+    samples: Vec<(f64, Rows<N>)>,
+    animated: bool,
+}
+
+impl<const N: usize> Track<N> {
+    /// An attribute with a value for each of `count` joints, or without any.
+    pub(super) fn read(layer: &Layer, prim: &Path, attribute: &str, count: usize) -> Outcome<Self> {
+        let rows = |value: &Value| {
+            let rows = values::rows::<N>(value).ok_or("holds no vectors or quaternions".to_owned())?;
+            if rows.len() != count {
+                return Err(format!("expected {count} values, one per joint, got {}", rows.len()));
+            }
+            if let Some(joint) = rows.iter().position(|row| !row.iter().all(|n| n.is_finite())) {
+                return Err(format!("value {joint} is not finite: {:?}", rows[joint]));
+            }
+            Ok(rows)
+        };
+        let mut samples = Vec::new();
+        for (time, value) in layer.samples(prim, attribute)? {
+            let rows = rows(&value).map_err(|m| format!("{prim}.{attribute} at time code {time}: {m}"))?;
+            samples.push((time, rows));
+        }
+        let animated = !samples.is_empty();
+        if let (false, Some(value)) = (animated, layer.default(prim, attribute)?) {
+            // An empty array is how some programs leave an attribute out.
+            if values::numbers(&value).is_none_or(|n| !n.is_empty()) {
+                samples.push((0.0, rows(&value).map_err(|m| format!("{prim}.{attribute}: {m}"))?));
+            }
+        }
+        Ok(Self { samples, animated })
+    }
+
+    /// Time codes of the samples.
+    pub(super) fn times(&self) -> Vec<f64> {
+        if self.animated { self.samples.iter().map(|s| s.0).collect() } else { Vec::new() }
+    }
+
+    /// The values at a time code: linear between samples, quaternions along the shorter arc, as USD has it. Empty
+    /// where there is no value at any time.
+    pub(super) fn at(&self, time: f64) -> Rows<N> {
+        let after = self.samples.partition_point(|sample| sample.0 <= time);
+        let before = after.saturating_sub(1);
+        let (Some(a), b) = (self.samples.get(before), self.samples.get(after)) else { return Vec::new() };
+        let Some(b) = b else { return a.1.clone() };
+        let share = (time - a.0) / (b.0 - a.0);
+        // A sample's own time is met but for rounding.
+        match share {
+            ..1e-6 => a.1.clone(),
+            0.999_999.. => b.1.clone(),
+            _ => a.1.iter().zip(&b.1).map(|(a, b)| between(a, b, share)).collect(),
+        }
+    }
+}
+
+fn between<const N: usize>(a: &[f64; N], b: &[f64; N], share: f64) -> [f64; N] {
+    let mut out: [f64; N] = std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
+    if let (Ok(a), Ok(b)) = (<[f64; 4]>::try_from(a.as_slice()), <[f64; 4]>::try_from(b.as_slice())) {
+        let [a, b] = [a, b].map(|q| DVec4::from_array(q).normalize_or(DVec4::X));
+        // Slerp does not mind what the four numbers are called.
+        let turned = DQuat::from_vec4(a).slerp(DQuat::from_vec4(b), share);
+        out.copy_from_slice(&turned.to_array()[..N.min(4)]);
+    }
+    out
+}
+
+/// All times in order, each once.
+pub(super) fn merged(times: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.flatten().collect();
+    times.sort_by(f64::total_cmp);
+    // Two attributes keyed at one time may differ by rounding.
+    times.dedup_by(|later, earlier| *later - *earlier < 1e-6);
+    times
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quaternions_take_the_shorter_arc() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let turned = between(&[1.0, 0.0, 0.0, 0.0], &[-half, -half, 0.0, 0.0], 0.5);
+        let eighth = std::f64::consts::FRAC_PI_8;
+        assert!((turned[0].abs() - libm::cos(eighth)).abs() < 1e-12, "{turned:?}");
+        assert!((turned[0] * turned[1] - libm::cos(eighth) * libm::sin(eighth)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn values_between_before_and_after_samples() {
+        let track =
+            Track::<3> { samples: vec![(1.0, vec![[0.0; 3]]), (3.0, vec![[2.0, 4.0, 6.0]])], animated: true };
+        assert_eq!(track.at(0.0), [[0.0; 3]]);
+        assert_eq!(track.at(1.5), [[0.5, 1.0, 1.5]]);
+        assert_eq!(track.at(3.0), track.at(9.0));
+        assert_eq!(merged([vec![1.0, 2.0], vec![0.5, 1.0 + 1e-9]].into_iter()), [0.5, 1.0, 2.0]);
+    }
+}

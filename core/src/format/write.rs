@@ -1,0 +1,51 @@
+//! Writing: the format by the ending, then the writer of its folder.
+
+use std::{ffi::OsStr, path::Path};
+
+use super::disk::{write_atomic, write_pair};
+use super::gltf::GltfOptions;
+use super::kind::{Format, Write, able};
+use super::vrm::VrmMeta;
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// How the formats that leave a choice are written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Of `.glb` and `.gltf`.
+    pub gltf: GltfOptions,
+    /// Of `.vrm`.
+    pub vrm: VrmMeta,
+}
+
+/// Writes a scene in the format of the path's ending: `.glb`, `.gltf` with a `.bin` beside it, `.vrm`, `.usda`, `.usdc`,
+/// `.usdz`, or `.obj`, which takes the meshes alone.
+///
+/// # Errors
+/// [`Error::File`] for another ending, [`Error::Invalid`] for a scene that does not [validate](Scene::validate) or that
+/// the format cannot hold, [`Error::Io`] when the system refuses; what was at the path is then as it was.
+pub fn write_scene(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions) -> Result<()> {
+    let path = path.as_ref();
+    match able(path, |format| format.write)?.1 {
+        Write::Alone(write) => write_atomic(path, &write(scene, options)?),
+        Write::WithBuffer(write) => {
+            let bin_path = path.with_extension("bin");
+            let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
+                return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
+            };
+            let files = write(scene, bin_name, options)?;
+            write_pair((path, &files.json), (&bin_path, &files.bin))
+        }
+    }
+}
+
+/// [`write_scene`] to memory, in a format that is one file: see [`Format::of_one_file`].
+///
+/// # Errors
+/// [`Error::Request`] for a format of several files or one that is not written, [`Error::Invalid`] as [`write_scene`].
+pub fn write_scene_to_bytes(scene: &Scene, format: Format, options: &WriteOptions) -> Result<Vec<u8>> {
+    match format.writer() {
+        Some(Write::Alone(write)) => write(scene, options),
+        _ => Err(Format::one_file_fault(format.ending())),
+    }
+}
