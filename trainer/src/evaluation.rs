@@ -167,7 +167,7 @@ fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
         Err(e) => return Err(e.into()),
     };
     let glb = to_glb(&Scene::from_body(&body, &SceneOptions::default())?)?;
-    let file = anthronet::format::gltf::read::from_bytes(&glb, Path::new("body.glb"))?;
+    let file = anthronet::format::gltf::from_bytes(&glb, Path::new("body.glb"))?;
     let mesh = file.meshes.first().ok_or_else(|| Error::Invalid("the written .glb has no mesh".into()))?;
     let again = model.definitions().read_all(|v| mesh.positions[v as usize].as_dvec3());
     let worst =
