@@ -117,18 +117,23 @@ impl Error {
     }
 }
 
-/// How unlike two names are, to suggest the one that was meant: Levenshtein distance in characters. Only the first 64 are looked at: a name is never longer.
+/// How unlike two names are, to suggest the one that was meant: Levenshtein distance in characters. Only the first 64 are
+/// looked at: a name is never longer.
 pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().take(64).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().take(64).enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
-        }
+    let characters = |name: &str| name.chars().take(64).collect::<Vec<char>>();
+    strsim::generic_levenshtein(&characters(a), &characters(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::edit_distance;
+
+    #[test]
+    fn names_are_as_far_apart_as_the_characters_to_change() {
+        assert_eq!(edit_distance("thig_l", "thigh_l"), 1);
+        assert_eq!(edit_distance("kitten", "sitting"), 3);
+        assert_eq!(edit_distance("", "é—"), 2);
+        let long = "x".repeat(64);
+        assert_eq!(edit_distance(&format!("{long}a"), &format!("{long}bcd")), 0, "of names longer than any");
     }
-    row[b.len()]
 }

@@ -322,6 +322,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_joints_stand_in_the_order_of_the_model() {
+        let with_twists = |joint: RigJoint| {
+            let helpers =
+                twists_of(joint).map(|(plan, side)| plan.helpers.iter().map(move |(j, _)| j.on(side)));
+            [joint].into_iter().chain(helpers.into_iter().flatten())
+        };
+        let names: Vec<&str> = order().flat_map(with_twists).map(RigJoint::name).collect();
+        let model = anthronet::model::Model::embedded().unwrap();
+        assert_eq!(names, model.character().skeleton().names());
+    }
+
+    #[test]
     fn shares_along_a_limb_sum_to_one_and_do_not_jump() {
         let nodes = [(0.0, 7), (0.5, 8), (1.0, 6)];
         let share = |t: f32, joint: usize| -> f32 {
