@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""AnthroNet for Blender: type tape measures, get a person.
+"""AnthroNet for Blender: rigged characters from body measures.
 
-Layers, each of which knows only those below it: ``ui`` → ``operators`` → ``services`` → the package ``anthronet``.
-``properties`` is what a character keeps in the .blend file; ``compat`` is the only file that knows Blender's versions.
-"""
+Imports go one way: ``ui`` → ``operators`` → ``services`` → ``state`` → ``library``, ``measures``, ``units`` and ``compat``.
+``tests/blender/import_order.py`` checks that."""
 
-
-def _modules():
-    from . import operators, presets, properties, ui
-
-    return (properties, operators, presets, ui)
+from . import operators, state, ui
+from .services import property_callbacks
 
 
 def register():
-    for module in _modules():
-        module.register()
+    # The one place at which property groups and what their changes do meet.
+    state.register(property_callbacks.callback_for)
+    operators.register()
+    ui.register()
 
 
 def unregister():
-    for module in reversed(_modules()):
-        module.unregister()
+    ui.unregister()
+    operators.unregister()
+    state.unregister()

@@ -1,36 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that differs between Blender 4.2, 4.5 and 5.0."""
+"""Everything that differs between Blender 4.2, 4.5 and 5.0. No other module asks for Blender's version.
+
+In all functions ``block`` is a data-block that can be animated: an object, or the shape keys of a mesh."""
 
 from contextlib import contextmanager
 
 import bpy
 
-#: Whether actions have slots and layers (4.4 and newer).
+#: Whether actions have slots and layers: from Blender 4.4 on.
 HAS_SLOTS = bpy.app.version >= (4, 4, 0)
 
 
-def new_curves(action, title):
-    """Empties an action for an object's curves: a function of data path, index and group that makes one more."""
+def clear_fcurves(action, slot_name):
+    """Removes the F-curves of an action for objects and returns a function that adds one: ``(data_path, index, group)``.
+    ``slot_name``: for the slot, if a new one is needed."""
     if not HAS_SLOTS:
         action.fcurves.clear()
         return lambda path, index, group: action.fcurves.new(path, index=index, action_group=group)
-    slot = object_slot(action) or action.slots.new(id_type="OBJECT", name=title)
+    slot = object_slot(action) or action.slots.new(id_type="OBJECT", name=slot_name)
     layer = action.layers[0] if action.layers else action.layers.new("Layer")
     strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
-    bag = strip.channelbag(slot, ensure=True)
-    bag.fcurves.clear()
+    channelbag = strip.channelbag(slot, ensure=True)
+    channelbag.fcurves.clear()
 
-    def new(path, index, group):
-        curve = bag.fcurves.new(path, index=index)
-        curve.group = bag.groups.get(group) or bag.groups.new(group)
-        return curve
+    def new_fcurve(path, index, group):
+        fcurve = channelbag.fcurves.new(path, index=index)
+        fcurve.group = channelbag.groups.get(group) or channelbag.groups.new(group)
+        return fcurve
 
-    return new
+    return new_fcurve
 
 
 def object_slot(action, name=""):
-    """The slot of an action that an object plays: the named one, or the first that suits. None where there is none, or where
-    actions have no slots."""
+    """The slot of an action that animates an object: the named one, or else the first that can. None if there is none, or if
+    this Blender's actions have no slots."""
     if not HAS_SLOTS:
         return None
     suitable = [slot for slot in action.slots if slot.target_id_type in ("OBJECT", "UNSPECIFIED")]
@@ -42,19 +45,18 @@ def object_slot(action, name=""):
     return suitable[0] if suitable else None
 
 
-def assign(ob, action, slot=None):
-    """Makes an object or key play an action. The slot is named: an action that is assigned to a second object plays nothing."""
-    animation = ob.animation_data or ob.animation_data_create()
+def assign_action(block, action, slot=None):
+    """Assigns an action and its slot. Without the slot, an action that was made for another object would animate nothing."""
+    animation = block.animation_data or block.animation_data_create()
     animation.action = action
     if HAS_SLOTS and action is not None:
-        found = slot or object_slot(action)
-        if found is not None:
-            animation.action_slot = found
-    return animation
+        slot = slot or object_slot(action)
+        if slot is not None:
+            animation.action_slot = slot
 
 
-def played(block):
-    """The action that a data-block plays, and its slot: a pair, None for what there is not."""
+def assigned_action(block):
+    """The assigned action and its slot; None for each that there is not."""
     animation = block.animation_data
     if animation is None or animation.action is None:
         return None, None
@@ -62,40 +64,41 @@ def played(block):
 
 
 @contextmanager
-def assigned(ob, action, slot_name=""):
-    """An object that plays an action for a while."""
-    had = ob.animation_data is not None
-    before, slot_before = played(ob)
+def temporarily_assigned(block, action, slot_name=""):
+    """Assigns an action for the duration of a ``with`` statement."""
+    had_animation = block.animation_data is not None
+    before, slot_before = assigned_action(block)
     slot = object_slot(action, slot_name)
     try:
-        assign(ob, action, slot)
+        assign_action(block, action, slot)
         yield
     finally:
-        if had:
-            assign(ob, before, slot_before)
+        if had_animation:
+            assign_action(block, before, slot_before)
         else:
-            ob.animation_data_clear()
+            block.animation_data_clear()
 
 
-def add_strip(ob, action, start, slot=None):
-    """Puts an action on a new track of the non-linear animation."""
-    animation = ob.animation_data or ob.animation_data_create()
+def add_strip(block, action, start, slot=None):
+    """Adds an action as a strip on a new NLA track."""
+    animation = block.animation_data or block.animation_data_create()
     track = animation.nla_tracks.new()
     track.name = action.name
     strip = track.strips.new(action.name, int(start), action)
     if HAS_SLOTS:
-        found = slot or object_slot(action)
-        if found is not None:
-            strip.action_slot = found
+        slot = slot or object_slot(action)
+        if slot is not None:
+            strip.action_slot = slot
     return strip
 
 
-def push_down(ob):
-    """Makes the action that an object plays a strip, as Blender's *Push Down*: what comes on tracks above it is then seen."""
-    action, slot = played(ob)
+def push_down(block):
+    """Turns the assigned action into an NLA strip, as Blender's *Push Down Action* does, so that it no longer overrides the
+    tracks."""
+    action, slot = assigned_action(block)
     if action is None:
         return
-    animation = ob.animation_data
+    animation = block.animation_data
     animation.action = None
-    strip = add_strip(ob, action, action.frame_range[0], slot)
+    strip = add_strip(block, action, action.frame_range[0], slot)
     strip.extrapolation = animation.action_extrapolation

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The door to the library. Nothing is loaded before something needs it."""
+"""Access to the library. It is loaded when it is first needed, not when Blender starts."""
 
 
 class LibraryError(Exception):
-    """The library cannot be loaded; the message says what is missing and where it was looked for."""
+    """The library cannot be loaded. The message says what is missing and where it was looked for."""
 
 
 def anthronet():
-    """The package ``anthronet`` that the extension carries."""
+    """The Python package ``anthronet`` from the extension's wheel."""
     try:
         import anthronet as package
     except (ImportError, OSError) as error:
@@ -16,13 +16,12 @@ def anthronet():
 
 
 def model():
-    """The model, opened once."""
+    """The default model, which the package loads once."""
     return anthronet().default_model()
 
 
 def failures():
-    """What calls of this extension may raise for a reason that the user should read. RuntimeError is what Blender's own
-    operators raise."""
+    """The exceptions whose messages are for the user. Blender's own operators raise RuntimeError."""
     own = (LibraryError, ValueError, OSError, RuntimeError)
     try:
         return (*own, anthronet().Error)

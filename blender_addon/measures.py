@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The 36 measures: names, groups, ranges. Read from ``data/measures.json``, which packaging takes from the model, so that
-Blender starts without loading the model."""
+"""The body measures: names, groups, ranges.
+
+They are read from ``data/measures.json``, which ``cargo xtask package blender`` writes from the model, so that Blender starts
+without loading the model."""
 
 import json
 from functools import lru_cache
@@ -8,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 GROUPS = ("Head", "Torso", "Arms", "Legs")
-_GROUP_OF_WORD = {
+_GROUP_OF_FIRST_WORD = {
     "head": "Head",
     "neck": "Head",
     "arm": "Arms",
@@ -22,7 +24,7 @@ _GROUP_OF_WORD = {
 
 
 class Measure(NamedTuple):
-    """One measure; lengths in metres."""
+    """A body measure. Lengths in metres; ``low`` and ``high`` are the limits that the model states."""
 
     name: str
     kind: str
@@ -32,18 +34,19 @@ class Measure(NamedTuple):
 
     @property
     def label(self):
-        """Its name for people; the side is told by the column it stands in."""
-        return self.name.removesuffix("_left").removesuffix("_right").replace("_", " ").capitalize()
+        """The name for the user interface, without the side."""
+        words = self.name.removesuffix("_left").removesuffix("_right").split("_")
+        return " ".join(word if word == "to" else word.capitalize() for word in words)
 
     @property
     def side(self):
-        """``left``, ``right`` or nothing."""
+        """``left``, ``right``, or empty."""
         return self.name.rpartition("_")[2] if self.name.endswith(("_left", "_right")) else ""
 
     @property
     def group(self):
-        """The part of the body: one of ``GROUPS``."""
-        return _GROUP_OF_WORD.get(self.name.partition("_")[0], "Torso")
+        """The part of the body, one of ``GROUPS``."""
+        return _GROUP_OF_FIRST_WORD.get(self.name.partition("_")[0], "Torso")
 
     @property
     def mirrored(self):
@@ -56,23 +59,27 @@ class Measure(NamedTuple):
 
     @property
     def description(self):
-        """What a tooltip says."""
-        how = {"tape": "Around, as a tape reads it", "slice": "Around at one height, as a tape reads it"}
-        text = how.get(self.kind, "From point to point")
+        """The tooltip."""
+        methods = {
+            "tape": "Circumference as a tape measures it",
+            "slice": "Circumference at one height, as a tape measures it",
+        }
+        text = methods.get(self.kind, "Distance between two points")
         if self.standard:
-            text += f". Nearest standard: {self.standard}"
-        return text + f". From {self.low:.3f} to {self.high:.3f} m"
+            text += f". Closest standard: {self.standard}"
+        return text + f". Range: {self.low:.3f} to {self.high:.3f} m"
 
 
 @lru_cache(maxsize=1)
 def all_measures():
-    """All measures in the order of the library."""
+    """All measures, in the order of the library."""
     text = (Path(__file__).parent / "data" / "measures.json").read_text(encoding="utf-8")
     return tuple(
-        Measure(m["name"], m["kind"], m.get("standard") or "", m["min"], m["max"]) for m in json.loads(text)["measures"]
+        Measure(entry["name"], entry["kind"], entry.get("standard") or "", entry["min"], entry["max"])
+        for entry in json.loads(text)["measures"]
     )
 
 
 def names():
-    """Their names."""
+    """The names of all measures."""
     return tuple(measure.name for measure in all_measures())

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lengths and masses as the scene shows them. A character is a metre a Blender unit; where the scene's *Unit Scale* is another
-one, Blender's own sliders show it times that, and so do these."""
+"""Lengths and masses as text, in the units of the scene.
+
+A character is one metre to a Blender unit. If the scene's *Unit Scale* is not 1, Blender's sliders show lengths multiplied by
+it, and these functions do the same."""
 
 import bpy
 
 
 def length(scene, metres, precision=4):
-    """A length, as a slider of the scene shows it."""
+    """A length, as Blender's sliders show it."""
     settings = scene.unit_settings
     if settings.system == "NONE":
         return f"{metres:.{precision}f}"
@@ -19,8 +21,8 @@ def length(scene, metres, precision=4):
     )
 
 
-def millimetres(scene, metres):
-    """A small difference of lengths, with its sign."""
+def length_difference(scene, metres):
+    """A small difference of lengths with its sign, in millimetres or inches."""
     settings = scene.unit_settings
     if settings.system == "IMPERIAL":
         return f"{metres * settings.scale_length / 0.0254:+.4f} in"
@@ -30,7 +32,12 @@ def millimetres(scene, metres):
 
 
 def mass(scene, kilograms):
-    """A mass."""
+    """A mass in kilograms or pounds."""
     if scene.unit_settings.system == "IMPERIAL":
         return f"{kilograms / 0.45359237:.1f} lb"
     return f"{kilograms:.1f} kg"
+
+
+def body_mass_index(bmi):
+    """A body mass index."""
+    return f"BMI {bmi:.1f} kg/m²"

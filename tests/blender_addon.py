@@ -1,8 +1,8 @@
-"""The Blender extension as its users have it: installed from its zip, then used.
+"""Tests of the Blender extension, installed from its zip.
 
     python blender_addon.py anthronet-….zip PICTURES [PART…]
 
-Runs in any Blender from 4.2 as a module. Speeds are printed beside their bars and never fail.
+Runs in Blender 4.2 and newer as a Python module. Times are printed with their limits and never fail.
 """
 
 import os
@@ -15,16 +15,17 @@ from blender.harness import cases, check  # Comes before anything that imports B
 import bpy
 
 from blender.creating import creating, crowding, installing, unitising
-from blender.editing import carrying, editing, escaping, posing_together, sculpting, ticking, tinting, together
+from blender.editing import editing, escaping, posing_together, sculpting, ticking, tinting, together, transferring
 from blender.exchanging import exporting
 from blender.guarding import failing, failing_whole, linking, refusing, sharing
 from blender.keeping import adjusting, keeping, undoing
 from blender.moving import following, layering, moving, rating, refitting, rigging, slicing
 from blender.picturing import picturing
-from blender.registering import registering
+from blender.registering import importing, registering
 
 PARTS = (
     installing,
+    importing,
     creating,
     unitising,
     editing,
@@ -32,7 +33,7 @@ PARTS = (
     escaping,
     ticking,
     sculpting,
-    carrying,
+    transferring,
     together,
     tinting,
     refusing,
@@ -65,10 +66,10 @@ if __name__ == "__main__":
         start = time.perf_counter()
         try:
             part()
-        except Exception as error:  # A part that breaks off is a failed case; the others are still worth running.
+        except Exception as error:  # An error in one part must not keep the others from running.
             traceback.print_exc()
-            check(f"{part.__name__} runs to its end", False, f"{type(error).__name__}: {error}")
+            check(f"{part.__name__} ends without an error", False, f"{type(error).__name__}: {error}")
         print(f"{part.__name__}: {time.perf_counter() - start:.1f} s")
-    # Blender 4.5 as a module may wait for a thread of its own when it ends.
+    # Blender 4.5 as a module may hang at exit, waiting for one of its threads.
     sys.stdout.flush()
     os._exit(1 if cases.failed else 0)

@@ -1,9 +1,8 @@
-"""What the extension's panels show, read back from a real layout.
+"""Tests of what the extension's panels draw, read back from a real layout.
 
     python blender_panels.py anthronet-….zip
 
-Blender does not survive a layout that was asked for without a window, so this runs in a process of its own and leaves as soon
-as it has looked.
+Blender crashes after it has drawn a layout without a window, so this runs in a process of its own and exits right after that.
 """
 
 import ast
@@ -35,12 +34,12 @@ def words(items):
 
 
 def readable(panel):
-    """Whether a panel is drawn by the extension; Blender draws the one of presets."""
+    """Whether the extension draws a panel. Blender draws the one of presets."""
     return "draw" in panel.__dict__
 
 
 class Context:
-    """What panels ask of the context: Blender's own, with another object and mode."""
+    """Blender's context with another object and mode."""
 
     def __init__(self, thing, mode="OBJECT"):
         self.object, self.mode = thing, mode
@@ -50,7 +49,7 @@ class Context:
 
 
 def drawn(panel, context, layout):
-    """What a panel draws in a context."""
+    """The texts that a panel draws in a context."""
     self = SimpleNamespace(layout=layout.column())
     for name in ("draw_header", "draw_header_preset", "draw"):
         if name in panel.__dict__:
@@ -58,11 +57,11 @@ def drawn(panel, context, layout):
     try:
         return " | ".join(words(self.layout.introspect()))
     except SyntaxError as error:
-        # Blender forgets to quote the marks of feet and inches, but not to tell the text.
+        # Blender does not escape the marks of feet and inches, but the error has the text.
         return error.text
 
 
-#: What a module must not read while Blender starts: there may be no scene, or one that is not the user's.
+#: What of bpy a module must not use while Blender starts: there may be no scene, or not the user's.
 FORBIDDEN = {"context", "data", "ops"}
 
 
@@ -113,7 +112,7 @@ def scene_at_start():
                 tree = ast.parse(files.read(name), name)
                 faults += [f"{name}:{line}: {what}" for line, what in scene_reads(runs_at_start(tree))]
                 faults += [
-                    f"{name}:{node.lineno}: a timer of Blender's, which outlives the extension"
+                    f"{name}:{node.lineno}: a timer of Blender's, which would outlive the extension"
                     for node in ast.walk(tree)
                     if isinstance(node, ast.Attribute) and ast.unparse(node) == "bpy.app.timers"
                 ]
@@ -130,7 +129,7 @@ def scene_reads(nodes):
             yield from ((node.lineno, one.name) for one in node.names if one.name in FORBIDDEN)
 
 
-# The check itself: it has to find what it looks for.
+# Faults that the check has to find.
 _PLANTED = """
 import bpy
 class A:
@@ -142,24 +141,24 @@ def register(): helper()
 def never(): bpy.data.meshes
 """
 found = sorted(line for line, _ in scene_reads(runs_at_start(ast.parse(_PLANTED))))
-cases.case("the static check finds what is planted", found == [4, 5, 7], str(found))
+cases.case("the check of what runs at start finds planted faults", found == [4, 5, 7], str(found))
 
 bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
 faults = scene_at_start()
-cases.case("nothing reads the scene at import or in register", not faults, "; ".join(faults))
+cases.case("nothing uses the scene at import or in register", not faults, "; ".join(faults))
 bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 if NAME not in bpy.context.preferences.addons:
     bpy.ops.preferences.addon_enable(module=NAME)
 panels = {name: getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("ANTHRONET_PT_")}
 cases.case(
-    "no character: the start panel alone",
+    "without a character there is the start panel only",
     [n for n, p in panels.items() if readable(p) and p.poll(bpy.context)] == ["ANTHRONET_PT_start"],
 )
 
 bpy.ops.anthronet.character_add(sex="FEMALE", height=1.70)
 open_panels = {name for name, panel in panels.items() if readable(panel) and panel.poll(bpy.context)}
 hidden = {"ANTHRONET_PT_start", "ANTHRONET_PT_presets"}
-cases.case("with a character: all the others", open_panels == set(panels) - hidden, str(open_panels))
+cases.case("with a character there are all other panels", open_panels == set(panels) - hidden, str(open_panels))
 person = bpy.context.object
 bpy.ops.anthronet.clip_builtin(name="IDLE")
 bpy.ops.anthronet.character_add(sex="MALE")
@@ -170,12 +169,12 @@ bpy.context.collection.objects.link(walker)
 
 
 def look(menu, _context):
-    """Everything happens in here: Blender does not come back from it."""
+    """All tests of drawing. It does not return, because Blender would crash."""
     try:
         layout, units = menu.layout, bpy.context.scene.unit_settings
         read_panels({name: drawn(panel, Context(person), layout) for name, panel in panels.items() if readable(panel)})
         text = drawn(panels["ANTHRONET_PT_measures"], Context(impossible), layout)
-        cases.case("an error stands in the panel", "waist" in text.lower(), text[:200])
+        cases.case("an error is shown in the panel", "waist" in text.lower(), text[:200])
         units.system = "IMPERIAL"
         text = drawn(panels["ANTHRONET_PT_legs"], Context(person), layout)
         cases.case("imperial: intervals in feet and inches", "\"" in text or "'" in text, text[:300])
@@ -183,12 +182,12 @@ def look(menu, _context):
         cases.case("imperial: mass in pounds", "lb" in text, text[:200])
         units.system, units.scale_length = "METRIC", 0.01
         text = drawn(panels["ANTHRONET_PT_measures"], Context(person), layout)
-        cases.case("another Unit Scale is told", "Unit Scale" in text, text[:200])
+        cases.case("another Unit Scale is noted", "Unit Scale" in text, text[:200])
         units.scale_length = 1.0
         text = drawn(panels["ANTHRONET_PT_person"], Context(person, "EDIT_MESH"), layout)
-        cases.case("why nothing can be changed stands in the panel", "edit mesh mode" in text, text[:200])
+        cases.case("the panel shows why the character cannot be changed", "edit mesh mode" in text, text[:200])
         text = drawn(panels["ANTHRONET_PT_person"], Context(walker), layout)
-        cases.case("an armature without its mesh, too", "no body mesh" in text, text[:200])
+        cases.case("the panel shows that the mesh is missing", "no body mesh" in text, text[:200])
         before = drawn(panels["ANTHRONET_PT_motion"], Context(person), layout)
         person.anthronet.hip_circumference = 1.0
         after = drawn(panels["ANTHRONET_PT_motion"], Context(person), layout)
@@ -208,7 +207,7 @@ def read_panels(texts):
         cases.case(f"panel {panel}", not lost, f"{lost} not in {texts[f'ANTHRONET_PT_{panel}'][:300]}")
 
     has("start", "Add Character", "Add Crowd")
-    has("person", "Sex", "Seed", "Randomise", "Mirror", "anthronet_edit_together")
+    has("person", "Sex", "Seed", "Randomize", "Mirror", "anthronet_edit_together")
     has("identity", "Identity 1", "Identity 10")
     has("body", "lod", "skin_tone", "joint_names", "fine_render")
     has("motion", "clip_apply", "clip_builtin", "clip_from_armature", "metarig_add", "Export")
@@ -218,18 +217,18 @@ def read_panels(texts):
     lost = [name for name in anthronet.MEASURES if name not in everything]
     cases.case("every measure has its row", not lost, f"{lost} not in {everything[:400]}")
     cases.case(
-        "a filled measure shows its percentile and interval",
+        "a predicted measure shows its percentile and interval",
         "–" in groups["legs"] and " m" in groups["legs"] and re.search(r"P\d+ ", groups["legs"]),
         groups["legs"][:200],
     )
     cases.case(
-        "a given one its percentile and residual",
-        re.search(r"P\d+  off by [+-]0\.00 mm", groups["torso"]),
+        "a given measure shows its percentile and error",
+        re.search(r"P\d+  error [+-]0\.00 mm", groups["torso"]),
         groups["torso"][:300],
     )
 
 
 with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
     bpy.context.window_manager.popup_menu(look)
-cases.case("the panels draw", False, "Blender drew nothing")
+cases.case("the panels draw", False, "Blender did not draw")
 cases.exit()

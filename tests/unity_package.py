@@ -3,7 +3,8 @@
     python unity_package.py [ARCHIVE]   checks, the packed package too where it is named
     python unity_package.py --write     writes the .meta files that are missing
 
-A guid comes from the path of its file, so that it is the same for everybody and never another one.
+A guid is derived from the path of its file, and of a renamed file from its first path: it is the same on every machine and
+never changes.
 """
 
 import hashlib
@@ -24,8 +25,13 @@ FOREIGN = {"Unity.Burst", "UnityEngine.TestRunner", "UnityEditor.TestRunner"}
 LIBRARY = {"linux": "Linux/x86_64/libanthronet.so", "darwin": "macOS/libanthronet.dylib", "win32": "Windows/x86_64/anthronet.dll"}
 
 
+#: Renamed files, whose guids come from their first paths: scenes and prefabs refer to scripts by guid.
+RENAMED = {"Runtime/AnthroPoseDrivenShapes.cs": "Runtime/AnthroCorrectives.cs"}
+
+
 def guid(path):
-    return hashlib.md5(f"{NAME}/{path.as_posix()}".encode()).hexdigest()
+    first = RENAMED.get(path.as_posix(), path.as_posix())
+    return hashlib.md5(f"{NAME}/{first}".encode()).hexdigest()
 
 
 def assets():

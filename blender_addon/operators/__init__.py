@@ -1,24 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user or a script can do: every operator checks, calls a service and reports."""
+"""Operators: what users and scripts can do. Each checks its input, calls a service and reports the outcome."""
 
+import bpy
 
-def _modules():
-    from . import add, clip, edit, files, measure, rigify
+from . import add, clip, edit, export, measure, presets, rigify
 
-    return (add, clip, edit, files, measure, rigify)
+_MODULES = (add, clip, edit, export, measure, presets, rigify)
 
 
 def register():
-    import bpy
-
-    for module in _modules():
+    for module in _MODULES:
         for cls in module.CLASSES:
             bpy.utils.register_class(cls)
 
 
 def unregister():
-    import bpy
-
-    for module in reversed(_modules()):
+    for module in reversed(_MODULES):
         for cls in reversed(module.CLASSES):
             bpy.utils.unregister_class(cls)

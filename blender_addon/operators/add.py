@@ -1,48 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adding characters."""
+"""Adding characters to the scene."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import fields, library, measures
+from .. import library, measures
 from ..services import character
-from .base import reported
-from .job import ModalJob
+from ..state import definitions
+from ..state.requests import typed_decimal
+from .base import poll_object_mode, reports_errors
+from .modal import ModalOperatorWithoutDialog
 
-
-#: How many people are put into the scene at once.
+#: Most characters that are added to the scene in one slice of work.
 _BATCH = 16
 
 
 class AddsCharacters:
-    """An operator that puts characters into the active collection."""
+    """Mix-in for operators that add characters to the active collection."""
 
     @classmethod
     def poll(cls, context):
-        """Whether they would be seen there."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Go to object mode")
+        """Whether they would be visible in the active collection."""
+        if not poll_object_mode(cls, context):
             return False
         collection = context.layer_collection
         if collection is None or collection.exclude or not collection.is_visible:
-            cls.poll_message_set("The active collection is excluded or hidden: choose another one")
+            cls.poll_message_set("The active collection is excluded or hidden: select another one")
             return False
         if context.collection.library is not None:
-            cls.poll_message_set("The active collection is linked: choose another one")
+            cls.poll_message_set("The active collection is linked: select another one")
             return False
         return True
 
 
 class ANTHRONET_OT_character_add(AddsCharacters, bpy.types.Operator):
-    """Add a person with the given measures: mesh, armature and weights. A measure of 0 is left open"""
+    """Add a character with the given measures: mesh, armature and weights. Measures of 0 are predicted"""
 
     bl_idname = "anthronet.character_add"
     bl_label = "AnthroNet Character"
     bl_options = {"REGISTER", "UNDO"}
 
-    __annotations__ = {**fields.person(), **fields.measure_properties(may_be_open=True)}
+    __annotations__ = {**definitions.request_properties(), **definitions.measure_properties(zero_is_unset=True)}
 
-    @reported
+    @reports_errors
     def execute(self, context):
         given = {name: value for name in measures.names() if (value := getattr(self, name)) > 0.0}
         request = library.anthronet().Request(
@@ -50,18 +50,18 @@ class ANTHRONET_OT_character_add(AddsCharacters, bpy.types.Operator):
             seed=self.seed,
             fill=self.fill.lower(),
             nearest=self.nearest,
-            **{name: float(f"{value:.7g}") for name, value in given.items()},
+            **{name: typed_decimal(value) for name, value in given.items()},
         )
         body = library.model().generate(request)
-        (made,) = character.add(
+        (rig,) = character.create(
             context,
             [(body, request, context.scene.cursor.location)],
             lod=int(self.lod),
             accessories=self.accessories,
-            names=self.joint_names.lower(),
-            tones=[self.skin_tone],
+            convention=self.joint_names.lower(),
+            skin_tones=[self.skin_tone],
         )
-        character.select_only(context, made)
+        character.select_only(context, rig)
         for warning in body.report["warnings"]:
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
@@ -72,64 +72,69 @@ class ANTHRONET_OT_character_add(AddsCharacters, bpy.types.Operator):
         for name in ("sex", "seed", "fill", "nearest"):
             layout.prop(self, name)
         column = layout.column(align=True)
-        column.label(text="Measures (0: open)")
+        column.label(text="Measures (0: Not Given)")
         for name in ("height", "chest_circumference", "waist_circumference", "hip_circumference"):
             column.prop(self, name)
         for name in ("lod", "accessories", "joint_names", "skin_tone"):
             layout.prop(self, name)
 
 
-class ANTHRONET_OT_crowd_add(AddsCharacters, ModalJob, bpy.types.Operator):
-    """Add many different people on a grid. Esc stops; those that are there stay"""
+class ANTHRONET_OT_crowd_add(AddsCharacters, ModalOperatorWithoutDialog, bpy.types.Operator):
+    """Add many different characters on a grid. Press Esc to stop; characters added so far are kept"""
 
     bl_idname = "anthronet.crowd_add"
     bl_label = "AnthroNet Crowd"
     bl_options = {"REGISTER", "UNDO"}
 
-    count: IntProperty(name="People", description="How many", default=20, min=1, max=10000, soft_max=200)
-    seed: IntProperty(name="Seed", description="The first person's seed", default=1, min=1)
+    count: IntProperty(
+        name="Count", description="Number of characters", default=20, min=1, max=10000, soft_max=200
+    )
+    seed: IntProperty(
+        name="Seed", description="Seed of the first character. The others get the following numbers", default=1, min=1
+    )
     spacing: FloatProperty(
         name="Spacing",
-        description="From one person to the next",
+        description="Distance between neighbors on the grid",
         default=1.5,
         min=0.1,
         unit="LENGTH",
         subtype="DISTANCE",
     )
-    lod: EnumProperty(name="Detail", description="How many vertices each has", items=fields.LODS, default="1")
+    lod: EnumProperty(
+        name="Level of Detail", description="Number of vertices of each mesh", items=definitions.LODS, default="1"
+    )
     skin_tones: BoolProperty(
-        name="All Skin Tones", description="Skin tones in turn instead of the default", default=True
+        name="All Skin Tones",
+        description="Give the characters the ten skin tones in turn. If off, all get the default tone",
+        default=True,
     )
 
-    def invoke(self, context, _event):
-        return self.execute(context)
-
     def work(self, context):
-        """Places people as they are made beside this thread."""
-        request, sexes = library.anthronet().Request, ("female", "male")
-        seeds = [(self.seed + i - 1) % fields.LARGEST_SEED + 1 for i in range(self.count)]
-        requests = [request(sex=sexes[i % 2], seed=seed, fill="sample") for i, seed in enumerate(seeds)]
-        placed = 0
+        """Adds characters while other threads generate the next bodies."""
+        Request, sexes = library.anthronet().Request, ("female", "male")
+        seeds = [(self.seed + i - 1) % definitions.LARGEST_SEED + 1 for i in range(self.count)]
+        requests = [Request(sex=sexes[i % 2], seed=seed, fill="sample") for i, seed in enumerate(seeds)]
+        added = 0
         with library.model().start(requests) as job:
-            while placed < self.count:
-                # Few at a time: each batch keeps the window waiting.
-                done = min(job.progress.done, placed + _BATCH)
-                if done == placed:
+            while added < self.count:
+                # In batches, since the window does not respond while one is added.
+                ready = min(job.progress.done, added + _BATCH)
+                if ready == added:
                     yield None
                     continue
-                people = [(job.take(i), requests[i], self._place(context, i)) for i in range(placed, done)]
-                tones = [i % 10 + 1 if self.skin_tones else 0 for i in range(placed, done)]
-                character.add(context, people, lod=int(self.lod), tones=tones)
-                placed, self.changed = done, True
-                yield placed / self.count
+                people = [(job.take(i), requests[i], self._location(context, i)) for i in range(added, ready)]
+                skin_tones = [i % 10 + 1 if self.skin_tones else 0 for i in range(added, ready)]
+                character.create(context, people, lod=int(self.lod), skin_tones=skin_tones)
+                added, self.changed = ready, True
+                yield added / self.count
 
-    def _place(self, context, index):
+    def _location(self, context, index):
         columns = max(1, round(self.count**0.5))
         row, column = divmod(index, columns)
-        place = context.scene.cursor.location.copy()
-        place.x += (column - (columns - 1) / 2) * self.spacing
-        place.y += row * self.spacing
-        return place
+        location = context.scene.cursor.location.copy()
+        location.x += (column - (columns - 1) / 2) * self.spacing
+        location.y += row * self.spacing
+        return location
 
 
 CLASSES = (ANTHRONET_OT_character_add, ANTHRONET_OT_crowd_add)

@@ -1,54 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion: files, built-in clips and other armatures of the scene, onto characters."""
+"""Motion for characters: from files, built-in clips and other armatures in the scene."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-
-from ..services import action, character, live, motion
+from ..services import action, character, motion_source, regeneration
+from ..services.sampling import frames_per_second
 from .base import ChangesCharacter
-from .job import ModalJob
+from .modal import ModalOperator, ModalOperatorWithoutDialog
 
 _FINGERS = (
-    ("SOURCE", "Source", "As the source's fingers, where it has any"),
-    ("RELAXED", "Relaxed", "Hands at ease"),
-    ("REST", "Rest", "As in the rest pose"),
+    ("SOURCE", "Source", "Retarget the fingers of the source, if it has any"),
+    ("RELAXED", "Relaxed", "Keep the fingers relaxed"),
+    ("REST", "Rest Pose", "Keep the fingers in the rest pose"),
 )
-_UPS = (
-    ("FOUND", "From File", "What the file says, or its body's stance"),
+_UP_AXES = (
+    ("FOUND", "Automatic", "As stored in the file, or else as the pose of the skeleton suggests"),
     ("Y", "Y", "Y points up"),
     ("Z", "Z", "Z points up"),
 )
-_BUILTIN = (
-    ("IDLE", "Idle", "Standing at ease, breathing"),
-    ("WALK", "Walk", "Two steps that repeat"),
-    ("WAVE", "Wave", "A greeting with one hand"),
-    ("SQUAT", "Squat", "Down and up again"),
-    ("RANGE_OF_MOTION", "Range of Motion", "Every joint as far as it goes, to look at the skin"),
+_BUILTIN_CLIPS = (
+    ("IDLE", "Idle", "Standing and breathing"),
+    ("WALK", "Walk", "A walk cycle of two steps"),
+    ("WAVE", "Wave", "Waving with one hand"),
+    ("SQUAT", "Squat", "Squatting down and standing up"),
+    ("RANGE_OF_MOTION", "Range of Motion", "Every joint to its limits, to check the deformation of the skin"),
 )
 
 
-class Bakes:
-    """Where a motion goes: an action, from a frame on."""
+class BakesMotion:
+    """Mix-in for operators that bake motion into actions: their options, and the work."""
 
-    frame_start: IntProperty(name="Start Frame", description="Frame of the scene that the motion begins at", default=1)
-    in_place: BoolProperty(name="In Place", description="Leave out the way over the ground")
+    frame_start: IntProperty(
+        name="Start Frame", description="Frame of the scene at which the motion begins", default=1
+    )
+    in_place: BoolProperty(name="In Place", description="Remove horizontal root motion")
     use_scene_rate: BoolProperty(
         name="Resample to Scene Rate",
-        description="One key on every frame of the scene instead of the motion's own times",
+        description="Insert a keyframe on each frame of the scene. If off, keyframes are at the times of the source",
         default=True,
     )
     use_scene_range: BoolProperty(
-        name="Set Scene Range", description="Make the scene's first and last frame those of the motion"
+        name="Set Scene Range", description="Set the scene's frame range to that of the motion"
     )
     nla: BoolProperty(
         name="As NLA Strip",
-        description="Put the action on a new track of the non-linear animation; what is played now becomes a strip below",
+        description="Add the action as a strip on a new NLA track. The action that is assigned now becomes the strip below",
     )
 
-    def described(self, kind, **fields):
-        """The source of a motion with this operator's options."""
+    def source_dictionary(self, kind, **fields):
+        """A source (:mod:`services.motion_source`) with the options of this operator."""
         return {
             "kind": kind,
             "frame_start": self.frame_start,
@@ -57,38 +59,36 @@ class Bakes:
             **fields,
         }
 
-    def bake(self, context, owners, source):
-        """Gives characters the clips of a source. All clips are made before the first one is played. A generator."""
+    def bake(self, context, rigs, source):
+        """Bakes a source for several characters. All clips are made before the first action is assigned. A generator that
+        yields the progress."""
         scene = context.scene
-        for owner in owners:
-            reason = live.refusal(owner, context)
-            if reason:
-                raise ValueError(reason)
-        read = motion.read(source, context)
-        opened = yield from _share(read, 0.0, 0.5)
-        if opened is not None:
-            for warning in opened.report["warnings"]:
+        for rig in rigs:
+            regeneration.check_editable(rig, context)
+        motion = yield from _scaled_progress(motion_source.read(source, context), 0.0, 0.5)
+        if motion is not None:
+            for warning in motion.report["warnings"]:
                 self.report({"WARNING"}, warning)
         clips = []
-        for owner in owners:
-            body = character.body(owner)
-            clips.append((owner, body, motion.clip(source, opened, body, scene)))
-            yield 0.5 + 0.25 * len(clips) / len(owners)
+        for rig in rigs:
+            body = character.generate_body(rig)
+            clips.append((rig, body, motion_source.make_clip(source, motion, body, scene)))
+            yield 0.5 + 0.25 * len(clips) / len(rigs)
         unmatched = (clips[0][2].report or {}).get("joints", {}).get("unmatched")
         if unmatched:
-            self.report({"INFO"}, f"Joints that drive nothing: {', '.join(unmatched)}")
-        for done, (owner, body, clip) in enumerate(clips, 1):
+            self.report({"INFO"}, f"Joints of the source without a counterpart: {', '.join(unmatched)}")
+        for done, (rig, body, clip) in enumerate(clips, 1):
             self.changed = True
-            made = action.from_clip(owner, body, clip, self.frame_start, motion.scene_rate(scene), source)
-            action.play(owner, body, made, self.frame_start if self.nla else None)
+            baked = action.from_clip(rig, body, clip, self.frame_start, frames_per_second(scene), source)
+            action.assign(rig, body, baked, self.frame_start if self.nla else None)
             yield 0.75 + 0.25 * done / len(clips)
         if self.use_scene_range:
             scene.frame_start = self.frame_start
-            scene.frame_end = max(round(made.frame_range[1]), self.frame_start)
+            scene.frame_end = max(round(baked.frame_range[1]), self.frame_start)
 
 
-def _share(work, start, end):
-    """A part of work as a share of the whole."""
+def _scaled_progress(work, start, end):
+    """Does work that yields its progress, as a part of other work: from ``start`` to ``end`` of that."""
     try:
         while True:
             progress = next(work)
@@ -99,86 +99,95 @@ def _share(work, start, end):
         work.close()
 
 
-class Retargets(Bakes):
-    """Options of retargeting."""
+class RetargetsMotion(BakesMotion):
+    """Mix-in for operators that retarget motion of other skeletons."""
 
-    fingers: EnumProperty(name="Fingers", description="What fingers do", items=_FINGERS)
-    limits: BoolProperty(name="Joint Limits", description="Keep joints within what people's joints do", default=True)
-    feet: BoolProperty(name="Hold Feet", description="Keep feet on the floor and from sliding", default=True)
-    looped: BoolProperty(name="Loop", description="Make the end meet the beginning")
+    fingers: EnumProperty(name="Fingers", description="Pose of the fingers", items=_FINGERS)
+    limits: BoolProperty(
+        name="Joint Limits", description="Keep joints within the range of human joints", default=True
+    )
+    feet: BoolProperty(
+        name="Foot Contacts", description="Keep feet that touch the floor from sliding and from sinking in", default=True
+    )
+    looped: BoolProperty(name="Loop", description="Blend the end of the motion into its beginning")
 
-    def described(self, kind, **fields):
-        """The source of a motion with this operator's options."""
-        source = super().described(kind, **fields)
+    def source_dictionary(self, kind, **fields):
+        """A source with the options of this operator."""
+        source = super().source_dictionary(kind, **fields)
         source["options"].update(
             fingers=self.fingers.lower(), limits=self.limits, feet=self.feet, looped=self.looped
         )
         return source
 
 
-class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalJob, Retargets, bpy.types.Operator, ImportHelper):
-    """Bring a motion file onto the selected characters: BVH, FBX, glTF, USD or AMASS / SMPL-X npz. Esc stops"""
+class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, bpy.types.Operator, ImportHelper):
+    """Retarget a motion file to the selected characters: BVH, FBX, glTF, USD or AMASS / SMPL-X npz. Press Esc to stop"""
 
     bl_idname = "anthronet.clip_apply"
     bl_label = "Apply Clip"
     bl_options = {"REGISTER", "UNDO"}
 
     filter_glob: StringProperty(
-        name="Files",
-        description="Which files are shown",
+        name="File Filter",
+        description="Files that are shown",
         default="*.bvh;*.fbx;*.glb;*.gltf;*.npz;*.usda;*.usdc;*.usdz",
         options={"HIDDEN"},
     )
-    clip: IntProperty(name="Clip", description="Which clip of the file, counted from 0", min=0)
-    up: EnumProperty(name="Up", description="Which axis of the file points up", items=_UPS)
-    scale: FloatProperty(name="Metres per Unit", description="0: what the file says, or its body's size", min=0.0)
+    clip: IntProperty(name="Clip", description="Index of the clip in the file. The first one has 0", min=0)
+    up: EnumProperty(name="Up Axis", description="Axis of the file that points up", items=_UP_AXES)
+    scale: FloatProperty(
+        name="Meters per Unit",
+        description="Length of the file's unit, meters. 0: as stored in the file, or else from the size of the skeleton",
+        min=0.0,
+    )
 
     def work(self, context):
-        """Every selected character plays the file's clip."""
-        source = self.described("file", path=self.filepath, clip=self.clip, up=self.up, scale=self.scale)
+        """Bakes the file's clip for all selected characters."""
+        source = self.source_dictionary("file", path=self.filepath, clip=self.clip, up=self.up, scale=self.scale)
         yield from self.bake(context, character.selected(context), source)
 
 
-class ANTHRONET_OT_clip_builtin(ChangesCharacter, ModalJob, Bakes, bpy.types.Operator):
-    """Let the selected characters play a built-in clip"""
+class ANTHRONET_OT_clip_builtin(ChangesCharacter, ModalOperatorWithoutDialog, BakesMotion, bpy.types.Operator):
+    """Animate the selected characters with a built-in clip"""
 
     bl_idname = "anthronet.clip_builtin"
     bl_label = "Built-in Clip"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: EnumProperty(name="Clip", description="Which one", items=_BUILTIN, default="WALK")
-
-    def invoke(self, context, _event):
-        return self.execute(context)
+    name: EnumProperty(name="Clip", description="The built-in clip", items=_BUILTIN_CLIPS, default="WALK")
 
     def work(self, context):
-        """Every selected character plays it."""
-        yield from self.bake(
-            context, character.selected(context), self.described("builtin", name=self.name.lower())
-        )
+        """Bakes the clip for all selected characters."""
+        source = self.source_dictionary("builtin", name=self.name.lower())
+        yield from self.bake(context, character.selected(context), source)
 
 
-class ANTHRONET_OT_clip_from_armature(ChangesCharacter, ModalJob, Retargets, bpy.types.Operator):
-    """Bring the motion of another armature of the scene, of any rig, onto the active character. Esc stops"""
+class ANTHRONET_OT_clip_from_armature(ChangesCharacter, ModalOperator, RetargetsMotion, bpy.types.Operator):
+    """Retarget the motion of another armature in the scene to the active character. Press Esc to stop"""
 
     bl_idname = "anthronet.clip_from_armature"
     bl_label = "Apply Motion of Armature"
     bl_options = {"REGISTER", "UNDO"}
 
-    source: StringProperty(name="Armature", description="Its object; empty for the other selected armature")
-    action: StringProperty(
-        name="Action", description="Which action it plays; empty for what it does in the scene, constraints included"
+    source: StringProperty(
+        name="Armature", description="Name of the armature object. Empty: the other selected armature"
     )
-    slot: StringProperty(name="Slot", description="Which slot of the action; empty for the first that suits")
-    start: IntProperty(name="From Frame", description="First frame; 0 and 0 for all of the action", min=0)
-    end: IntProperty(name="To Frame", description="Last frame; 0 and 0 for all of the action", min=0)
+    action: StringProperty(
+        name="Action",
+        description="Action to retarget. Empty: the motion in the scene, with constraints, drivers and NLA",
+    )
+    slot: StringProperty(name="Slot", description="Slot of the action. Empty: the first slot for objects")
+    start: IntProperty(
+        name="From Frame", description="First frame to retarget. If both are 0: the whole action", min=0
+    )
+    end: IntProperty(name="To Frame", description="Last frame to retarget. If both are 0: the whole action", min=0)
 
     @classmethod
     def poll(cls, context):
         if not super().poll(context):
             return False
-        owner = character.active(context)
-        if not any(ob.type == "ARMATURE" and ob != owner for ob in context.scene.objects):
+        rig = character.active(context)
+        if not any(ob.type == "ARMATURE" and ob != rig for ob in context.scene.objects):
             cls.poll_message_set("There is no other armature in the scene")
             return False
         return True
@@ -200,28 +209,28 @@ class ANTHRONET_OT_clip_from_armature(ChangesCharacter, ModalJob, Retargets, bpy
             layout.prop(self, name)
 
     def work(self, context):
-        """The active character plays the armature's motion."""
-        owner = character.active(context)
-        found = self.source
-        if not found:
-            others = _other_armatures(context, owner)
+        """Bakes the motion of the armature for the active character."""
+        rig = character.active(context)
+        armature = self.source
+        if not armature:
+            others = _other_armatures(context, rig)
             if len(others) != 1:
-                raise ValueError(f"source: expected one other armature selected, got {len(others)}")
-            found = others[0].name
-        if found == owner.name:
-            raise ValueError(f"source: expected another armature than {found} itself")
-        source = self.described(
-            "armature", object=found, action=self.action, slot=self.slot, start=self.start, end=self.end
+                raise ValueError(f"source: expected one other armature to be selected, got {len(others)}")
+            armature = others[0].name
+        if armature == rig.name:
+            raise ValueError(f"source: expected an armature other than the character {armature}")
+        source = self.source_dictionary(
+            "armature", object=armature, action=self.action, slot=self.slot, start=self.start, end=self.end
         )
-        yield from self.bake(context, [owner], source)
+        yield from self.bake(context, [rig], source)
 
 
-def _other_armatures(context, owner):
-    return [ob for ob in context.selected_objects if ob.type == "ARMATURE" and ob is not owner]
+def _other_armatures(context, rig):
+    return [ob for ob in context.selected_objects if ob.type == "ARMATURE" and ob is not rig]
 
 
-class ANTHRONET_OT_clip_refit(ChangesCharacter, ModalJob, bpy.types.Operator):
-    """Make the actions of the selected characters anew for the bodies that they have now. Keys that were edited are lost"""
+class ANTHRONET_OT_clip_refit(ChangesCharacter, ModalOperatorWithoutDialog, bpy.types.Operator):
+    """Bake the actions of the selected characters again for their present bodies. Edits of their keyframes are lost"""
 
     bl_idname = "anthronet.clip_refit"
     bl_label = "Refit Clip"
@@ -231,29 +240,26 @@ class ANTHRONET_OT_clip_refit(ChangesCharacter, ModalJob, bpy.types.Operator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if not action.of(character.active(context)):
-            cls.poll_message_set("The character plays no action of AnthroNet")
+        if not action.used_by(character.active(context)):
+            cls.poll_message_set("The character has no action that AnthroNet created")
             return False
         return True
 
-    def invoke(self, context, _event):
-        return self.execute(context)
-
     def work(self, context):
-        """Every action's keys are replaced by those of its source, for the body of now."""
-        tasks = [(owner, one) for owner in character.selected(context) for one in action.of(owner)]
+        """Replaces the keyframes of each action by those of its source for the present body."""
+        scene = context.scene
+        tasks = [(rig, used) for rig in character.selected(context) for used in action.used_by(rig)]
         clips = []
-        for owner, one in tasks:
-            source = action.source_of(one)
-            body = character.body(owner)
-            share = len(clips) / len(tasks)
-            opened = yield from _share(motion.read(source, context), 0.8 * share, 0.8 * (share + 1 / len(tasks)))
-            clips.append((owner, body, one, source, motion.clip(source, opened, body, context.scene)))
-        for done, (owner, body, one, source, clip) in enumerate(clips, 1):
+        for rig, used in tasks:
+            source = action.source_of(used)
+            body = character.generate_body(rig)
+            start, end = (0.8 * (len(clips) + step) / len(tasks) for step in (0, 1))
+            motion = yield from _scaled_progress(motion_source.read(source, context), start, end)
+            clips.append((rig, body, used, source, motion_source.make_clip(source, motion, body, scene)))
+        for done, (rig, body, used, source, clip) in enumerate(clips, 1):
             self.changed = True
-            rate = motion.scene_rate(context.scene)
-            mine = action.own(owner, one)
-            action.from_clip(owner, body, clip, source["frame_start"], rate, source, into=mine)
+            own = action.make_single_user(rig, used)
+            action.from_clip(rig, body, clip, source["frame_start"], frames_per_second(scene), source, into=own)
             yield 0.8 + 0.2 * done / len(clips)
 
 

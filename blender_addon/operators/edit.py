@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changing the selected characters: drawing others, mirroring, files of requests. All of them change, or none."""
+"""Changing the requests of the selected characters: of all of them or, after an error, of none."""
 
 import random
 from pathlib import Path
@@ -8,158 +8,159 @@ import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import fields, library, measures, properties
-from ..services import character, live
-from .base import ChangesCharacter, NeedsCharacter, reported
+from .. import library, measures
+from ..services import character, regeneration
+from ..state import definitions, requests
+from .base import ChangesCharacter, NeedsCharacter, reports_errors
 
 
-def _change_selected(context, fields_of):
-    """Gives the selected characters the requests whose JSON's fields ``fields_of`` tells of each one."""
-    changed = [
-        (owner, properties.from_fields(fields_of(place, owner.anthronet)))
-        for place, owner in enumerate(character.selected(context))
+def _change_selected(context, new_fields):
+    """Gives each selected character the request whose fields ``new_fields(index, settings)`` returns."""
+    changes = [
+        (rig, requests.from_fields(new_fields(index, rig.anthronet)))
+        for index, rig in enumerate(character.selected(context))
     ]
-    live.change(changed, context)
+    regeneration.apply_requests(changes, context)
     return {"FINISHED"}
 
 
-def _remeasured(settings, change):
-    """A request's fields with other measures; ``change``: from all (metres, given) by name to those that become others."""
-    told = settings.measures()
-    told.update(change(dict(told)))
-    return settings.request_fields(measures={name: value for name, (value, given) in told.items() if given})
+def _with_measures(settings, changed):
+    """The fields of a request with some measures changed: ``changed`` goes from all measures, by name as (metres, given), to
+    those that are replaced."""
+    values = settings.measures()
+    values.update(changed(dict(values)))
+    return settings.request_fields(measures={name: value for name, (value, given) in values.items() if given})
 
 
 class ANTHRONET_OT_randomise(ChangesCharacter, bpy.types.Operator):
-    """Make the selected characters other people"""
+    """Randomize the selected characters"""
 
     bl_idname = "anthronet.randomise"
-    bl_label = "Randomise"
+    bl_label = "Randomize"
     bl_options = {"REGISTER", "UNDO"}
 
     what: EnumProperty(
-        name="What",
-        description="What is drawn",
+        name="Randomize",
+        description="What gets random values",
         items=(
-            ("ALL", "All", "Draw every measure that is not given, and the identity"),
-            ("IDENTITY", "Identity Only", "Keep the measures, draw the identity"),
+            ("ALL", "All", "All measures that are not given, and the identity"),
+            ("IDENTITY", "Identity Only", "The identity. All measures that are given are kept"),
         ),
     )
-    seed: IntProperty(name="Seed", description="Which person; 0 draws one", min=0)
+    seed: IntProperty(name="Seed", description="Seed of the random values. 0: a random seed", min=0)
 
-    @reported
+    @reports_errors
     def execute(self, context):
         if self.seed == 0:
-            # Kept, so that Adjust Last Operation starts from the person that is seen.
-            self.seed = random.SystemRandom().randrange(1, fields.LARGEST_SEED)
+            # Stored, so that Adjust Last Operation shows the seed of the characters that are seen.
+            self.seed = random.SystemRandom().randrange(1, definitions.LARGEST_SEED)
 
-        def drawn(place, settings):
-            seed = (self.seed + place - 1) % fields.LARGEST_SEED + 1
+        def randomized(index, settings):
+            seed = (self.seed + index - 1) % definitions.LARGEST_SEED + 1
             if self.what == "ALL":
-                described = settings.request_fields(seed=seed, fill="sample")
-                described.pop("z", None)
-                return described
-            # The seed of the request may have chosen the open measures: the identity of the new one comes by hand.
-            stranger = library.anthronet().Request(sex=settings.body_sex or None, seed=seed)
-            latent = library.model().generate(stranger).latent
-            return settings.request_fields(z=[float(f"{number:.7g}") for number in latent])
+                fields = settings.request_fields(seed=seed, fill="sample")
+                fields.pop("z", None)
+                return fields
+            # The seed stays, since it may have selected the missing measures; the new identity is set by hand.
+            request = library.anthronet().Request(sex=settings.body_sex or None, seed=seed)
+            identity = library.model().generate(request).latent
+            return settings.request_fields(z=[requests.typed_decimal(number) for number in identity])
 
-        return _change_selected(context, drawn)
+        return _change_selected(context, randomized)
 
 
 class ANTHRONET_OT_mirror(ChangesCharacter, bpy.types.Operator):
-    """Exchange the given measures of left and right of the selected characters"""
+    """Swap the given measures of the left and the right side of the selected characters"""
 
     bl_idname = "anthronet.mirror"
     bl_label = "Mirror Measures"
     bl_options = {"REGISTER", "UNDO"}
 
-    @reported
+    @reports_errors
     def execute(self, context):
-        def mirrored(told):
-            return {measure.name: told[measure.mirrored] for measure in measures.all_measures()}
+        def mirrored(values):
+            return {measure.name: values[measure.mirrored] for measure in measures.all_measures()}
 
-        return _change_selected(context, lambda _, settings: _remeasured(settings, mirrored))
+        return _change_selected(context, lambda _, settings: _with_measures(settings, mirrored))
 
 
 class ANTHRONET_OT_symmetrise(ChangesCharacter, bpy.types.Operator):
-    """Give one side's measures to both, of the selected characters"""
+    """Copy the measures of one side to the other side, for the selected characters"""
 
     bl_idname = "anthronet.symmetrise"
-    bl_label = "Both Sides Alike"
+    bl_label = "Symmetrize Measures"
     bl_options = {"REGISTER", "UNDO"}
 
     side: EnumProperty(
         name="From",
-        description="Whose measures both sides get",
-        items=(("left", "Left", "Those of the left side"), ("right", "Right", "Those of the right side")),
+        description="Side whose measures are copied",
+        items=(("left", "Left", "Copy from left to right"), ("right", "Right", "Copy from right to left")),
     )
 
-    @reported
+    @reports_errors
     def execute(self, context):
-        sided = [measure for measure in measures.all_measures() if measure.side == self.side]
+        sources = [measure for measure in measures.all_measures() if measure.side == self.side]
 
-        def alike(told):
-            return {measure.mirrored: told[measure.name] for measure in sided}
+        def symmetrized(values):
+            return {measure.mirrored: values[measure.name] for measure in sources}
 
-        return _change_selected(context, lambda _, settings: _remeasured(settings, alike))
+        return _change_selected(context, lambda _, settings: _with_measures(settings, symmetrized))
 
 
 class ANTHRONET_OT_open_measures(ChangesCharacter, bpy.types.Operator):
-    """Leave every measure of the selected characters open: the likeliest person"""
+    """Make all measures of the selected characters not given, so that they are predicted"""
 
     bl_idname = "anthronet.open_measures"
-    bl_label = "Open All Measures"
+    bl_label = "Clear All Measures"
     bl_options = {"REGISTER", "UNDO"}
 
-    @reported
+    @reports_errors
     def execute(self, context):
         return _change_selected(context, lambda _, settings: settings.request_fields(measures={}))
 
 
 class ANTHRONET_OT_copy_request(ChangesCharacter, bpy.types.Operator):
-    """Give the request of the active character to all selected ones"""
+    """Copy the request of the active character to the other selected characters"""
 
     bl_idname = "anthronet.copy_request"
     bl_label = "Copy to Selected"
     bl_options = {"REGISTER", "UNDO"}
 
-    @reported
+    @reports_errors
     def execute(self, context):
-        first, *others = character.selected(context)
-        request = first.anthronet.request()
-        live.change([(owner, request) for owner in others], context)
+        active, *others = character.selected(context)
+        request = active.anthronet.request()
+        regeneration.apply_requests([(rig, request) for rig in others], context)
         self.report({"INFO"}, f"{len(others)} characters changed")
         return {"FINISHED"}
 
 
 class ANTHRONET_OT_make_local(NeedsCharacter, bpy.types.Operator):
-    """Make the selected characters that are linked from another file, or overridden, this file's own, so that they can be
-    edited"""
+    """Make the selected characters local to this file if they are linked or library overrides, so that they can be changed"""
 
     bl_idname = "anthronet.make_local"
     bl_label = "Make Local"
     bl_options = {"REGISTER", "UNDO"}
 
-    @reported
+    @reports_errors
     def execute(self, context):
-        for owner in character.selected(context):
-            character.make_local(owner)
+        for rig in character.selected(context):
+            character.make_local(rig)
         return {"FINISHED"}
 
 
 class ANTHRONET_OT_request_save(NeedsCharacter, bpy.types.Operator, ExportHelper):
-    """Save the request of the active character as JSON, as the command line reads it"""
+    """Save the request of the active character as a JSON file, which the command line program reads, too"""
 
     bl_idname = "anthronet.request_save"
     bl_label = "Save Request"
 
     filename_ext = ".json"
     filter_glob: StringProperty(
-        name="Files", description="Which files are shown", default="*.json", options={"HIDDEN"}
+        name="File Filter", description="Files that are shown", default="*.json", options={"HIDDEN"}
     )
 
-    @reported
+    @reports_errors
     def execute(self, context):
         text = character.active(context).anthronet.request().to_json()
         Path(bpy.path.abspath(self.filepath)).write_text(text + "\n", encoding="utf-8")
@@ -167,7 +168,7 @@ class ANTHRONET_OT_request_save(NeedsCharacter, bpy.types.Operator, ExportHelper
 
 
 class ANTHRONET_OT_request_load(ChangesCharacter, bpy.types.Operator, ImportHelper):
-    """Give the selected characters the request of a JSON file"""
+    """Apply the request of a JSON file to the selected characters"""
 
     bl_idname = "anthronet.request_load"
     bl_label = "Load Request"
@@ -175,14 +176,14 @@ class ANTHRONET_OT_request_load(ChangesCharacter, bpy.types.Operator, ImportHelp
 
     filename_ext = ".json"
     filter_glob: StringProperty(
-        name="Files", description="Which files are shown", default="*.json", options={"HIDDEN"}
+        name="File Filter", description="Files that are shown", default="*.json", options={"HIDDEN"}
     )
 
-    @reported
+    @reports_errors
     def execute(self, context):
         text = Path(bpy.path.abspath(self.filepath)).read_text(encoding="utf-8")
         request = library.anthronet().Request.from_json(text)
-        live.change([(owner, request) for owner in character.selected(context)], context)
+        regeneration.apply_requests([(rig, request) for rig in character.selected(context)], context)
         return {"FINISHED"}
 
 

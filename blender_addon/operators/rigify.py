@@ -4,33 +4,33 @@
 import bpy
 
 from ..services import character, metarig
-from .base import NeedsCharacter, reported
+from .base import NeedsCharacter, poll_object_mode, reports_errors
 
 
 class ANTHRONET_OT_metarig_add(NeedsCharacter, bpy.types.Operator):
-    """Add Rigify's human metarig in the size and stance of the active character. Generate Rig makes a control rig of it, whose
-    motion Apply Motion of Armature brings onto the character"""
+    """Adds a metarig."""
 
     bl_idname = "anthronet.metarig_add"
     bl_label = "Add Rigify Metarig"
+    bl_description = (
+        "Add Rigify's human metarig with the rest pose of the active character. Generate Rig makes a control rig from it, and "
+        "Apply Motion of Armature retargets the motion of that rig to the character"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context):
-        if not super().poll(context):
-            return False
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Go to object mode")
+        if not super().poll(context) or not poll_object_mode(cls, context):
             return False
         if not metarig.is_available(context):
             cls.poll_message_set("Enable the add-on Rigify, which comes with Blender")
             return False
         return True
 
-    @reported
+    @reports_errors
     def execute(self, context):
-        made = metarig.add(context, character.active(context))
-        self.report({"INFO"}, f"Added {made.name}")
+        added = metarig.create(context, character.active(context))
+        self.report({"INFO"}, f"Added {added.name}")
         return {"FINISHED"}
 
 

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Characters: an armature's object that holds the request, and the mesh's object below it."""
+"""Characters: an armature object that holds the request, and its child with the mesh.
+
+Presets that users have saved call :func:`active` of this module by name."""
 
 import bpy
 
-from .. import library, properties
-from . import material, mesh, rig
+from .. import library
+from ..state.properties import updates_suspended
+from ..state.requests import check_storable
+from . import armature, material, mesh
 
-_MESH = "anthronet_body"
-_FINE = "Fine in Renders"
+#: Custom property of the mesh object of a character.
+_MESH_OBJECT = "anthronet_body"
+#: Name of the modifier that subdivides the posed mesh in renders.
+_FINE_MODIFIER = "Fine in Renders"
 
 
-def of(ob):
-    """The character that an object belongs to: its armature's object; None for any other object."""
+def containing(ob):
+    """The armature object of the character that an object belongs to; None for any other object."""
     while ob is not None:
         if ob.anthronet.is_character:
             return ob
@@ -20,58 +26,59 @@ def of(ob):
 
 
 def active(context):
-    """The character of the active object; None for none."""
-    # Without a window, as in a timer of a script, the context has no object.
-    return of(getattr(context, "object", None))
+    """The armature object of the active character; None if there is none."""
+    # A context without a window, such as a script's timer has, has no attribute ``object``.
+    return containing(getattr(context, "object", None))
 
 
 def selected(context):
-    """The characters of all selected objects, each once, the active one first."""
+    """The armature objects of all characters that have a selected object, the active one first."""
     objects = [getattr(context, "object", None), *getattr(context, "selected_objects", ())]
-    return list(dict.fromkeys(found for found in map(of, objects) if found is not None))
+    return list(dict.fromkeys(rig for rig in map(containing, objects) if rig is not None))
 
 
-def mesh_of(character):
-    """The object of a character's mesh; None when there is none. Looks at all objects of the file."""
-    return next((ob for ob in character.children if ob.type == "MESH" and _MESH in ob), None)
+def mesh_object(rig):
+    """The mesh object of a character; None if there is none. Searches all objects of the file."""
+    return next((ob for ob in rig.children if ob.type == "MESH" and _MESH_OBJECT in ob), None)
 
 
-def body(character):
-    """The body that a character's request describes."""
-    return library.model().generate(character.anthronet.request())
+def generate_body(rig):
+    """The body that the request of a character describes."""
+    return library.model().generate(rig.anthronet.request())
 
 
-def add(context, people, *, lod, accessories=True, names="blender", tones=None, name="AnthroNet"):
-    """New characters in the scene's active collection: their armatures' objects. ``people`` are triples of a body, the
-    request that it came of and a place, ``tones`` their steps of the skin tone scale. All or none."""
-    bodies = [body for body, _, _ in people]
+def create(context, people, *, lod, accessories=True, convention="blender", skin_tones=None, name="AnthroNet"):
+    """Creates characters in the active collection and returns their armature objects; after an error none of them is left.
+
+    ``people``: tuples of body, request and location. ``convention``: how bones are named. ``skin_tones``: a step of the Monk
+    Skin Tone scale for each."""
     for _, request, _ in people:
-        properties.check(request)
-    made = []
+        check_storable(request)
+    created = []
     try:
-        rigs = rig.new(bodies, names, context, name, made)
+        rigs = armature.create([body for body, _, _ in people], convention, context, name, created)
         view = context.space_data
-        local_view = view is not None and view.type == "VIEW_3D" and view.local_view is not None
-        for number, (owner, (body, request, place)) in enumerate(zip(rigs, people)):
-            tone = tones[number] if tones else 0
-            owner.location = place
-            owner.show_in_front = True
-            surface = _add_surface(context, owner, body, lod, accessories, names, made)
-            material.set_tone(surface, tone)
-            if local_view:
-                for ob in (owner, surface):
+        in_local_view = view is not None and view.type == "VIEW_3D" and view.local_view is not None
+        for index, (rig, (body, request, location)) in enumerate(zip(rigs, people)):
+            skin_tone = skin_tones[index] if skin_tones else 0
+            rig.location = location
+            rig.show_in_front = True
+            child = _create_mesh_object(context, rig, body, lod, accessories, convention, created)
+            material.set_skin_tone(child, skin_tone)
+            if in_local_view:
+                for ob in (rig, child):
                     ob.local_view_set(view, True)
-            settings = owner.anthronet
+            settings = rig.anthronet
             settings.set_request(request)
             settings.set_report(body)
-            with properties.silent():
+            with updates_suspended():
                 settings.is_character = True
                 settings.lod = str(lod)
                 settings.accessories = accessories
-                settings.joint_names = names.upper()
-                settings.skin_tone = tone
+                settings.joint_names = convention.upper()
+                settings.skin_tone = skin_tone
     except Exception:
-        for ob in reversed(made):
+        for ob in reversed(created):
             data = ob.data
             bpy.data.objects.remove(ob)
             (bpy.data.meshes if isinstance(data, bpy.types.Mesh) else bpy.data.armatures).remove(data)
@@ -79,70 +86,68 @@ def add(context, people, *, lod, accessories=True, names="blender", tones=None, 
     return rigs
 
 
-def _add_surface(context, owner, body, lod, accessories, names, made):
-    title = f"{owner.name} Body"
-    bone_names = body.joint_names(names)
-    surface = bpy.data.objects.new(title, mesh.new(body, lod, accessories, bone_names, title))
-    made.append(surface)
-    surface[_MESH] = True
-    context.collection.objects.link(surface)
-    surface.parent = owner
-    surface.modifiers.new("Armature", "ARMATURE").object = owner
-    return surface
+def _create_mesh_object(context, rig, body, lod, accessories, convention, created):
+    name = f"{rig.name} Body"
+    bone_names = body.joint_names(convention)
+    ob = bpy.data.objects.new(name, mesh.create(body, lod, accessories, bone_names, name))
+    created.append(ob)
+    ob[_MESH_OBJECT] = True
+    context.collection.objects.link(ob)
+    ob.parent = rig
+    ob.modifiers.new("Armature", "ARMATURE").object = rig
+    return ob
 
 
-def select_only(context, character):
-    """Makes a character the one selected and active object."""
+def select_only(context, rig):
+    """Makes a character's armature object the only selected object and the active one."""
     for ob in context.selected_objects:
         ob.select_set(False)
-    character.select_set(True)
-    context.view_layer.objects.active = character
+    rig.select_set(True)
+    context.view_layer.objects.active = rig
 
 
-def measured(character):
-    """The measures of a character's mesh as it is now. ValueError where that is no body of the library's."""
-    surface = mesh_of(character)
-    if surface is None:
-        raise ValueError(f"{character.name}: has no body mesh to measure")
-    if surface.mode == "EDIT":
-        raise ValueError(f"{surface.name}: leave edit mode to measure it")
+def measure_mesh(rig):
+    """Measures the mesh of a character as it is now, sculpted or not. ValueError if that is not possible."""
+    ob = mesh_object(rig)
+    if ob is None:
+        raise ValueError(f"{rig.name} has no body mesh to measure")
+    if ob.mode == "EDIT":
+        raise ValueError(f"{ob.name}: leave edit mode to measure it")
     model = library.model()
-    count = model.vertex_count(int(character.anthronet.lod))
-    if len(surface.data.vertices) < count:
-        raise ValueError(
-            f"{surface.name}: expected at least {count} vertices, the mesh has {len(surface.data.vertices)}"
-        )
-    return model.measure(mesh.body_positions(surface.data, count), space="blender")
+    count = model.vertex_count(int(rig.anthronet.lod))
+    if len(ob.data.vertices) < count:
+        raise ValueError(f"{ob.name}: expected at least {count} vertices, the mesh has {len(ob.data.vertices)}")
+    return model.measure(mesh.body_positions(ob.data, count), space="blender")
 
 
-def is_sculpted(character):
+def is_sculpted(rig):
     """Whether a user moved vertices of the character's mesh."""
-    surface = mesh_of(character)
-    return surface is not None and mesh.is_sculpted(surface.data)
+    ob = mesh_object(rig)
+    return ob is not None and mesh.is_sculpted(ob.data)
 
 
-def set_fine_render(character, fine):
-    """Adds or removes the subdivision of the posed surface in renders."""
-    surface = mesh_of(character)
-    if surface is None:
+def set_fine_render(rig, enabled):
+    """Adds or removes the modifier that subdivides the posed mesh in renders."""
+    ob = mesh_object(rig)
+    if ob is None:
         return
-    found = surface.modifiers.get(_FINE)
-    if fine and found is None:
-        found = surface.modifiers.new(_FINE, "SUBSURF")
-        found.levels, found.render_levels = 0, 1
-    elif not fine and found is not None:
-        surface.modifiers.remove(found)
+    modifier = ob.modifiers.get(_FINE_MODIFIER)
+    if enabled and modifier is None:
+        modifier = ob.modifiers.new(_FINE_MODIFIER, "SUBSURF")
+        modifier.levels, modifier.render_levels = 0, 1
+    elif not enabled and modifier is not None:
+        ob.modifiers.remove(modifier)
 
 
-def make_local(character):
-    """Makes a linked or overridden character the file's own: its objects, mesh and armature. RuntimeError where Blender
-    does not let it."""
-    # Users before what they use: what a linked block uses is copied instead.
-    surface = mesh_of(character)
-    for ob in filter(None, (surface, character)):
+def make_local(rig):
+    """Makes objects, mesh and armature of a linked or overridden character local to this file. RuntimeError if Blender does not
+    allow it."""
+    # The mesh object first: a data-block that a linked one still uses would be copied instead.
+    objects = [ob for ob in (mesh_object(rig), rig) if ob is not None]
+    for ob in objects:
         for block in (ob, ob.data):
             if block.library is not None or block.override_library is not None:
                 block.make_local(clear_liboverride=True)
-    for ob in filter(None, (surface, character)):
+    for ob in objects:
         if ob.library is not None or ob.data.library is not None or ob.override_library is not None:
-            raise RuntimeError(f"{ob.name}: Blender keeps it linked, as something else in this file uses it from there")
+            raise RuntimeError(f"{ob.name} stays linked, because something else in this file uses it from its library")

@@ -1,180 +1,184 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes: one template per level of detail, copied for each character, then moved.
+"""Meshes of characters: creation, and new positions for the vertices.
 
-A character's mesh holds all parts: the body's vertices first and in the model's order, then eyes, teeth, tongue and
-lashes, with a material slot each. Topology, texture coordinates and weights are the same for everybody, so they are made
-once a session; a character is a copy with other positions."""
+A mesh holds all parts of a character, with a material slot each: the body first, its vertices in the model's order, then
+eyes, teeth, tongue and eyelashes. Topology, UV map and weights are the same for everybody. They are built once for each level
+of detail, as a template mesh that is copied for each character."""
 
 import zlib
 
+import bmesh
 import bpy
 import numpy as np
 
 from . import material
 
-#: The level of detail, on every mesh.
+#: Custom property of a mesh: its level of detail.
 LOD = "anthronet_lod"
-#: Positions as they were generated: what a sculpted mesh differs from.
+#: Attribute of a mesh: the generated positions. A sculpted mesh differs from them.
 GENERATED = "anthronet_generated"
-_KEY = "anthronet_template"
+#: Custom property of a template mesh: what it was built for.
+_TEMPLATE_KEY = "anthronet_template"
 
 
-def template(body, lod, accessories, bone_names):
-    """The mesh that characters of a level of detail are copies of; made on first use."""
-    key = f"{lod} {accessories} {' '.join(bone_names)}"
-    # Names are looked up fast; that several vocabularies share one is told apart by the key.
-    title = f".AnthroNet {lod} {'whole' if accessories else 'body'} {zlib.crc32(key.encode()):08x}"
-    found = bpy.data.meshes.get((title, None))
-    if found is not None and found.get(_KEY) == key:
-        if not all(one is not None and material.is_ours(one) for one in found.materials):
-            # Somebody edited one: new characters do not get it.
-            for slot, part in enumerate(body.mesh(lod=lod, layout="model", body_only=not accessories).parts):
-                found.materials[slot] = material.find_or_new(part)
-        return found
-    surface = body.mesh(lod=lod, influences=8, space="blender", layout="model", body_only=not accessories)
-    mesh = _build(surface, bone_names, title)
-    mesh[_KEY] = key
-    return mesh
-
-
-def new(body, lod, accessories, bone_names, name):
+def create(body, lod, accessories, bone_names, name):
     """A mesh of a body."""
-    mesh = template(body, lod, accessories, bone_names).copy()
-    del mesh[_KEY]
+    mesh = _template(body, lod, accessories, bone_names).copy()
+    del mesh[_TEMPLATE_KEY]
     mesh.name = name
     mesh[LOD] = lod
     mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
-    _write(mesh, positions(body, lod, accessories))
+    _write_positions(mesh, generated_positions(body, lod, accessories))
     return mesh
 
 
-def positions(body, lod, accessories):
-    """Positions of all parts, one after the other: (V, 3), metres, Blender's axes."""
-    surface = body.mesh(lod=lod, space="blender", layout="model", body_only=not accessories)
-    return np.concatenate([part.positions for part in surface.parts])
+def _template(body, lod, accessories, bone_names):
+    """The mesh that those of all characters of a level of detail are copied from, built on first use."""
+    key = f"{lod} {accessories} {' '.join(bone_names)}"
+    # Lookup by name is fast. The key tells names with the same checksum apart.
+    name = f".AnthroNet {lod} {'whole' if accessories else 'body'} {zlib.crc32(key.encode()):08x}"
+    template = bpy.data.meshes.get((name, None))
+    if template is not None and template.get(_TEMPLATE_KEY) == key:
+        if not all(slot is not None and material.is_unedited(slot) for slot in template.materials):
+            # The user edited one of the materials: new characters do not get it.
+            for slot, part in enumerate(body.mesh(lod=lod, layout="model", body_only=not accessories).parts):
+                template.materials[slot] = material.for_part(part)
+        return template
+    library_mesh = body.mesh(lod=lod, influences=8, space="blender", layout="model", body_only=not accessories)
+    template = _build(library_mesh, bone_names, name)
+    template[_TEMPLATE_KEY] = key
+    return template
 
 
-def check(mesh, places):
-    """ValueError where a mesh cannot take positions."""
-    if len(places) != len(mesh.vertices):
+def generated_positions(body, lod, accessories):
+    """The positions of all parts, concatenated: (V, 3)."""
+    library_mesh = body.mesh(lod=lod, space="blender", layout="model", body_only=not accessories)
+    return np.concatenate([part.positions for part in library_mesh.parts])
+
+
+def check_vertex_count(mesh, positions):
+    """ValueError if a mesh does not have a vertex for each position."""
+    if len(positions) != len(mesh.vertices):
         raise ValueError(
-            f"{mesh.name}: expected {len(places)} vertices, the mesh has {len(mesh.vertices)}: choose its Detail anew"
+            f"{mesh.name}: expected {len(positions)} vertices, the mesh has {len(mesh.vertices)}: "
+            "change the Level of Detail to get a new mesh"
         )
 
 
-def move(mesh, places, forget_sculpting=False):
-    """Gives a mesh another body's positions. What was sculpted stays on top of them unless it is to be forgotten; shape keys
-    stay."""
-    check(mesh, places)
-    count = len(mesh.vertices)
-    moved, before = _now_and_generated(mesh)
+def set_positions(mesh, positions, discard_sculpting=False):
+    """Moves a mesh to the positions of another body. Shape keys keep their offsets; sculpted offsets are kept, too, unless they
+    are to be discarded."""
+    check_vertex_count(mesh, positions)
+    current, generated = _current_and_generated(mesh)
     if GENERATED not in mesh.attributes:
         mesh.attributes.new(GENERATED, "FLOAT_VECTOR", "POINT")
-    step = places.reshape(-1) - (moved if forget_sculpting else before)
+    target = positions.reshape(-1)
+    delta = target - (current if discard_sculpting else generated)
     if mesh.shape_keys:
-        shape = np.empty(3 * count, np.float32)
+        shape = np.empty(3 * len(mesh.vertices), np.float32)
         for block in mesh.shape_keys.key_blocks:
             block.points.foreach_get("co", shape)
-            block.points.foreach_set("co", shape + step)
-    # Untouched vertices get exactly what the library made, not a sum of roundings.
-    sculpted = (moved != before) & (not forget_sculpting)
-    _write(mesh, np.where(sculpted, moved + step, places.reshape(-1)), places)
+            block.points.foreach_set("co", shape + delta)
+    # Vertices that were not sculpted get exactly the library's positions, without rounding errors of the addition.
+    sculpted = (current != generated) & (not discard_sculpting)
+    _write_positions(mesh, np.where(sculpted, current + delta, target), positions)
 
 
-def _write(mesh, places, generated=None):
-    mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(places, np.float32).reshape(-1))
-    generated = places if generated is None else generated
+def _write_positions(mesh, positions, generated=None):
+    """Writes the current positions, and the generated ones where they differ."""
+    mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(positions, np.float32).reshape(-1))
+    generated = positions if generated is None else generated
     mesh.attributes[GENERATED].data.foreach_set("vector", np.ascontiguousarray(generated, np.float32).reshape(-1))
     mesh.update()
 
 
 def body_positions(mesh, vertex_count):
-    """The body's vertices as they are now, without shape keys and modifiers: (V, 3), metres."""
-    places = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", places)
-    return places.reshape(-1, 3)[:vertex_count]
+    """The current positions of the body's vertices, without shape keys and modifiers: (V, 3)."""
+    positions = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", positions)
+    return positions.reshape(-1, 3)[:vertex_count]
 
 
-def _build(surface, bone_names, title):
-    parts = surface.parts
+def _build(library_mesh, bone_names, name):
+    """A Blender mesh from one of the library's, with UV map, materials and weights."""
+    parts = library_mesh.parts
     starts = np.cumsum([0] + [len(part.positions) for part in parts])
     uv_starts = np.cumsum([0] + [len(part.uvs) for part in parts])
-    corners, corner_uvs, sizes, slots = [], [], [], []
+    corner_vertices, corner_uvs, face_sizes, face_slots = [], [], [], []
     for slot, part in enumerate(parts):
         for faces, face_uvs in ((part.quads, part.quad_uvs), (part.triangles, part.triangle_uvs)):
-            corners.append(faces.astype(np.int32).reshape(-1) + starts[slot])
+            corner_vertices.append(faces.astype(np.int32).reshape(-1) + starts[slot])
             corner_uvs.append(face_uvs.astype(np.int64).reshape(-1) + uv_starts[slot])
-            sizes.append(np.full(len(faces), faces.shape[1], np.int32))
-            slots.append(np.full(len(faces), slot, np.int32))
-    corners, corner_uvs = np.concatenate(corners), np.concatenate(corner_uvs)
-    sizes, slots = np.concatenate(sizes), np.concatenate(slots)
+            face_sizes.append(np.full(len(faces), faces.shape[1], np.int32))
+            face_slots.append(np.full(len(faces), slot, np.int32))
+    corner_vertices, corner_uvs = np.concatenate(corner_vertices), np.concatenate(corner_uvs)
+    face_sizes, face_slots = np.concatenate(face_sizes), np.concatenate(face_slots)
 
-    mesh = bpy.data.meshes.new(title)
+    mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(int(starts[-1]))
-    mesh.loops.add(len(corners))
-    mesh.polygons.add(len(sizes))
-    places = np.concatenate([part.positions for part in parts])
-    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
-    mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
-    mesh.polygons.foreach_set("loop_start", np.cumsum(sizes, dtype=np.int32) - sizes)
-    mesh.polygons.foreach_set("material_index", slots)
+    mesh.loops.add(len(corner_vertices))
+    mesh.polygons.add(len(face_sizes))
+    positions = np.concatenate([part.positions for part in parts])
+    mesh.attributes["position"].data.foreach_set("vector", positions.reshape(-1))
+    mesh.attributes[".corner_vert"].data.foreach_set("value", corner_vertices)
+    mesh.polygons.foreach_set("loop_start", np.cumsum(face_sizes, dtype=np.int32) - face_sizes)
+    mesh.polygons.foreach_set("material_index", face_slots)
     layer = mesh.uv_layers.new(name="UVMap")
     layer.uv.foreach_set("vector", np.concatenate([part.uvs for part in parts])[corner_uvs].reshape(-1))
     mesh.update(calc_edges=True)
     mesh.shade_smooth()
     for part in parts:
-        mesh.materials.append(material.find_or_new(part))
+        mesh.materials.append(material.for_part(part))
     if mesh.validate(verbose=False):
         raise ValueError("the generated mesh is not valid")
-    _weigh(mesh, parts, starts, bone_names)
+    _set_weights(mesh, parts, starts, bone_names)
     return mesh
 
 
-def _weigh(mesh, parts, starts, bone_names):
-    """Skin weights, exact to the bit. Vertex groups belong to objects, so an object is needed while they are made."""
-    import bmesh
-
-    carrier = bpy.data.objects.new(".AnthroNet Weights", mesh)
+def _set_weights(mesh, parts, starts, bone_names):
+    """Writes the skin weights, exact to the bit. A mesh holds weights, but the names of the vertex groups are an object's, so
+    that one is needed here."""
+    helper = bpy.data.objects.new(".AnthroNet Weights", mesh)
     for name in bone_names:
-        carrier.vertex_groups.new(name=name)
-    work = bmesh.new()
-    work.from_mesh(mesh)
-    layer = work.verts.layers.deform.verify()
-    work.verts.ensure_lookup_table()
-    verts = work.verts
+        helper.vertex_groups.new(name=name)
+    edited = bmesh.new()
+    edited.from_mesh(mesh)
+    layer = edited.verts.layers.deform.verify()
+    edited.verts.ensure_lookup_table()
+    vertices = edited.verts
     for start, part in zip(starts, parts):
         for vertex, (joints, weights) in enumerate(zip(part.joints.tolist(), part.weights.tolist()), int(start)):
-            row = verts[vertex][layer]
+            deform = vertices[vertex][layer]
             for joint, weight in zip(joints, weights):
                 if weight > 0.0:
-                    row[joint] = weight
-    work.to_mesh(mesh)
-    work.free()
-    bpy.data.objects.remove(carrier)
+                    deform[joint] = weight
+    edited.to_mesh(mesh)
+    edited.free()
+    bpy.data.objects.remove(helper)
 
 
 def is_sculpted(mesh):
-    """Whether vertices are elsewhere than they were generated."""
-    return not np.array_equal(*_now_and_generated(mesh))
+    """Whether a vertex is elsewhere than it was generated."""
+    return not np.array_equal(*_current_and_generated(mesh))
 
 
-def sculpting(mesh):
-    """How far vertices are from where they were generated: (V, 3), metres."""
-    now, generated = _now_and_generated(mesh)
-    return (now - generated).reshape(-1, 3)
+def sculpted_offsets(mesh):
+    """Offsets of the vertices from their generated positions: (V, 3)."""
+    current, generated = _current_and_generated(mesh)
+    return (current - generated).reshape(-1, 3)
 
 
-def add_sculpting(mesh, offsets):
-    """Moves vertices from where they were generated; shape keys are not looked at."""
-    now, generated = _now_and_generated(mesh)
-    _write(mesh, now + offsets.reshape(-1).astype(np.float32), generated)
+def add_sculpted_offsets(mesh, offsets):
+    """Adds offsets to the vertices, as if a user had sculpted them. Shape keys are not changed."""
+    current, generated = _current_and_generated(mesh)
+    _write_positions(mesh, current + offsets.reshape(-1).astype(np.float32), generated)
 
 
-def _now_and_generated(mesh):
-    count = 3 * len(mesh.vertices)
-    now, generated = np.empty(count, np.float32), np.empty(count, np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", now)
+def _current_and_generated(mesh):
+    size = 3 * len(mesh.vertices)
+    current, generated = np.empty(size, np.float32), np.empty(size, np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", current)
     if GENERATED not in mesh.attributes:
-        return now, now
+        return current, current
     mesh.attributes[GENERATED].data.foreach_get("vector", generated)
-    return now, generated
+    return current, generated

@@ -1,32 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What there is of motion and pose on a character."""
+"""Whether a character is animated, posed, transformed."""
 
 import numpy as np
 
-_SMALL = 1e-6
+_TOLERANCE = 1e-6
 
 
-def moves(owner):
-    """Whether anything may move a character from frame to frame: an action, a track, a driver, a constraint, a parent."""
-    for block in (owner, owner.data):
+def is_animated(rig):
+    """Whether anything may move a character between frames: an action, NLA, drivers, constraints, a parent."""
+    for block in (rig, rig.data):
         animation = block.animation_data
         if animation is not None and (animation.action or len(animation.nla_tracks) or len(animation.drivers)):
             return True
-    if owner.parent is not None or len(owner.constraints):
+    if rig.parent is not None or len(rig.constraints):
         return True
-    return any(len(bone.constraints) for bone in owner.pose.bones)
+    return any(len(bone.constraints) for bone in rig.pose.bones)
 
 
-def is_posed(owner):
-    """Whether a bone is elsewhere than in the rest pose."""
-    return any(not np.allclose(bone.matrix_basis, np.eye(4), atol=_SMALL) for bone in owner.pose.bones)
+def is_posed(rig):
+    """Whether a bone is not in its rest pose."""
+    return any(not np.allclose(bone.matrix_basis, np.eye(4), atol=_TOLERANCE) for bone in rig.pose.bones)
 
 
-def is_placed(owner):
-    """Whether the object is elsewhere than at the scene's origin, or turned."""
-    return not np.allclose(owner.matrix_world, np.eye(4), atol=_SMALL)
+def is_transformed(rig):
+    """Whether the world matrix of the object is not the identity."""
+    return not np.allclose(rig.matrix_world, np.eye(4), atol=_TOLERANCE)
 
 
-def is_scaled(owner):
-    """Whether the object has a scale."""
-    return not np.allclose(owner.matrix_world.to_scale(), 1.0, atol=1e-5)
+def is_scaled(rig):
+    """Whether the object has a scale in world space."""
+    return not np.allclose(rig.matrix_world.to_scale(), 1.0, atol=1e-5)

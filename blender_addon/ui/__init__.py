@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels and menus. They draw what properties hold and name operators; they change nothing."""
+"""Panels and menu entries. They show properties and operators and change nothing."""
 
+from . import menu, panel, presets
 
-def _modules():
-    from . import menu, panel
-
-    return (panel, menu)
+_MODULES = (presets, panel, menu)
 
 
 def register():
-    for module in _modules():
+    for module in _MODULES:
         module.register()
 
 
 def unregister():
-    for module in reversed(_modules()):
+    for module in reversed(_MODULES):
         module.unregister()

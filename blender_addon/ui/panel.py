@@ -1,30 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The AnthroNet tab of the 3D view's side bar."""
+"""The tab *AnthroNet* in the sidebar of the 3D viewport."""
+
+import textwrap
 
 import bpy
 
 from .. import measures, units
-from ..presets import ANTHRONET_PT_presets
-from ..services import action, character, live
+from ..services import action, character, regeneration
+from .presets import ANTHRONET_PT_presets
+
+#: Characters on a line of text that fits a sidebar of usual width.
+_LINE_LENGTH = 44
 
 
-class _Panel:
+class _SidebarPanel:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "AnthroNet"
+
+
+class _CharacterPanel(_SidebarPanel):
+    """A panel for the active character."""
 
     @classmethod
     def poll(cls, context):
         return character.active(context) is not None
 
 
-class ANTHRONET_PT_start(bpy.types.Panel):
-    """What there is to do without a character"""
+class ANTHRONET_PT_start(_SidebarPanel, bpy.types.Panel):
+    """The only panel if no character is active"""
 
     bl_label = "AnthroNet"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "AnthroNet"
 
     @classmethod
     def poll(cls, context):
@@ -36,8 +42,8 @@ class ANTHRONET_PT_start(bpy.types.Panel):
         column.operator("anthronet.crowd_add", text="Add Crowd", icon="COMMUNITY")
 
 
-class ANTHRONET_PT_person(_Panel, bpy.types.Panel):
-    """Sex, seed, identity"""
+class ANTHRONET_PT_person(_CharacterPanel, bpy.types.Panel):
+    """The request, without its measures"""
 
     bl_label = "Person"
 
@@ -45,25 +51,26 @@ class ANTHRONET_PT_person(_Panel, bpy.types.Panel):
         ANTHRONET_PT_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
-        layout, owner = self.layout, character.active(context)
-        settings = owner.anthronet
+        layout, rig = self.layout, character.active(context)
+        settings = rig.anthronet
         layout.use_property_split = True
         layout.use_property_decorate = False
-        reason = live.refusal(owner, context)
+        reason = regeneration.reason_not_editable(rig, context)
         if reason:
             box = layout.box()
-            _sentences(box, reason, "LOCKED")
+            _draw_text(box, reason, "LOCKED")
             if "Make Local" in reason:
                 box.operator("anthronet.make_local", icon="FILE_BLEND")
         layout.prop(context.scene, "anthronet_edit_together")
         layout.prop(settings, "sex")
         row = layout.row()
+        # Otherwise the seed has no effect.
         row.active = not settings.identity_by_hand or settings.fill == "SAMPLE"
         row.prop(settings, "seed")
         layout.prop(settings, "fill")
         layout.prop(settings, "nearest")
         row = layout.row(align=True)
-        row.operator("anthronet.randomise", text="Randomise", icon="FILE_REFRESH").what = "ALL"
+        row.operator("anthronet.randomise", icon="FILE_REFRESH").what = "ALL"
         row.operator("anthronet.randomise", text="Identity Only").what = "IDENTITY"
         row = layout.row(align=True)
         row.operator("anthronet.mirror", icon="MOD_MIRROR")
@@ -74,8 +81,8 @@ class ANTHRONET_PT_person(_Panel, bpy.types.Panel):
         row.operator("anthronet.request_save", icon="EXPORT")
 
 
-class ANTHRONET_PT_identity(_Panel, bpy.types.Panel):
-    """The latent numbers"""
+class ANTHRONET_PT_identity(_CharacterPanel, bpy.types.Panel):
+    """The identity vector"""
 
     bl_label = "Identity"
     bl_parent_id = "ANTHRONET_PT_person"
@@ -92,35 +99,37 @@ class ANTHRONET_PT_identity(_Panel, bpy.types.Panel):
             column.prop(settings, "identity", index=index, text=f"Identity {index + 1}", slider=True)
 
 
-class ANTHRONET_PT_measures(_Panel, bpy.types.Panel):
-    """The measures, by part of the body"""
+class ANTHRONET_PT_measures(_CharacterPanel, bpy.types.Panel):
+    """Errors and operators for measures. The measures themselves are in sub-panels"""
 
     bl_label = "Measures"
 
     def draw(self, context):
         settings = character.active(context).anthronet
         if settings.error:
-            _sentences(self.layout.box(), settings.error, "ERROR")
-        if abs(context.scene.unit_settings.scale_length - 1.0) > 1e-6:
-            scale = context.scene.unit_settings.scale_length
-            _sentences(self.layout.box(), f"Unit Scale is {scale:g}: lengths are shown times that", "INFO")
+            _draw_text(self.layout.box(), settings.error, "ERROR")
+        scale = context.scene.unit_settings.scale_length
+        if abs(scale - 1.0) > 1e-6:
+            _draw_text(self.layout.box(), f"Unit Scale is {scale:g}: lengths are shown multiplied by it", "INFO")
         row = self.layout.row(align=True)
         row.operator("anthronet.measure_selected", icon="DRIVER_DISTANCE")
         row.operator("anthronet.fit_selected")
         self.layout.operator("anthronet.open_measures", icon="X")
 
 
-def _group_panel(group):
+def _measure_group_panel(group):
+    """The class of the panel for a group of measures."""
+
     def draw(self, context):
         settings = character.active(context).anthronet
         column = self.layout.column(align=True)
         for measure, report in zip(measures.all_measures(), settings.report):
             if measure.group == group:
-                _measure_row(column, context.scene, settings, measure, report)
+                _draw_measure(column, context.scene, settings, measure, report)
 
     return type(
         f"ANTHRONET_PT_{group.lower()}",
-        (_Panel, bpy.types.Panel),
+        (_CharacterPanel, bpy.types.Panel),
         {
             "__doc__": f"Measures of the {group.lower()}",
             "bl_label": group,
@@ -131,7 +140,7 @@ def _group_panel(group):
     )
 
 
-def _measure_row(column, scene, settings, measure, report):
+def _draw_measure(column, scene, settings, measure, report):
     given = settings.is_given(measure.name)
     row = column.row(align=True)
     row.prop(settings, f"given_{measure.name}", text="", icon="LOCKED" if given else "UNLOCKED")
@@ -139,45 +148,45 @@ def _measure_row(column, scene, settings, measure, report):
     slider.active = given
     slider.prop(settings, measure.name, text=_label(measure), slider=True)
     if given:
-        text = f"off by {units.millimetres(scene, report.residual)}"
+        text = f"error {units.length_difference(scene, report.residual)}"
     else:
         text = f"{units.length(scene, report.low90, 3)} – {units.length(scene, report.high90, 3)}"
-    # Below and not beside: a side bar of usual width has no room for both.
-    told = column.row()
-    told.active = False
-    told.scale_y = 0.7
-    told.label(text=f"P{report.percentile:.0f}  {text}", icon="BLANK1")
+    # In a row of its own: a sidebar of usual width is too narrow for both.
+    details = column.row()
+    details.active = False
+    details.scale_y = 0.7
+    details.label(text=f"P{report.percentile:.0f}  {text}", icon="BLANK1")
 
 
-class ANTHRONET_PT_report(_Panel, bpy.types.Panel):
-    """What came of the request"""
+class ANTHRONET_PT_report(_CharacterPanel, bpy.types.Panel):
+    """Report on the generated body"""
 
     bl_label = "Report"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        settings = character.active(context).anthronet
+        settings, scene = character.active(context).anthronet, context.scene
         layout = self.layout
-        mass = units.mass(context.scene, settings.mass)
-        layout.label(text=f"{settings.body_sex.capitalize()}, {mass}, BMI {settings.bmi:.1f}")
+        mass, bmi = units.mass(scene, settings.mass), units.body_mass_index(settings.bmi)
+        layout.label(text=f"{settings.body_sex.capitalize()}, {mass}, {bmi}")
         for warning in filter(None, settings.warnings.split("\n")):
-            _sentences(layout.box(), warning, "INFO")
+            _draw_text(layout.box(), warning, "INFO")
         pairs = zip(measures.all_measures(), settings.report)
-        rows = [(measure, report) for measure, report in pairs if settings.is_given(measure.name)]
-        if not rows:
-            layout.label(text="No measure is given: the likeliest person")
-        for measure, report in rows:
+        given = [(measure, report) for measure, report in pairs if settings.is_given(measure.name)]
+        if not given:
+            layout.label(text="No measure is given, all are predicted")
+        for measure, report in given:
             row = layout.row()
             row.label(text=_label(measure))
-            row.label(text=units.length(context.scene, getattr(settings, measure.name)))
-            row.label(text=units.millimetres(context.scene, report.residual))
+            row.label(text=units.length(scene, getattr(settings, measure.name)))
+            row.label(text=f"error {units.length_difference(scene, report.residual)}")
             row.label(text=f"percentile {report.percentile:.0f}")
 
 
-class ANTHRONET_PT_body(_Panel, bpy.types.Panel):
-    """Mesh and rig"""
+class ANTHRONET_PT_body(_CharacterPanel, bpy.types.Panel):
+    """Settings of mesh and armature"""
 
-    bl_label = "Mesh and Rig"
+    bl_label = "Mesh and Armature"
 
     def draw(self, context):
         settings = character.active(context).anthronet
@@ -188,20 +197,20 @@ class ANTHRONET_PT_body(_Panel, bpy.types.Panel):
             layout.prop(settings, name)
 
 
-class ANTHRONET_PT_motion(_Panel, bpy.types.Panel):
-    """Motion and files"""
+class ANTHRONET_PT_motion(_CharacterPanel, bpy.types.Panel):
+    """Motion and export"""
 
-    bl_label = "Motion and Files"
+    bl_label = "Motion and Export"
 
     def draw(self, context):
-        owner = character.active(context)
+        rig = character.active(context)
         column = self.layout.column()
         column.operator("anthronet.clip_apply", icon="ANIM_DATA")
         column.operator_menu_enum("anthronet.clip_builtin", "name", icon="PLAY")
         column.operator("anthronet.clip_from_armature", icon="ARMATURE_DATA")
-        if action.is_of_another_body(owner):
+        if action.is_outdated(rig):
             box = column.box()
-            _sentences(box, "The motion was made for the body of before", "INFO")
+            _draw_text(box, "The motion was made for a different body", "INFO")
             box.operator("anthronet.clip_refit", icon="FILE_REFRESH")
         column.operator("anthronet.metarig_add", icon="OUTLINER_OB_ARMATURE")
         column.operator("anthronet.character_export", text="Export", icon="EXPORT")
@@ -211,12 +220,10 @@ def _label(measure):
     return measure.label + (f" {measure.side[0].upper()}" if measure.side else "")
 
 
-def _sentences(layout, text, icon):
-    """A text in lines that fit the side bar."""
-    import textwrap
-
+def _draw_text(layout, text, icon):
+    """Draws a text in lines that fit the sidebar: Blender's labels do not wrap."""
     column = layout.column(align=True)
-    for number, line in enumerate(textwrap.wrap(text, 44)):
+    for number, line in enumerate(textwrap.wrap(text, _LINE_LENGTH)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1")
 
 
@@ -225,7 +232,7 @@ CLASSES = (
     ANTHRONET_PT_person,
     ANTHRONET_PT_identity,
     ANTHRONET_PT_measures,
-    *(_group_panel(group) for group in measures.GROUPS),
+    *(_measure_group_panel(group) for group in measures.GROUPS),
     ANTHRONET_PT_report,
     ANTHRONET_PT_body,
     ANTHRONET_PT_motion,

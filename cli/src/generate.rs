@@ -19,7 +19,7 @@ use crate::request::{RequestArguments, read_request};
 
 /// Make a person from tape measures and write the rigged, skinned character to a file.
 ///
-/// Give any subset of the 36 measures. The body matches them exactly; the report lists how the others were filled in,
+/// Give any subset of the measures. The body matches them exactly; the report lists how the others were filled in,
 /// with the interval that contains 90 % of such people. The same request gives the same bytes on every machine.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
@@ -68,7 +68,7 @@ pub(crate) struct Arguments {
     #[arg(long, help_heading = "File")]
     compress: bool,
 
-    /// Write the report of all 36 measures as JSON, to a file or with `-` to standard output. It is also written when the
+    /// Write the report of all measures as JSON, to a file or with `-` to standard output. It is also written when the
     /// request is refused as infeasible, and then lists the conflicting measures.
     #[arg(long, value_name = "FILE", help_heading = "File")]
     report: Option<PathBuf>,

@@ -13,7 +13,7 @@ use crate::failure::{Failure, Result};
 use crate::files::{CHARACTER_ENDINGS, check_ending};
 use crate::terminal::print;
 
-/// Measure a character file: all 36 measures, mass and body mass index.
+/// Measure a character file: all measures, mass and body mass index.
 ///
 /// FILE was made by AnthroNet, at any level of detail, or has a body with the same vertex order. The body is measured in
 /// its bind pose.

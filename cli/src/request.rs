@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anthronet::Error;
 use anthronet::condition::{Fill, Request};
 use anthronet::measure::Sex;
+use anthronet::{Error, Side};
 use clap::Args;
 
 use crate::choice;
@@ -99,19 +99,17 @@ impl RequestArguments {
             }
             measures.push((name, *value));
         }
-        measures.sort_by_key(|(name, _)| name.ends_with("_left") || name.ends_with("_right"));
+        measures.sort_by_key(|(name, _)| Side::part_measure_name(name).1.is_some());
         Ok(measures)
     }
 
     /// Whether a field of the request was typed rather than read from the file. Sides count as one: a value typed for
     /// both may be wrong on one of them.
     fn typed(&self, field: &str) -> bool {
-        fn stem(name: &str) -> &str {
-            name.trim_end_matches("_left").trim_end_matches("_right")
-        }
+        let base = |name| Side::part_measure_name(name).0;
         match field {
             "z" => self.z.is_some(),
-            _ => self.measures.iter().any(|(name, _)| stem(name) == stem(field)),
+            _ => self.measures.iter().any(|(name, _)| base(name) == base(field)),
         }
     }
 }

@@ -4,6 +4,7 @@ mod common;
 
 use std::fs;
 
+use anthronet::measure::MEASURE_COUNT;
 use common::{anthronet, files_in, folder, write};
 use serde_json::Value;
 
@@ -40,7 +41,7 @@ fn what_is_asked_is_measured_again_from_the_file() {
         let run = anthronet(&arguments, &[]).succeeds();
         assert!(run.err.contains("female") && run.err.contains("1.700 m"), "{}", run.err);
         let report: Value = serde_json::from_str(&run.out).unwrap();
-        assert_eq!(report["measures"].as_array().unwrap().len(), 36);
+        assert_eq!(report["measures"].as_array().unwrap().len(), MEASURE_COUNT);
 
         let measured = anthronet(&["measure", &out, "--json"], &[]).succeeds();
         let measured: Value = serde_json::from_str(&measured.out).unwrap();
@@ -100,7 +101,7 @@ fn interpolation_meets_its_ends() {
 fn info_is_what_programs_expect() {
     let info: Value = serde_json::from_str(&anthronet(&["info", "--json"], &[]).succeeds().out).unwrap();
     let measures = info["measures"].as_array().unwrap();
-    assert_eq!(measures.len(), 36);
+    assert_eq!(measures.len(), MEASURE_COUNT);
     for measure in measures {
         assert!(["tape", "slice", "length"].contains(&measure["kind"].as_str().unwrap()));
         let points = measure["points"].as_array().unwrap();

@@ -150,8 +150,9 @@ fn every_option_of_motion_does_what_it_says() {
     let with = |options: &[&str]| still.animated(&[&clip[..], options].concat());
     let way = |scene: &Scene| {
         let clip = &scene.clips[0];
-        let pelvis = clip.rest().find("pelvis").unwrap();
-        let at = |frame: usize| clip.pose(frame).model_from_joints(clip.rest().parents())[pelvis].translation;
+        let pelvis = clip.skeleton().find("pelvis").unwrap();
+        let at =
+            |frame: usize| clip.pose(frame).model_from_joints(clip.skeleton().parents())[pelvis].translation;
         (at(clip.frame_count() - 1) - at(0)).with_y(0.0).length()
     };
     let (plain, report) = with(&[]);
@@ -168,10 +169,10 @@ fn every_option_of_motion_does_what_it_says() {
     let (slides, report) = with(&["--no-feet"]);
     assert!(report["retarget"]["clips"][0]["feet"].is_null() && slides.clips != plain.clips);
 
-    let finger = plain.clips[0].rest().find("index_02_l").unwrap();
+    let finger = plain.clips[0].skeleton().find("index_02_l").unwrap();
     let bent = |scene: &Scene| {
         let clip = &scene.clips[0];
-        clip.rotations(0)[finger].angle_between(clip.rest().pose().locals[finger].rotation)
+        clip.rotations(0)[finger].angle_between(clip.skeleton().rest_pose().locals[finger].rotation)
     };
     assert!(bent(&plain) > 0.1 && bent(&with(&["--fingers", "relaxed"]).0) > 0.1);
     assert!(bent(&with(&["--fingers", "rest"]).0) < 1e-3);

@@ -4,6 +4,7 @@ mod common;
 
 use std::fs;
 
+use anthronet::measure::MEASURE_COUNT;
 use common::{anthronet, files_in, folder, generate, write};
 
 #[test]
@@ -88,7 +89,7 @@ fn a_refused_request_is_reported_and_makes_no_file() {
         for measure in conflict {
             assert!(measure["asked"].is_number() && measure["nearest"].is_number(), "{measure}");
         }
-        assert_eq!(report["measures"].as_array().unwrap().len(), 36);
+        assert_eq!(report["measures"].as_array().unwrap().len(), MEASURE_COUNT);
         assert_eq!(files_in(folder.path()), ["nobody.json", "report.json"]);
         fs::remove_file(path("report.json")).unwrap();
     }

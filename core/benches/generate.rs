@@ -20,7 +20,7 @@ fn request() -> Request {
     request
 }
 
-/// All 36 measures given, to the millimetre.
+/// All measures given, to the millimetre.
 fn full_request(model: &Model) -> Request {
     let body = body(model, &Request { seed: 3, fill: Fill::Sample, ..request() });
     let measures = body.measurements().map(|m| Some((1000.0 * m).round() / 1000.0));

@@ -8,7 +8,6 @@ use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
-use anthronet::skeleton::RestPose;
 use anthronet::skin::{SkinJob, SkinMethod, Skinner, SurfaceMut, skin_many};
 use divan::Bencher;
 use glam::{Quat, Vec3};
@@ -28,14 +27,14 @@ fn posed(lod: Lod, influences: usize) -> Result<(Skinner, Vec<RigidTransform>)> 
         joints: mesh.joint_indices.clone(),
         weights: mesh.joint_weights.clone(),
     };
-    let rest = RestPose::of_joints(body.joints())?;
+    let rest = body.skeleton().clone();
     let skinner = Skinner::new(
         &vectors(&mesh.positions),
         &vectors(&mesh.normals),
         &influences,
         &rest.model_from_joints(),
     )?;
-    let mut pose = rest.pose().clone();
+    let mut pose = rest.rest_pose().clone();
     pose.locals.iter_mut().for_each(|l| l.rotation *= Quat::from_rotation_x(0.2));
     Ok((skinner, pose.model_from_joints(rest.parents())))
 }

@@ -17,7 +17,7 @@ use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
-use anthronet::skeleton::{Pose, RestPose};
+use anthronet::skeleton::{Pose, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
 use glam::{Quat, Vec3};
 
@@ -39,7 +39,7 @@ fn main() -> Outcome {
     };
     std::fs::create_dir_all(folder)?;
     let body = Model::embedded()?.generate(&Request { sex: Some(Sex::Female), ..Request::default() })?;
-    let rest = RestPose::of_joints(body.joints())?;
+    let rest = body.skeleton().clone();
     let bind = rest.model_from_joints();
     let poses: Vec<Vec<RigidTransform>> =
         (0..POSES).map(|seed| random_pose(&rest, seed).model_from_joints(rest.parents())).collect();
@@ -89,9 +89,9 @@ fn main() -> Outcome {
 }
 
 /// Every joint turned about a random axis, by a normal angle of half a radian.
-fn random_pose(rest: &RestPose, seed: u64) -> Pose {
+fn random_pose(rest: &Skeleton, seed: u64) -> Pose {
     let mut random = Random::new(seed, 0);
-    let mut pose = rest.pose().clone();
+    let mut pose = rest.rest_pose().clone();
     for local in &mut pose.locals {
         let axis = Vec3::from_array(std::array::from_fn(|_| random.normal() as f32)).normalize_or(Vec3::X);
         local.rotation =

@@ -9,7 +9,7 @@ use crate::condition::{Prepared, Report, Request, SolveOutcome};
 use crate::measure::{MEASURE_COUNT, Mass, MeasureId, Measurements, Sex, enclosed_volume};
 use crate::mesh::vertex_normals;
 use crate::model::{Character, Model, Solved};
-use crate::skeleton::{Joint, Skeleton};
+use crate::skeleton::Skeleton;
 
 /// A person in the bind pose: T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres.
 #[derive(Clone)]
@@ -19,7 +19,7 @@ pub struct Body {
     // Level 0, then the accessories' points.
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
-    joints: Vec<Joint>,
+    skeleton: Arc<Skeleton>,
     report: Report,
     measurements: Measurements,
     mass: Mass,
@@ -74,7 +74,7 @@ impl Body {
         let cage = character.cage().vertex_count;
         let mut points = character.subdivision().refine(&surface[..cage])?;
         let mut shape = model.joints_of(&coefficients);
-        shape.straighten(character.skeleton());
+        shape.straighten(character.joint_tree());
 
         // Feet on the ground: the lowest vertex of the body.
         let floor = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
@@ -105,8 +105,8 @@ impl Body {
             mass.mass_kg,
             mass.volume_m3,
         );
-        let joints = character.skeleton().bind(&shape)?;
-        Ok(Self { character, coefficients, points, normals, joints, report, measurements, mass })
+        let skeleton = Arc::new(shape.skeleton(character.joint_tree())?);
+        Ok(Self { character, coefficients, points, normals, skeleton, report, measurements, mass })
     }
 
     /// The sex that the body was conditioned on.
@@ -119,7 +119,7 @@ impl Body {
         &self.report
     }
 
-    /// The 36 measures, metres.
+    /// All measures, metres.
     pub fn measurements(&self) -> &Measurements {
         &self.measurements
     }
@@ -139,9 +139,9 @@ impl Body {
         &self.character
     }
 
-    /// The joint hierarchy.
-    pub fn skeleton(&self) -> &Skeleton {
-        self.character.skeleton()
+    /// The joints in the bind pose, which is the pose they rest in.
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
     }
 
     /// Vertices of level 0, in model order; the first ones are those of level 1.
@@ -160,10 +160,5 @@ impl Body {
         let start = self.vertices().len() + accessory.start - self.character.cage().vertex_count;
         let range = start..start + accessory.topology.vertex_count;
         Some((&self.points[range.clone()], &self.normals[range]))
-    }
-
-    /// The joints in the bind pose, parents first.
-    pub fn joints(&self) -> &[Joint] {
-        &self.joints
     }
 }

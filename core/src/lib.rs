@@ -30,7 +30,7 @@
 //! | [`condition::Request`] | what is asked: any subset of the measures, sex, seed or z | plain data |
 //! | [`Body`] | one person in the bind pose, with joints and [`condition::Report`] | immutable; owns about 2 MB of vertices and normals, shares the character |
 //! | [`measure::Definitions`] | where each measure lies, as data | inside the model |
-//! | [`pose::RestPose`] | the joints at rest | plain data of a few kilobytes |
+//! | [`pose::Skeleton`] | the joints at rest | plain data of a few kilobytes |
 //! | [`pose::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
 //! | [`clip::Clip`], [`clip::Sampler`] | a motion; reads poses off it | a clip is immutable and shared, a sampler is two words |
 //! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one skinning of it | a skinner is immutable and shared, a job borrows the caller's buffers |
@@ -67,6 +67,7 @@ pub mod pose;
 pub mod random;
 pub mod retarget;
 pub mod scene;
+mod side;
 pub mod skeleton;
 pub mod skin;
 pub mod space;
@@ -75,3 +76,4 @@ mod testing;
 
 pub use body::Body;
 pub use error::{Error, Infeasible, Result};
+pub use side::Side;

@@ -9,10 +9,10 @@ use anthronet::model::Model;
 use anthronet::pose::limits::JointLimits;
 use anthronet::retarget::feet;
 use anthronet::retarget::feet::FeetOptions;
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 
 /// A small woman and a tall man.
-fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
+fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
     let model = Model::embedded().unwrap_or_else(|e| panic!("{e}"));
     [("small woman", Sex::Female, 1.49), ("tall man", Sex::Male, 1.99)]
         .map(|(name, sex, height)| {
@@ -20,17 +20,16 @@ fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
             let id = MeasureId::from_name("height").unwrap_or_else(|| panic!("no height"));
             request.measures[id.index()] = Some(height);
             let body = model.generate(&request).unwrap_or_else(|e| panic!("{e}"));
-            let rest = RestPose::of_joints(body.joints()).unwrap_or_else(|e| panic!("{e}"));
-            (name, Arc::new(rest))
+            (name, body.skeleton().clone())
         })
         .to_vec()
 }
 
 /// Radians that the worst joint of a clip is beyond its limits by.
 fn beyond_limits(clip: &Clip) -> f32 {
-    let limits = JointLimits::of_rig(clip.rest());
+    let limits = JointLimits::of_rig(clip.skeleton());
     (0..clip.frame_count())
-        .flat_map(|frame| limits.excess(clip.rest(), &clip.pose(frame)))
+        .flat_map(|frame| limits.excess(clip.skeleton(), &clip.pose(frame)))
         .fold(0.0, f32::max)
 }
 
@@ -61,7 +60,7 @@ fn feet_of_another_bodys_clip_are_held() {
         let ((_, source), (name, target)) = (&bodies[from], &bodies[to]);
         let walk = builtin("walk", source).unwrap();
         let rotations = (0..walk.frame_count()).flat_map(|f| walk.rotations(f).to_vec()).collect();
-        let height = |rest: &RestPose| rest.model_from_joints()[1].translation.y;
+        let height = |rest: &Skeleton| rest.model_from_joints()[1].translation.y;
         let scale = height(target) / height(source);
         let mut tracks = walk.translations().to_vec();
         tracks.iter_mut().flat_map(|t| &mut t.values).for_each(|v| *v *= scale);

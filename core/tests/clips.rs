@@ -11,13 +11,13 @@ fn every_clip_is_a_person_on_a_floor() {
         let report = &motion.report;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         for clip in &motion.clips {
-            let joints = clip.rest().model_from_joints();
+            let joints = clip.skeleton().model_from_joints();
             let height =
                 |y: &dyn Fn(f32, f32) -> f32, start: f32, joints: &[anthronet::math::RigidTransform]| {
                     joints.iter().map(|j| j.translation.y).fold(start, y)
                 };
             let rest = height(&f32::max, f32::MIN, &joints) - height(&f32::min, f32::MAX, &joints);
-            let parents = clip.rest().parents();
+            let parents = clip.skeleton().parents();
             let mut lows: Vec<f32> = (0..clip.frame_count())
                 .map(|f| height(&f32::min, f32::MAX, &clip.pose(f).model_from_joints(parents)))
                 .collect();
@@ -31,7 +31,7 @@ fn every_clip_is_a_person_on_a_floor() {
                 clip.frame_count(),
                 clip.frames_per_second(),
                 report.rate_found,
-                clip.rest().len(),
+                clip.skeleton().len(),
                 report.unit,
                 report.unit_found,
                 report.up,

@@ -16,7 +16,7 @@ fn unsided(measures: &Measurements) -> Measurements {
     out
 }
 
-/// All 36 measures, in whole units of so many metres.
+/// All measures, in whole units of so many metres.
 fn rounded(sex: Sex, measures: &Measurements, unit: f64) -> Request {
     let measures = measures.map(|m| Some((m / unit).round() * unit));
     Request { sex: Some(sex), measures, ..Request::default() }

@@ -10,8 +10,8 @@ use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Scene, SceneOptions};
-use anthronet::skeleton::humanoid;
-use anthronet::{Body, Error};
+use anthronet::skeleton::{RigJoint, SidedJoint};
+use anthronet::{Body, Error, Side};
 
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
@@ -118,34 +118,41 @@ fn derivatives_of_measures_match_finite_differences() {
 #[test]
 fn the_bind_pose_is_an_exact_t_on_the_ground() {
     let body = model().generate(&somebody(Sex::Male, 4)).unwrap();
-    let at = |name: &str| {
-        let j = body.skeleton().find(name).unwrap();
-        body.joints()[j].model_from_joint.translation
+    let at = |joint: RigJoint| {
+        let j = body.skeleton().rig_joint(joint).unwrap();
+        body.skeleton().bind()[j].translation
     };
-    for side in ["l", "r"] {
-        let shoulder = at(&format!("upperarm_{side}"));
-        for name in ["lowerarm", "hand", "upperarm_twist_02", "lowerarm_twist_01"] {
-            let joint = at(&format!("{name}_{side}"));
+    for side in Side::ALL {
+        let shoulder = at(SidedJoint::Upperarm.on(side));
+        let arm = [
+            SidedJoint::Lowerarm,
+            SidedJoint::Hand,
+            SidedJoint::UpperarmTwist02,
+            SidedJoint::LowerarmTwist01,
+        ];
+        for name in arm.map(|joint| joint.on(side)) {
+            let joint = at(name);
             // Rounded to what files give back: places there are relative to parents, and sums of those are off by a bit.
             let off = (joint - shoulder).with_x(0.0).length();
-            assert!(off < 1e-6, "{name}_{side}: {off} m off");
-            assert!((joint.x - shoulder.x) * if side == "l" { 1.0 } else { -1.0 } > 0.0, "+X is the left");
+            assert!(off < 1e-6, "{name}: {off} m off");
+            assert!((joint.x - shoulder.x) * side.sign() > 0.0, "+X is the left");
         }
     }
-    assert_eq!(at("Root").to_array(), [0.0; 3]);
-    assert_eq!((at("pelvis").x, at("pelvis").z), (0.0, 0.0));
+    assert_eq!(at(RigJoint::Root).to_array(), [0.0; 3]);
+    assert_eq!((at(RigJoint::Pelvis).x, at(RigJoint::Pelvis).z), (0.0, 0.0));
     let lowest = body.vertices().iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
     assert_eq!(lowest, 0.0);
     // Faces +Z: the nose, foremost of the head, is before the back of the head.
-    assert!(at("eye_l").z > at("head").z && at("eye_l").x > at("eye_r").x);
+    let [left, right] = SidedJoint::Eye.both().map(at);
+    assert!(left.z > at(RigJoint::Head).z && left.x > right.x);
 }
 
 #[test]
 fn the_vocabularies_name_the_joints_of_the_rig_and_no_others() {
-    let skeleton = model().character().skeleton();
+    let skeleton = model().character().joint_tree();
     let joints: BTreeSet<&str> = skeleton.names().iter().map(String::as_str).collect();
     assert_eq!(joints.len(), skeleton.len(), "names are unique");
-    assert_eq!(joints, humanoid::native_names().collect());
+    assert_eq!(joints, RigJoint::all().map(RigJoint::name).collect());
 }
 
 #[test]

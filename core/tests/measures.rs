@@ -119,7 +119,7 @@ fn the_chest_is_the_cut_at_the_nipples() {
         // Anything at that height but the arms: nothing reaches farther out than the chest itself does.
         let quads = &body.character().subdivision().refined().quads;
         let armpit = body.skeleton().find("upperarm_l").unwrap();
-        let arm = f64::from(body.joints()[armpit].model_from_joint.translation.y);
+        let arm = f64::from(body.skeleton().bind()[armpit].translation.y);
         if arm - level.y < 0.09 {
             println!("seed {seed}: left out, the arms hang into the plane");
             continue;

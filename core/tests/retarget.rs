@@ -2,15 +2,12 @@
 
 mod common;
 
-use std::sync::Arc;
-
 use anthronet::condition::Request;
 use anthronet::format::ReadOptions;
 use anthronet::format::motion::read;
 use anthronet::measure::Sex;
 use anthronet::model::Model;
 use anthronet::retarget::{JointMap, Retargeter, TransferOptions, direction_error};
-use anthronet::skeleton::RestPose;
 
 #[test]
 fn limbs_of_real_clips_point_where_the_sources_point() {
@@ -20,15 +17,15 @@ fn limbs_of_real_clips_point_where_the_sources_point() {
     }
     let request = Request { sex: Some(Sex::Female), ..Request::default() };
     let body = Model::embedded().unwrap().generate(&request).unwrap();
-    let rest = Arc::new(RestPose::of_joints(body.joints()).unwrap());
+    let rest = body.skeleton().clone();
     let resting = rest.model_from_joints();
     let feet = ["foot_l", "foot_r", "ball_l", "ball_r"].map(|name| rest.find(name).unwrap());
     for path in paths {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         for clip in read(&path, &ReadOptions::default()).unwrap().clips {
-            let map = JointMap::find(clip.rest(), &Default::default()).unwrap();
+            let map = JointMap::find(clip.skeleton(), &Default::default()).unwrap();
             let options = TransferOptions::default();
-            let retargeter = Retargeter::new(clip.rest(), rest.clone(), &map, &options).unwrap();
+            let retargeter = Retargeter::new(clip.skeleton(), rest.clone(), &map, &options).unwrap();
             let found = retargeter.retarget(&clip).unwrap();
             let error = direction_error(&clip, &found, &map);
             let report = map.report();

@@ -1,9 +1,6 @@
 //! Bodies: what a model makes of a request, and the account of it.
 
-use std::sync::Arc;
-
 use anthronet::measure::Sex;
-use anthronet::skeleton::RestPose;
 use anthronet::skeleton::humanoid::renamed;
 
 use crate::Result;
@@ -15,13 +12,11 @@ use crate::scene::Scene;
 
 pub(crate) struct Body {
     pub(crate) body: anthronet::Body,
-    pub(crate) rest: Arc<RestPose>,
 }
 
 impl Body {
     pub(crate) fn new(body: anthronet::Body) -> Result<Box<Self>> {
-        let rest = Arc::new(RestPose::of_joints(body.joints())?);
-        Ok(Box::new(Self { body, rest }))
+        Ok(Box::new(Self { body }))
     }
 
     pub(crate) fn summary(&self) -> ffi::BodySummary {
@@ -38,7 +33,7 @@ impl Body {
             solve_residual: report.solve_residual,
             iterations: report.iterations as u32,
             converged: report.converged,
-            joint_count: self.body.joints().len(),
+            joint_count: self.body.skeleton().len(),
         }
     }
 
@@ -74,24 +69,26 @@ impl Body {
 
     pub(crate) fn joints(&self, space: ffi::Space) -> Result<Vec<ffi::Joint>> {
         let space = space.meaning()?;
-        let joints =
-            self.body.joints().iter().zip(&self.rest.pose().locals).map(|(joint, rest)| ffi::Joint {
-                name: joint.name.clone(),
-                parent: joint.parent.map_or(-1, |parent| parent as i32),
-                length: joint.length,
-                parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
-                model_from_joint: space
-                    .model_from_joint_matrix(joint.model_from_joint.into())
-                    .to_cols_array(),
+        let skeleton = self.body.skeleton();
+        let joints = skeleton.bind().iter().enumerate().map(|(joint, model_from_joint)| {
+            let parent = skeleton.parents()[joint];
+            let local = skeleton.rest_pose().locals[joint];
+            ffi::Joint {
+                name: skeleton.names()[joint].clone(),
+                parent: parent.map_or(-1, |parent| parent as i32),
+                length: skeleton.bone_length(joint).unwrap_or_default(),
+                parent_from_joint: local.parent_from_joint_in(space, parent).into(),
+                model_from_joint: space.model_from_joint_matrix((*model_from_joint).into()).to_cols_array(),
                 joint_from_model: space
-                    .joint_from_model_matrix(joint.model_from_joint.inverse().into())
+                    .joint_from_model_matrix(model_from_joint.inverse().into())
                     .to_cols_array(),
-            });
+            }
+        });
         Ok(joints.collect())
     }
 
     pub(crate) fn joint_name(&self, joint: usize, names: ffi::JointNames) -> Result<String> {
-        Ok(renamed(&at(self.body.joints(), joint, "joint")?.name, names.meaning()?).into_owned())
+        Ok(renamed(at(self.body.skeleton().names(), joint, "joint")?, names.meaning()?).into_owned())
     }
 
     pub(crate) fn mesh(&self, options: &ffi::MeshOptions) -> Result<Box<Mesh>> {

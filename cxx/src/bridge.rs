@@ -298,7 +298,7 @@ pub(crate) mod ffi {
         /// The version of the library, such as `0.1.0`.
         fn version() -> &'static str;
 
-        /// Names of the 36 measures, in order.
+        /// Names of the measures, in order.
         fn measure_names() -> Vec<String>;
 
         /// The bones of the standard humanoid, 55.
@@ -400,7 +400,7 @@ pub(crate) mod ffi {
         /// Sex, seed, mass and how the solve went.
         fn summary(self: &Body) -> BodySummary;
 
-        /// The 36 measures with what was asked, in the order of `measure_names`.
+        /// All measures with what was asked, in the order of `measure_names`.
         fn measures(self: &Body) -> Vec<MeasureReport>;
 
         /// What the body has of a measure, by its name with its side, metres.

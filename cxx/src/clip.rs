@@ -35,7 +35,7 @@ impl From<clip::Clip> for Box<Clip> {
 
 impl Clip {
     pub(crate) fn builtin(name: &str, body: &Body) -> Result<Box<Self>> {
-        Ok(clip::builtin(name, &body.rest)?.into())
+        Ok(clip::builtin(name, body.body.skeleton())?.into())
     }
 
     pub(crate) fn clip(&self) -> &clip::Clip {
@@ -55,7 +55,7 @@ impl Clip {
     }
 
     pub(crate) fn joint_count(&self) -> usize {
-        self.clip.rest().len()
+        self.clip.skeleton().len()
     }
 
     pub(crate) fn frames_per_second(&self) -> f64 {
@@ -119,13 +119,13 @@ impl Clip {
     }
 
     pub(crate) fn joint_mask(&self, joint: &str) -> Result<Vec<f32>> {
-        let mask = JointMask::below(self.clip.rest(), &[joint])?;
+        let mask = JointMask::below(self.clip.skeleton(), &[joint])?;
         Ok((0..self.joint_count()).map(|joint| mask.weight(joint)).collect())
     }
 
     pub(crate) fn blend_masked(&self, other: &Self, weight: f32, mask: &[f32]) -> Result<Box<Self>> {
         finite("weight", weight.into())?;
-        let mask = JointMask::of_weights(self.clip.rest(), mask)?;
+        let mask = JointMask::of_weights(self.clip.skeleton(), mask)?;
         Ok(clip::blend(&self.clip, &other.clip, weight, Some(&mask))?.into())
     }
 
@@ -133,7 +133,7 @@ impl Clip {
         finite("weight", weight.into())?;
         let mask = match mask {
             [] => None,
-            weights => Some(JointMask::of_weights(self.clip.rest(), weights)?),
+            weights => Some(JointMask::of_weights(self.clip.skeleton(), weights)?),
         };
         let reference = layer.clip.pose(0);
         Ok(clip::additive(&self.clip, &layer.clip, &reference, weight, mask.as_ref())?.into())
@@ -152,7 +152,7 @@ impl Clip {
         space: Space,
         out: &mut [ffi::Transform],
     ) {
-        let parents = self.clip.rest().parents();
+        let parents = self.clip.skeleton().parents();
         if to_model {
             anthronet::skeleton::model_from_joints(parents, &pose.locals, model);
             for (out, joint) in out.iter_mut().zip(model) {
@@ -202,7 +202,7 @@ impl Motion {
     ) -> Result<Box<Clip>> {
         let options = retarget_options(options)?;
         let source = at(&self.0.clips, clip, "clip")?;
-        let (clip, report) = retarget::retarget_clip(source, &body.rest, &options)?;
+        let (clip, report) = retarget::retarget_clip(source, body.body.skeleton(), &options)?;
         let report = json("retarget report", &report)?;
         Ok(Box::new(Clip { clip, report }))
     }

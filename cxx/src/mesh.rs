@@ -28,7 +28,8 @@ impl Mesh {
         Ok(Box::new(Self {
             parts: parts.into_iter().map(MeshPart).collect(),
             bind: body
-                .rest
+                .body
+                .skeleton()
                 .model_from_joints()
                 .iter()
                 .map(|joint| joint.model_from_joint_in(space))

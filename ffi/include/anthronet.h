@@ -647,7 +647,7 @@ anthronet_status anthronet_model_measure_range(const struct anthronet_model *mod
                                                double *out_max,
                                                struct anthronet_error *error);
 
-// Number of measures: 36.
+// Number of measures.
 uint32_t anthronet_measure_count(void);
 
 // The name of a measure, such as `waist_circumference`; valid for ever.
@@ -663,7 +663,7 @@ anthronet_status anthronet_measure_index(const char *name,
 
 // Measures a body in its bind pose at any level of detail, sculpted or not: `positions` are the vertices of the body
 // alone in the model's order, three floats each, `stride` bytes apart (0: packed), metres, in `from_space`. Fills
-// `count` (36) measures, metres; `out_measured` may be NULL.
+// `count` measures, as many as `anthronet_measure_count` says, metres; `out_measured` may be NULL.
 anthronet_status anthronet_measure_mesh(const struct anthronet_model *model,
                                         const void *positions,
                                         uint32_t vertex_count,
@@ -719,14 +719,14 @@ anthronet_status anthronet_request_set_measure(struct anthronet_request *request
                                                struct anthronet_error *error);
 
 // Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-// `anthronet_measure_name`; `count` is their number, 36. What `metres` holds of an open measure does not matter.
+// `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
 anthronet_status anthronet_request_set_measures(struct anthronet_request *request,
                                                 const double *metres,
                                                 const uint8_t *given,
                                                 uint32_t count,
                                                 struct anthronet_error *error);
 
-// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` (36) entries each.
+// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
 anthronet_status anthronet_request_measures(const struct anthronet_request *request,
                                             double *out_metres,
                                             uint8_t *out_given,
@@ -783,7 +783,7 @@ anthronet_status anthronet_body_report(const struct anthronet_body *body,
                                        struct anthronet_bytes **out_json,
                                        struct anthronet_error *error);
 
-// The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+// The report's measures: fills `count` entries, one per measure, in the order of `anthronet_measure_name`.
 anthronet_status anthronet_body_measures(const struct anthronet_body *body,
                                          struct anthronet_measure_report *out_measures,
                                          uint32_t count,

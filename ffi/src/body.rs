@@ -1,32 +1,28 @@
 //! Bodies: what a model makes of a request, and the account of it.
 
-use std::sync::Arc;
-
 use anthronet::Body;
 use anthronet::condition::Filled;
 use anthronet::measure::{MEASURE_COUNT, Sex};
-use anthronet::skeleton::RestPose;
+use anthronet::skeleton::Skeleton;
 
 use crate::bytes::anthronet_bytes;
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut};
 use crate::pointer::{Out, OutSlice, exactly, free, read};
 use crate::request::{ANTHRONET_SEX_FEMALE, ANTHRONET_SEX_MALE, anthronet_request};
-use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
+use crate::status::{anthronet_error, anthronet_status, guard};
 
 /// A person in the bind pose, with the report of how it was made. Immutable.
 pub struct anthronet_body {
     pub(crate) body: Body,
-    pub(crate) rest: Arc<RestPose>,
 }
 
 impl anthronet_body {
-    pub(crate) fn new(body: Body) -> Outcome<Self> {
-        let rest = Arc::new(RestPose::of_joints(body.joints())?);
+    pub(crate) fn new(body: Body) -> Self {
         for warning in &body.report().warnings {
             crate::log::warning(warning);
         }
-        Ok(Self { body, rest })
+        Self { body }
     }
 }
 
@@ -94,7 +90,7 @@ pub unsafe extern "C" fn anthronet_generate(
     guard(error, || {
         let out = Out::new(out_body, "out_body")?;
         let (model, request) = (read(model, "model")?, read(request, "request")?);
-        out.give(anthronet_body::new(model.0.generate(&request.0)?)?);
+        out.give(anthronet_body::new(model.0.generate(&request.0)?));
         Ok(())
     })
 }
@@ -112,7 +108,7 @@ pub unsafe extern "C" fn anthronet_interpolate(
     guard(error, || {
         let out = Out::new(out_body, "out_body")?;
         let (model, from, to) = (read(model, "model")?, read(from, "from")?, read(to, "to")?);
-        out.give(anthronet_body::new(model.0.interpolate(&from.0, &to.0, t)?)?);
+        out.give(anthronet_body::new(model.0.interpolate(&from.0, &to.0, t)?));
         Ok(())
     })
 }
@@ -137,7 +133,7 @@ pub unsafe extern "C" fn anthronet_body_report(
     })
 }
 
-/// The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+/// The report's measures: fills `count` entries, one per measure, in the order of `anthronet_measure_name`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_body_measures(
     body: *const anthronet_body,
@@ -187,7 +183,7 @@ pub unsafe extern "C" fn anthronet_body_summarise(
             solve_residual: report.solve_residual,
             iterations: report.iterations as u32,
             converged: report.converged.into(),
-            joint_count: body.joints().len() as u32,
+            joint_count: body.skeleton().len() as u32,
             warning_count: report.warnings.len() as u32,
         });
         Ok(())

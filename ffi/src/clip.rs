@@ -95,7 +95,9 @@ pub unsafe extern "C" fn anthronet_clip_builtin(
     out_clip: *mut *mut anthronet_clip,
     error: *mut anthronet_error,
 ) -> anthronet_status {
-    make(out_clip, error, || Ok(clip::builtin(text(name, name_length, "name")?, &read(body, "body")?.rest)?))
+    make(out_clip, error, || {
+        Ok(clip::builtin(text(name, name_length, "name")?, read(body, "body")?.body.skeleton())?)
+    })
 }
 
 /// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
@@ -114,7 +116,7 @@ pub unsafe extern "C" fn anthronet_clip_new(
 ) -> anthronet_status {
     make(out_clip, error, || {
         let name = text(name, name_length, "name")?.to_owned();
-        let rest = &read(body, "body")?.rest;
+        let rest = read(body, "body")?.body.skeleton();
         let joints = rest.len() as u64;
         at_most("count", "transforms", (MAX_FRAMES as u64 * joints).min(MAX_ROTATIONS as u64), count)?;
         if !count.is_multiple_of(joints) {
@@ -145,7 +147,7 @@ pub unsafe extern "C" fn anthronet_clip_describe(
         out.write(&anthronet_clip_info {
             struct_size: 0,
             frame_count: clip.frame_count() as u32,
-            joint_count: clip.rest().len() as u32,
+            joint_count: clip.skeleton().len() as u32,
             reserved: 0,
             frames_per_second: clip.frames_per_second(),
             duration: clip.duration(),
@@ -173,7 +175,7 @@ pub unsafe extern "C" fn anthronet_clip_sample(
         let (to_model, space) = (to_model(relative)?, space(in_space)?);
         time(seconds)?;
         let clip = &read(clip, "clip")?.0;
-        exactly("count", clip.rest().len(), count.into())?;
+        exactly("count", clip.skeleton().len(), count.into())?;
         let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
         scratch(|pose, model| {
             Sampler::new(clip, wrap).sample_into(seconds, pose);
@@ -196,7 +198,7 @@ pub unsafe extern "C" fn anthronet_clip_bake(
     guard(error, || {
         let (to_model, space) = (to_model(relative)?, space(in_space)?);
         let clip = &read(clip, "clip")?.0;
-        exactly("count", clip.frame_count() * clip.rest().len(), count)?;
+        exactly("count", clip.frame_count() * clip.skeleton().len(), count)?;
         let mut out = OutSlice::new(out_joints, count, "out_joints")?;
         scratch(|pose, model| {
             for frame in 0..clip.frame_count() {
@@ -299,7 +301,7 @@ pub unsafe extern "C" fn anthronet_clip_additive(
         let reference = match reference.is_null() && count == 0 {
             true => layer.pose(0),
             false => {
-                let rest = base.rest();
+                let rest = base.skeleton();
                 exactly("count", rest.len(), count.into())?;
                 let joints = slice(reference, count.into(), "reference")?;
                 Pose { locals: crate::motion::locals(joints, rest.parents(), space) }
@@ -325,7 +327,7 @@ pub unsafe extern "C" fn anthronet_clip_joint_mask(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     guard(error, || {
-        let rest = read(clip, "clip")?.0.rest();
+        let rest = read(clip, "clip")?.0.skeleton();
         exactly("count", rest.len(), count.into())?;
         let mut out = OutSlice::new(out_mask, count.into(), "out_mask")?;
         let mask = JointMask::below(rest, &[text(name, name_length, "name")?])?;
@@ -336,8 +338,8 @@ pub unsafe extern "C" fn anthronet_clip_joint_mask(
 
 /// A mask of the caller's for the joints of a clip.
 fn joint_mask(clip: &Clip, mask: *const f32, count: u32) -> Outcome<JointMask> {
-    exactly("mask", clip.rest().len(), count.into())?;
-    Ok(JointMask::of_weights(clip.rest(), slice(mask, count.into(), "mask")?)?)
+    exactly("mask", clip.skeleton().len(), count.into())?;
+    Ok(JointMask::of_weights(clip.skeleton(), slice(mask, count.into(), "mask")?)?)
 }
 
 /// Two clips of one body one after the other, overlapping by `seconds`.
@@ -393,7 +395,7 @@ fn write(
     space: Space,
     out: &mut OutSlice<anthronet_transform>,
 ) {
-    let parents = clip.rest().parents();
+    let parents = clip.skeleton().parents();
     if to_model {
         anthronet::skeleton::model_from_joints(parents, locals, model);
         out.write(model.iter().map(|joint| joint.model_from_joint_in(space).into()));

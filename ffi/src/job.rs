@@ -84,7 +84,7 @@ impl Shared {
             let make = || {
                 #[cfg(feature = "test-hooks")]
                 crate::test_hooks::before_a_body();
-                anthronet_body::new(model.0.generate(request)?).map(Box::new)
+                Ok(Box::new(anthronet_body::new(model.0.generate(request)?)))
             };
             let made = caught(make);
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = Slot::Made(made);

@@ -33,7 +33,7 @@ pub struct anthronet_measured {
 // SAFETY: numbers alone, the size first.
 unsafe impl Descriptor for anthronet_measured {}
 
-/// Number of measures: 36.
+/// Number of measures.
 #[unsafe(no_mangle)]
 pub extern "C" fn anthronet_measure_count() -> u32 {
     MEASURE_COUNT as u32
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn anthronet_measure_index(
 
 /// Measures a body in its bind pose at any level of detail, sculpted or not: `positions` are the vertices of the body
 /// alone in the model's order, three floats each, `stride` bytes apart (0: packed), metres, in `from_space`. Fills
-/// `count` (36) measures, metres; `out_measured` may be NULL.
+/// `count` measures, as many as `anthronet_measure_count` says, metres; `out_measured` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_measure_mesh(
     model: *const anthronet_model,

@@ -308,7 +308,8 @@ impl anthronet_mesh {
         Ok(Self {
             parts: Scene::from_body(&body.body, &asked)?.into_buffers(layout, space)?,
             bind: body
-                .rest
+                .body
+                .skeleton()
                 .model_from_joints()
                 .iter()
                 .map(|joint| joint.model_from_joint_in(space))

@@ -4,12 +4,11 @@ use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
 
-use anthronet::clip;
 use anthronet::clip::{Clip, MAX_FRAMES, MAX_ROTATIONS};
 use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::math::RigidTransform;
 use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetSwitches};
-use anthronet::skeleton::{MAX_JOINTS, RestPose};
+use anthronet::skeleton::{MAX_JOINTS, Skeleton};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
@@ -188,7 +187,7 @@ pub unsafe extern "C" fn anthronet_motion_new(
         });
         let parents = parents.collect::<Outcome<Vec<_>>>()?;
         let rest = locals(slice(source.rest, joints, "rest")?, &parents, space);
-        let rest = RestPose::new(
+        let rest = Skeleton::new(
             names.collect::<Outcome<_>>()?,
             parents,
             rest,
@@ -282,7 +281,8 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
         let motion = &read(motion, "motion")?.0;
         let body = read(body, "body")?;
         let options = options_of(&described(retarget_options, "options")?)?;
-        let (clip, report) = retarget::retarget_clip(at(&motion.clips, clip, "clip")?, &body.rest, &options)?;
+        let (clip, report) =
+            retarget::retarget_clip(at(&motion.clips, clip, "clip")?, body.body.skeleton(), &options)?;
         let report_json = json(&report)?;
         if !report.joints.unmatched.is_empty() {
             crate::log::info(&format!("joints that drive nothing: {}", report.joints.unmatched.join(", ")));

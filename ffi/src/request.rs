@@ -118,7 +118,7 @@ pub unsafe extern "C" fn anthronet_request_set_measure(
 }
 
 /// Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-/// `anthronet_measure_name`; `count` is their number, 36. What `metres` holds of an open measure does not matter.
+/// `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_measures(
     request: *mut anthronet_request,
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn anthronet_request_set_measures(
     })
 }
 
-/// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` (36) entries each.
+/// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_measures(
     request: *const anthronet_request,

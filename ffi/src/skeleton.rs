@@ -70,17 +70,21 @@ pub unsafe extern "C" fn anthronet_body_joints(
 ) -> anthronet_status {
     guard(error, || {
         let space = space(in_space)?;
-        let body = read(body, "body")?;
-        let joints = body.body.joints();
-        exactly("count", joints.len(), count.into())?;
+        let skeleton = read(body, "body")?.body.skeleton();
+        exactly("count", skeleton.len(), count.into())?;
         let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
-        out.write(joints.iter().zip(&body.rest.pose().locals).map(|(joint, rest)| anthronet_joint {
-            parent: joint.parent.map_or(-1, |parent| parent as i32),
-            length: joint.length,
-            parent_from_joint: rest.parent_from_joint_in(space, joint.parent).into(),
-            model_from_joint: space.model_from_joint_matrix(joint.model_from_joint.into()).to_cols_array(),
-            joint_from_model:
-                space.joint_from_model_matrix(joint.model_from_joint.inverse().into()).to_cols_array(),
+        out.write(skeleton.bind().iter().enumerate().map(|(joint, model_from_joint)| {
+            let parent = skeleton.parents()[joint];
+            let local = skeleton.rest_pose().locals[joint];
+            anthronet_joint {
+                parent: parent.map_or(-1, |parent| parent as i32),
+                length: skeleton.bone_length(joint).unwrap_or_default(),
+                parent_from_joint: local.parent_from_joint_in(space, parent).into(),
+                model_from_joint: space.model_from_joint_matrix((*model_from_joint).into()).to_cols_array(),
+                joint_from_model: space
+                    .joint_from_model_matrix(model_from_joint.inverse().into())
+                    .to_cols_array(),
+            }
         }));
         Ok(())
     })
@@ -98,8 +102,8 @@ pub unsafe extern "C" fn anthronet_body_joint_name(
     guard(error, || {
         let out = Out::new(out_name, "out_name")?;
         let names = joint_names(names)?;
-        let joint = at(read(body, "body")?.body.joints(), joint, "joint")?;
-        out.write(anthronet_text::of(renamed_in_place(&joint.name, names)));
+        let native = at(read(body, "body")?.body.skeleton().names(), joint, "joint")?;
+        out.write(anthronet_text::of(renamed_in_place(native, names)));
         Ok(())
     })
 }

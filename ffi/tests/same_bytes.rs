@@ -25,7 +25,6 @@ mod library;
 use std::ffi::{c_char, c_void};
 use std::fmt::Write;
 use std::path::Path;
-use std::sync::Arc;
 
 use anthronet::Body;
 use anthronet::clip::builtin;
@@ -36,7 +35,6 @@ use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Layout, Scene, SceneOptions};
-use anthronet::skeleton::RestPose;
 use anthronet::space::Space;
 use libloading::{Library, Symbol};
 use library::{ErrorOut, library};
@@ -94,7 +92,7 @@ fn direct(model: &Model, request: &Request, number: usize) -> anthronet::Result<
     let lod = Lod::ALL[number % 4];
     let mut scene = Scene::from_body(&body, &SceneOptions { lod, ..SceneOptions::default() })?;
     if walks(number) {
-        scene.clips.push(builtin("walk", &Arc::new(RestPose::of_joints(body.joints())?))?);
+        scene.clips.push(builtin("walk", &body.skeleton().clone())?);
     }
     let file = hash(&scene_to_bytes(&scene, "glb", &WriteOptions::default())?);
     Ok([file, in_unity(&body, scene)?])
@@ -116,10 +114,11 @@ fn in_unity(body: &Body, scene: Scene) -> anthronet::Result<String> {
         sha.update(bytemuck::cast_slice(&used.collect::<Vec<_>>()));
         sha.update(bytemuck::cast_slice(weights));
     }
-    let rest = RestPose::of_joints(body.joints())?;
-    for (joint, local) in body.joints().iter().zip(&rest.pose().locals) {
-        let bind = space.joint_from_model_matrix(joint.model_from_joint.inverse().into());
-        let local = local.parent_from_joint_in(space, joint.parent);
+    let skeleton = body.skeleton();
+    let joints = skeleton.bind().iter().zip(skeleton.parents()).zip(&skeleton.rest_pose().locals);
+    for ((model_from_joint, parent), local) in joints {
+        let bind = space.joint_from_model_matrix(model_from_joint.inverse().into());
+        let local = local.parent_from_joint_in(space, *parent);
         sha.update(bytemuck::cast_slice(&bind.to_cols_array()));
         sha.update(bytemuck::cast_slice(&local.rotation.to_array()));
         sha.update(bytemuck::cast_slice(&local.translation.to_array()));

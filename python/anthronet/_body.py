@@ -111,12 +111,12 @@ class Body(Owner):
 
     @property
     def measures(self) -> Dict[str, float]:
-        """All 36 measures of the body by name, in the order of `MEASURES`, metres. A copy."""
+        """All measures of the body by name, in the order of `MEASURES`, metres. A copy."""
         return dict(zip(MEASURES, self.measure_reports["obtained"].tolist()))
 
     @property
     def measure_reports(self) -> Array:
-        """One row per measure, in the order of `MEASURES`: (36,) of `MEASURE_REPORT`.
+        """One row per measure, in the order of `MEASURES`, of the type `MEASURE_REPORT`.
 
         Fields: `asked`, `obtained`, `residual`, the 90 % interval `low90` to `high90` (metres), `percentile`, `given`
         (1 or 0), `filled` (0 with the mean, 1 by a draw). `asked` and `residual` are 0 where `given` is. A copy.

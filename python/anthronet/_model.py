@@ -19,7 +19,7 @@ from ._request import MEASURES, Request
 class Measured(NamedTuple):
     """What a tape and the scales say of a mesh."""
 
-    #: All 36 measures by name, metres.
+    #: All measures by name, metres.
     measures: Dict[str, float]
     #: Mass, kilograms.
     mass_kg: float

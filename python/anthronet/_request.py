@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 from . import _arguments, _native
 from ._library import Handle, bytes_of, call, json_of, lib, new_handle, number_of, text_of
 
-#: Names of the 36 measures, in the order of all arrays of measures.
+#: Names of the measures, in the order of all arrays of measures.
 MEASURES: Tuple[str, ...] = tuple(text_of(lib.anthronet_measure_name, i) for i in range(lib.anthronet_measure_count()))
 
 _SEXES = {None: _native.SEX_ANY, "female": _native.SEX_FEMALE, "male": _native.SEX_MALE}

@@ -1,4 +1,4 @@
-"""Characters as files, read back."""
+"""Exported files, read back."""
 
 import shutil
 
@@ -29,7 +29,7 @@ def _export(name, **options):
 
 
 def _read(path, body):
-    """The clip of a file on the body that it was written for: (frames, joints, 3), Blender's axes."""
+    """Joint positions of a file's clip, retargeted to the body that it was exported from: (frames, joints, 3)."""
     import anthronet
 
     motion = anthronet.open_motion(str(path))
@@ -56,18 +56,18 @@ def exporting():
     scene.frame_end = 5
     for ending, start in ((".usdc", b"PXR-USDC"), (".usda", b"#usda"), (".vrm", b"glTF"), (".obj", None)):
         path = _export(f"ending{ending}")
-        check(f"a script's ending is the format: {ending}", start is None or path.read_bytes().startswith(start))
-    check("a format makes the ending", _export("plain", format=".glb") and (home / "plain.glb").exists())
-    check("without either it is glTF", _export("bare") and (home / "bare.glb").exists())
+        check(f"the extension of a script's path is the format: {ending}", start is None or path.read_bytes().startswith(start))
+    check("a format decides on the extension", _export("plain", format=".glb") and (home / "plain.glb").exists())
+    check("without format and extension it is glTF", _export("bare") and (home / "bare.glb").exists())
     scene.frame_set(5)
     message = failure(lambda: bpy.ops.anthronet.character_export(filepath="/nowhere/a.glb"))
-    check("a failed export puts the frame back", message and scene.frame_current == 5, message)
+    check("after a failed export the scene is at its earlier frame", message and scene.frame_current == 5, message)
     _reading_back(character)
     posing(character)
 
 
 def _reading_back(character):
-    """The files in Blender's own importers, which share nothing with the library."""
+    """The files, read by Blender's own importers."""
     expected = expected_positions(character)
     shutil.copy(home / "ending.vrm", home / "vrm.glb")
     # The USD of Blender 4.2 is older than the binary files of today's; it reads text.
@@ -104,7 +104,7 @@ def _reading_back(character):
 
 
 def posing(character):
-    """A pose without an action, constraints, the object's own way."""
+    """Export of a pose, of motion by constraints, of motion of the object."""
     scene, body = bpy.context.scene, generated(character)
     character.animation_data_clear()
     scene.frame_start, scene.frame_end = 1, 12
@@ -113,7 +113,7 @@ def posing(character):
     import anthronet
 
     rest = _export("rest.glb")
-    check("a rest pose is no motion", failure_of_motion(rest), str(rest))
+    check("a rest pose is exported without motion", _has_no_motion(rest), str(rest))
     bone = character.pose.bones["forearm.L"]
     bone.rotation_quaternion = (0.9, 0.43589, 0, 0)
     there = joints(character, body)
@@ -134,29 +134,29 @@ def posing(character):
         poses.append(joints(character, body))
     read = _read(_export("constraint.glb"), body)
     off = np.abs(read - np.array(poses)).max()
-    way = np.ptp(poses, axis=0).max()
-    check("motion of constraints is exported", way > 0.1 and off < 2e-3, f"{1000 * off:.2f} mm of {way:.2f} m")
+    distance = np.ptp(poses, axis=0).max()
+    check("motion of constraints is exported", distance > 0.1 and off < 2e-3, f"{1000 * off:.2f} mm of {distance:.2f} m")
 
     character.location = (2, 3, 0)
     character.keyframe_insert("location", frame=1)
     character.location = (2, 2, 0)
     character.keyframe_insert("location", frame=12)
     hips = list(body.joint_names()).index("pelvis")
-    way = _read(_export("way.glb"), body)[:, hips]
-    step = way[-1] - way[0]
-    check("the way of the object is exported", np.allclose(step, (0, -1, 0), atol=2e-3), str(step))
-    check("from where it is at the first frame", np.abs(way[0][:2]).max() < 0.2, str(way[0]))
+    path = _read(_export("root_motion.glb"), body)[:, hips]
+    step = path[-1] - path[0]
+    check("motion of the object is exported as root motion", np.allclose(step, (0, -1, 0), atol=2e-3), str(step))
+    check("root motion is relative to the first frame", np.abs(path[0][:2]).max() < 0.2, str(path[0]))
     placed = _read(_export("placed.glb", use_world=True), body)[:, hips]
-    check("or from the scene's origin", np.allclose(placed - way, (2, 3, 0), atol=2e-3), str(placed[0] - way[0]))
+    check("or in world space", np.allclose(placed - path, (2, 3, 0), atol=2e-3), str(placed[0] - path[0]))
 
     surface = mesh_of(character)
     moved = positions(surface.data).copy()
     moved[3] += 0.1
     place(surface.data, moved)
-    check("a sculpted mesh is written as its measures have it", _export("sculpted.obj").exists())
+    check("a character with a sculpted mesh is exported", _export("sculpted.obj").exists())
 
 
-def failure_of_motion(path):
+def _has_no_motion(path):
     """Whether a file has no motion."""
     import anthronet
 

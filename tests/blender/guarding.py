@@ -1,4 +1,4 @@
-"""What the extension refuses, and that a change is whole or none."""
+"""Changes that are rejected, and that a change is applied completely or not at all."""
 
 import json
 
@@ -22,16 +22,16 @@ from blender.harness import (
 )
 
 
-def _refused(name, character, expected):
-    """A slider that is refused in words, and the operators with it; nothing moves."""
-    live = service("live")
+def _check_rejected(name, character, expected):
+    """Checks that sliders and operators say why a character cannot be changed."""
+    regeneration = service("regeneration")
     settings = character.anthronet
     before = settings.height
     settings.height = before + 0.02
-    told = settings.error
-    check(f"{name}: a slider says why not", expected in told, told)
-    poll = live.refusal(character, bpy.context) or ""
-    check(f"{name}: so do operators", expected in poll and not bpy.ops.anthronet.open_measures.poll(), poll)
+    error = settings.error
+    check(f"{name}: the error of a slider has the reason", expected in error, error)
+    poll = regeneration.reason_not_editable(character, bpy.context) or ""
+    check(f"{name}: so do operators' polls", expected in poll and not bpy.ops.anthronet.open_measures.poll(), poll)
     settings.height = before
 
 
@@ -43,25 +43,32 @@ def refusing():
     select(surface)
     for mode, words in (("EDIT", "edit mesh mode"), ("SCULPT", "sculpt mode"), ("VERTEX_PAINT", "vertex mode")):
         bpy.ops.object.mode_set(mode=mode)
-        _refused(f"{mode.lower()} mode", character, "Leave ")
+        _check_rejected(f"{mode.lower()} mode", character, "Leave ")
         if mode == "EDIT":
             message = failure(bpy.ops.anthronet.measure_selected)
-            check("edit mode: measuring says why not", "edit mode" in message and "Traceback" not in message, message)
-        check(f"{mode.lower()} mode stays", surface.mode == mode)
+            check("edit mode: Measure reports the reason", "edit mode" in message and "Traceback" not in message, message)
+        check(f"Blender stays in {mode.lower()} mode", surface.mode == mode)
         bpy.ops.object.mode_set(mode="OBJECT")
     select(character)
     bpy.ops.object.mode_set(mode="POSE")
     select(surface, character)
     bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-    _refused("weight paint over a pose", character, "weight")
-    check("and both modes stay", (surface.mode, character.mode) == ("WEIGHT_PAINT", "POSE"), character.mode)
+    _check_rejected("weight paint over a pose", character, "weight")
+    check(
+        "weight paint over a pose: both objects stay in their modes",
+        (surface.mode, character.mode) == ("WEIGHT_PAINT", "POSE"),
+        character.mode,
+    )
     bpy.ops.object.mode_set(mode="OBJECT")
     select(character)
     if character.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    check("a refused change moves nothing", np.array_equal(positions(surface.data), kept))
+    check("a rejected change moves no vertices", np.array_equal(positions(surface.data), kept))
     character.anthronet.height = 1.71
-    check("afterwards it is edited on", np.array_equal(positions(surface.data), expected_positions(character)))
+    check(
+        "back in object mode the character can be changed",
+        np.array_equal(positions(surface.data), expected_positions(character)),
+    )
 
     collection = bpy.data.collections.new("away")
     bpy.context.scene.collection.children.link(collection)
@@ -71,24 +78,24 @@ def refusing():
     bpy.context.view_layer.active_layer_collection = layer
     count = len(bpy.data.objects)
     message = failure(lambda: bpy.ops.anthronet.character_add(sex="MALE"))
-    check("a hidden collection is refused", "hidden" in message and len(bpy.data.objects) == count, message)
+    check("no character is added to a hidden collection", "hidden" in message and len(bpy.data.objects) == count, message)
     collection.hide_viewport = False
     layer.exclude = True
     message = failure(lambda: bpy.ops.anthronet.character_add(sex="MALE"))
     strays = [ob.name for ob in bpy.data.objects if ob.name not in bpy.context.view_layer.objects]
-    check("nothing strays where the active collection is excluded", not strays, f"{strays} {message}")
+    check("no object is added to an excluded collection", not strays, f"{strays} {message}")
     layer.exclude = False
     bpy.context.view_layer.active_layer_collection = layer
     outside = add(sex="MALE")
     layer.exclude = True
     bpy.context.view_layer.active_layer_collection = bpy.context.view_layer.layer_collection
     outside.anthronet.height = 1.81
-    check("outside the view layer: in words", "view layer" in outside.anthronet.error, outside.anthronet.error)
+    check("outside the view layer: an error", "view layer" in outside.anthronet.error, outside.anthronet.error)
     layer.exclude = False
     collection.hide_viewport = True
     before = state(outside)
     outside.anthronet.height = 1.82
-    check("in a hidden collection: in words, and nothing moves", "hidden" in outside.anthronet.error and
+    check("in a hidden collection: an error, and nothing moves", "hidden" in outside.anthronet.error and
           state(outside)[4:] == before[4:], outside.anthronet.error)
     collection.hide_viewport = False
 
@@ -96,35 +103,35 @@ def refusing():
     select(scaled, mesh_of(scaled))
     scaled.scale = (1.1, 1.1, 1.1)
     scaled.anthronet.height = 1.79
-    check("an object's scale is no obstacle", scaled.anthronet.error == "", scaled.anthronet.error)
+    check("a scaled object can be changed", scaled.anthronet.error == "", scaled.anthronet.error)
     bpy.ops.object.transform_apply(scale=True)
-    _refused("after Apply Scale", scaled, "applied")
+    _check_rejected("after Apply Scale", scaled, "applied")
 
-    lame = add(sex="MALE", height=1.80)
+    damaged = add(sex="MALE", height=1.80)
     bpy.ops.object.mode_set(mode="EDIT")
-    lame.data.edit_bones.remove(lame.data.edit_bones["toe.L"])
+    damaged.data.edit_bones.remove(damaged.data.edit_bones["toe.L"])
     bpy.ops.object.mode_set(mode="OBJECT")
-    _refused("a lost bone", lame, "ball_l")
+    _check_rejected("a deleted bone", damaged, "ball_l")
 
 
 def failing_whole():
-    """Operators on several characters change all of them or none, and what failed leaves no trace."""
+    """Operators on several characters change all of them or none."""
     clean()
     character = add(sex="FEMALE", height=1.70)
     other = add(sex="MALE", height=1.80)
-    rig = service("rig")
+    armature = service("armature")
     counts = lambda: (len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.armatures))
-    before, move = counts(), rig.move
-    rig.move = lambda *_: (_ for _ in ()).throw(RuntimeError("no mode"))
+    before, set_rest_pose = counts(), armature.set_rest_pose
+    armature.set_rest_pose = lambda *_: (_ for _ in ()).throw(RuntimeError("no mode"))
     try:
         message = failure(lambda: bpy.ops.anthronet.character_add(sex="MALE"))
-        check("a failed character leaves nothing behind", "no mode" in message and counts() == before, f"{counts()}")
+        check("a failed creation leaves no data-blocks behind", "no mode" in message and counts() == before, f"{counts()}")
         kept = state(character)
         character.anthronet.height = 1.72
-        check("bones that cannot move keep the mesh in its place", character.anthronet.error == "no mode" and
+        check("if bones cannot move, the mesh does not move either", character.anthronet.error == "no mode" and
               state(character)[4:] == kept[4:], character.anthronet.error)
     finally:
-        rig.move = move
+        armature.set_rest_pose = set_rest_pose
     character.anthronet.height = 1.70
 
     impossible = {"sex": "female", "measures": {"height": 1.5, "thigh_length_left": 0.69, "thigh_length_right": 0.69}}
@@ -133,21 +140,21 @@ def failing_whole():
     select(character, other)
     both = state(character), state(other)
     message = failure(lambda: bpy.ops.anthronet.request_load(filepath=str(path)))
-    check("an impossible request is an error in words", "thigh" in message and "Traceback" not in message, message)
-    check("and changes nobody", (state(character), state(other)) == both)
+    check("an impossible request is reported", "thigh" in message and "Traceback" not in message, message)
+    check("an impossible request changes no character", (state(character), state(other)) == both)
     path.write_text(json.dumps({"sex": "female", "seed": 2**40}))
     message = failure(lambda: bpy.ops.anthronet.request_load(filepath=str(path)))
-    check("a seed that Blender cannot hold is an error in words", "seed" in message, message)
+    check("a seed that Blender cannot store is reported", "seed" in message, message)
     preset = home / "impossible.py"
     preset.write_text(
         "import bpy\nsettings = bpy.context.object.anthronet\nsettings.sex = 'MALE'\n"
         "settings.given_thigh_length_left = True\nsettings.thigh_length_left = 0.9\n"
     )
     message = failure(lambda: bpy.ops.anthronet.preset_apply(filepath=str(preset)))
-    check("an impossible preset, too", "thigh" in message, message)
+    check("an impossible preset is reported", "thigh" in message, message)
     preset.write_text("settings = nothing\n")
     message = failure(lambda: bpy.ops.anthronet.preset_apply(filepath=str(preset)))
-    check("and a script that is no preset", "preset" in message and "Traceback" not in message, message)
+    check("a script that is no preset is reported", "preset" in message and "Traceback" not in message, message)
     mesh_of(other).data.clear_geometry()
     both = state(character), state(other)
     for name, work in (
@@ -160,7 +167,7 @@ def failing_whole():
     ):
         message = failure(work)
         check(
-            f"{name}: one that cannot change keeps all as they are",
+            f"{name}: if one character cannot be changed, none is",
             "vertices" in message and (state(character), state(other)) == both,
             message,
         )
@@ -197,19 +204,19 @@ def failing():
         ("a request that is not there", lambda: bpy.ops.anthronet.request_load(filepath="/nowhere/a.json"), "/nowhere"),
     ):
         message = failure(work)
-        check(f"{name} is an error in words", expected in message and "Traceback" not in message, message.strip()[:160])
+        check(f"{name} is reported", expected in message and "Traceback" not in message, message.strip()[:160])
     character = bpy.context.object
     mesh_of(character).data.clear_geometry()
     message = failure(bpy.ops.anthronet.measure_selected)
     check(
-        "a mesh without its vertices is an error in words",
+        "a mesh without its vertices is reported",
         "vertices" in message and "Traceback" not in message,
         message.strip(),
     )
 
 
 def sharing():
-    """Duplicates, linked and not."""
+    """Linked and unlinked duplicates."""
     clean()
     first = add(sex="FEMALE", height=1.70)
     before = state(first)
@@ -218,9 +225,9 @@ def sharing():
     second = next(one for one in people() if one != first)
     check("a linked duplicate shares its data", second.data == first.data)
     second.anthronet.height = 1.80
-    check("a change of a linked duplicate leaves the other alone", state(first) == before, second.anthronet.error)
+    check("a change of a linked duplicate does not change the original", state(first) == before, second.anthronet.error)
     check(
-        "and is met by its own mesh and bones",
+        "a changed linked duplicate has data of its own",
         np.array_equal(positions(mesh_of(second).data), expected_positions(second)) and second.data != first.data,
     )
     select(first, mesh_of(first))
@@ -228,7 +235,7 @@ def sharing():
     third = next(one for one in people() if one not in (first, second))
     third.anthronet.height = 1.60
     check(
-        "a duplicate is a character of its own",
+        "an unlinked duplicate is a character of its own",
         third.anthronet.error == ""
         and state(first) == before
         and np.array_equal(positions(mesh_of(third).data), expected_positions(third))
@@ -238,11 +245,11 @@ def sharing():
     select(first)
     bpy.ops.object.duplicate(linked=False)
     bare = next(one for one in people() if one not in (first, second, third))
-    _refused("an armature that was duplicated alone", bare, "no body mesh")
+    _check_rejected("an armature that was duplicated alone", bare, "no body mesh")
 
 
 def linking():
-    """Characters of another file."""
+    """Characters that are linked from another file."""
     clean()
     add(sex="FEMALE", height=1.70, waist_circumference=0.72)
     path = home / "library.blend"
@@ -254,14 +261,17 @@ def linking():
         bpy.context.collection.objects.link(thing)
     linked = people()[0]
     select(linked)
-    reason = service("live").refusal(linked, bpy.context) or ""
-    check("a linked character says so", "linked" in reason and "Make Local" in reason, reason)
-    check("and cannot be changed", not bpy.ops.anthronet.mirror.poll() and not bpy.ops.anthronet.clip_builtin.poll())
-    check("but be made local", bpy.ops.anthronet.make_local() == {"FINISHED"})
+    reason = service("regeneration").reason_not_editable(linked, bpy.context) or ""
+    check("a linked character: the reason suggests Make Local", "linked" in reason and "Make Local" in reason, reason)
+    check(
+        "a linked character: operators are not available",
+        not bpy.ops.anthronet.mirror.poll() and not bpy.ops.anthronet.clip_builtin.poll(),
+    )
+    check("a linked character: Make Local", bpy.ops.anthronet.make_local() == {"FINISHED"})
     local = people()[0]
     local.anthronet.height = 1.74
     check(
-        "and is edited then",
+        "a linked character can be changed after Make Local",
         local.library is None
         and local.anthronet.error == ""
         and np.array_equal(positions(mesh_of(local).data), expected_positions(local)),
@@ -274,5 +284,5 @@ def linking():
         bpy.context.collection.objects.link(thing)
     override = people()[0].override_create(remap_local_usages=True)
     select(override)
-    reason = service("live").refusal(override, bpy.context) or ""
-    check("a library override says so", "Make Local" in reason, reason)
+    reason = service("regeneration").reason_not_editable(override, bpy.context) or ""
+    check("a library override: the reason suggests Make Local", "Make Local" in reason, reason)

@@ -1,4 +1,4 @@
-"""What the parts share. Blender's own folders are moved before it is imported, so this comes first."""
+"""What the parts share. It sets Blender's user folder, so it must be imported before bpy."""
 
 import importlib
 import os
@@ -23,8 +23,8 @@ TOLERANCE = 1e-5  # metres; Blender and the library keep single precision
 cases = Cases()
 
 
-def check(name, true, told=""):
-    cases.case(name, bool(true), told)
+def check(name, passed, details=""):
+    cases.case(name, bool(passed), details)
 
 
 def clean():
@@ -59,7 +59,7 @@ def people():
 
 
 def mesh_of(character):
-    return service("character").mesh_of(character)
+    return service("character").mesh_object(character)
 
 
 def generated(character):
@@ -96,7 +96,7 @@ def evaluated(surface):
 def joints(character, body=None):
     """Where the joints are in the pose, in the armature's space: (joints, 3)."""
     bpy.context.view_layer.update()
-    bones = service("rig").joint_order(character, body or generated(character))
+    bones = service("armature").pose_bones(character, body or generated(character))
     return np.array([bone.head for bone in bones])
 
 
@@ -109,7 +109,7 @@ def curves(action):
 
 
 def failure(work):
-    """What an operator that fails says."""
+    """The error message of an operator; empty if it succeeds."""
     try:
         work()
     except RuntimeError as error:
@@ -118,7 +118,7 @@ def failure(work):
 
 
 def state(character):
-    """All that a change may change: request, flags, identity, mesh, bones."""
+    """Everything that a change of a character can change: request, given measures, identity, mesh, bones."""
     settings = character.anthronet
     given = tuple(settings.is_given(name) for name in module("measures").names())
     values = tuple(getattr(settings, name) for name in module("measures").names())
@@ -134,7 +134,7 @@ def state(character):
 
 
 def alike(one, other):
-    """Whether two states are the same; bones to the last bits, which edit mode does not keep."""
+    """Whether two states are the same; bones within a tolerance, since edit mode rounds them."""
     bones = [np.frombuffer(state[-1]) for state in (one, other)]
     return one[:-1] == other[:-1] and np.allclose(*bones, atol=TOLERANCE)
 
@@ -148,6 +148,6 @@ def milliseconds(work, times=1):
     return statistics.median(taken)
 
 
-def speed(name, took, bar):
-    """Prints a time beside its bar. It never fails: machines are shared."""
-    print(f"speed {name}: {took:.1f} ms (bar {bar} ms{'' if took <= bar else ', OVER THE BAR'})", flush=True)
+def speed(name, took, limit):
+    """Prints a time and its limit. It never fails, since machines are shared."""
+    print(f"speed {name}: {took:.1f} ms (limit {limit} ms{'' if took <= limit else ', OVER THE LIMIT'})", flush=True)

@@ -1,4 +1,4 @@
-"""Undo, redo, files, presets."""
+"""Undo, redo, .blend files, requests as files, presets."""
 
 import json
 
@@ -30,16 +30,16 @@ def undoing():
     after = state(character)
     bpy.ops.ed.undo_push(message="taller")
     bpy.ops.ed.undo()
-    check("undo restores request, flags, identity, mesh and bones", state(people()[0]) == before != after)
+    check("undo restores the request, the mesh and the bones", state(people()[0]) == before != after)
     bpy.ops.ed.redo()
-    check("redo brings them back", state(people()[0]) == after)
+    check("redo restores them", state(people()[0]) == after)
     people()[0].anthronet.waist_circumference = 0.95
-    check("editing goes on after undo", people()[0].anthronet.error == "")
+    check("a character can be changed after undo", people()[0].anthronet.error == "")
 
 
 def adjusting():
-    """Adjust Last Operation: undo, then the operator anew with its last properties but for those that were changed. Blender's
-    own operator for it needs a window."""
+    """Adjust Last Operation: undo, then the operator again with its last properties, some of them changed. Blender's own
+    operator for that needs a window."""
 
     def again(operator, **changed):
         last = bpy.context.window_manager.operators[-1].properties
@@ -53,18 +53,18 @@ def adjusting():
     again(bpy.ops.anthronet.character_add, height=1.70)
     there = people()
     check(
-        "Adjust Last Operation changes the person that was added",
+        "Adjust Last Operation changes the character that was added",
         len(there) == 1 and abs(there[0].anthronet.height - 1.70) < 1e-6 and there[0].anthronet.sex == "MALE",
         f"{[one.anthronet.height for one in there]}",
     )
     bpy.ops.anthronet.randomise("EXEC_DEFAULT", True)
     seed = people()[0].anthronet.seed
     kept = bpy.context.window_manager.operators[-1].properties.seed
-    check("a drawn seed is kept for it", kept == seed > 0, f"{kept} {seed}")
+    check("Randomize stores its random seed for Adjust Last Operation", kept == seed > 0, f"{kept} {seed}")
     again(bpy.ops.anthronet.randomise, what="IDENTITY")
     settings = people()[0].anthronet
     check(
-        "and what is drawn can be changed",
+        "Adjust Last Operation can change what is randomized",
         settings.identity_by_hand and settings.fill == "MEAN" and settings.seed == 0,
         f"{settings.fill} {settings.seed}",
     )
@@ -82,7 +82,7 @@ def keeping():
     check("a saved file has the request, the mesh and the bones", state(character) == before)
     character.anthronet.height = 1.70
     check(
-        "and is edited on",
+        "a character of a saved file can be changed",
         character.anthronet.error == ""
         and np.array_equal(positions(mesh_of(character).data), expected_positions(character)),
     )
@@ -93,18 +93,18 @@ def keeping():
         bpy.context.collection.objects.link(thing)
     character = people()[0]
     character.anthronet.height = 1.72
-    check("an appended character is edited on", character.anthronet.error == "", character.anthronet.error)
+    check("an appended character can be changed", character.anthronet.error == "", character.anthronet.error)
 
     saved = home / "request.json"
     select(character)
     bpy.ops.anthronet.request_save(filepath=str(saved))
     fields = json.loads(saved.read_text())
-    check("the request as a file, as it was typed", fields["measures"]["height"] == 1.72, str(fields))
+    check("a saved request has the typed numbers", fields["measures"]["height"] == 1.72, str(fields))
     fields["measures"]["height"] = 1.66
     saved.write_text(json.dumps(fields))
     bpy.ops.wm.save_as_mainfile(filepath=str(home / "beside.blend"))
     bpy.ops.anthronet.request_load(filepath="//request.json")
-    check("and back, by a path beside the file", abs(character.anthronet.height - 1.66) < 1e-6)
+    check("a request is loaded from a path relative to the .blend file", abs(character.anthronet.height - 1.66) < 1e-6)
     _presets(character)
 
 
@@ -118,8 +118,8 @@ def _presets(character):
     select(character, other)
     bpy.ops.anthronet.preset_apply(filepath=str(preset))
     heights = [round(one.anthronet.height, 5) for one in (character, other)]
-    check("a preset is for all selected characters", heights == [1.66, 1.66] and state(character) != kept, str(heights))
+    check("a preset is applied to all selected characters", heights == [1.66, 1.66] and state(character) != kept, str(heights))
     panel = bpy.types.ANTHRONET_PT_presets
-    check("presets have a panel to add and remove", panel.preset_add_operator == "anthronet.preset_add")
+    check("the panel of presets can add and remove them", panel.preset_add_operator == "anthronet.preset_add")
     bpy.ops.anthronet.preset_add(name="Somebody", remove_name=True)
     check("a preset is removed", not preset.exists())

@@ -1,4 +1,4 @@
-"""Motion: clips, files, other armatures, and the slices that long work is done in."""
+"""Motion from clips, files and other armatures; modal operators."""
 
 import contextlib
 import io
@@ -51,7 +51,7 @@ def moving():
             pose = clip.sample(int(frame) / 30, relative="model", space="blender")
             expected = np.concatenate([skinner.skin(pose, method=method)[0] for skinner in skinners])
             worst = max(worst, float(np.abs(evaluated(surface) - expected).max()))
-        check(f"{len(frames)} frames as the library skins them, {method}", worst <= TOLERANCE, f"{worst:.1e} m")
+        check(f"{len(frames)} frames are skinned as by the library, {method}", worst <= TOLERANCE, f"{worst:.1e} m")
 
     long = clip.resample(30)
     while long.frame_count < 300:
@@ -60,11 +60,11 @@ def moving():
     body.save(source, clips=[long])
     took = milliseconds(lambda _: bpy.ops.anthronet.clip_apply(filepath=str(source)), 3)
     speed(f"a clip of {long.frame_count} frames", took, 500)
-    check("a clip of a file plays", len(curves(character.animation_data.action)) > 200)
+    check("the clip of a file becomes an action", len(curves(character.animation_data.action)) > 200)
 
 
 def _off(character, clip, frames, rate, start=1):
-    """How far joints are from where a clip has them, at frames of the scene; metres."""
+    """Largest distance of joints from those of a clip, at frames of the scene; metres."""
     scene, worst = bpy.context.scene, 0.0
     for frame in frames:
         scene.frame_set(frame)
@@ -74,7 +74,7 @@ def _off(character, clip, frames, rate, start=1):
 
 
 def rating():
-    """The scene's rate, and its range."""
+    """The scene's frame rate and frame range."""
     import anthronet
 
     for fps, base in ((24, 1.0), (30, 1.001)):
@@ -85,17 +85,17 @@ def rating():
         character = add(sex="MALE", height=1.80)
         scene.frame_start, scene.frame_end = 7, 9
         bpy.ops.anthronet.clip_builtin(name="WALK", frame_start=5)
-        check("the scene's range stays", (scene.frame_start, scene.frame_end) == (7, 9))
+        check("the scene's frame range is not changed", (scene.frame_start, scene.frame_end) == (7, 9))
         bpy.ops.anthronet.clip_builtin(name="WALK", frame_start=5, use_scene_range=True)
         clip = anthronet.builtin_clip("walk", generated(character)).resample(rate)
         keys = np.array([key.co[0] for key in curves(character.animation_data.action)[0].keyframe_points])
         check(
-            f"{rate:.2f} frames a second: a key on each frame",
+            f"{rate:.2f} frames a second: a keyframe on each frame",
             np.abs(keys - keys.round()).max() < 1e-3 and len(keys) == clip.frame_count,
             f"{len(keys)} keys, {clip.frame_count} frames",
         )
         check(
-            f"{rate:.2f} frames a second: the scene's range, where it is asked for",
+            f"{rate:.2f} frames a second: Set Scene Range",
             (scene.frame_start, scene.frame_end) == (5, 4 + clip.frame_count),
             f"{scene.frame_start} to {scene.frame_end}",
         )
@@ -104,7 +104,7 @@ def rating():
 
 
 def layering():
-    """What a clip finds on a character: poses, actions, tracks."""
+    """Clips for characters that already have poses, actions or NLA tracks."""
     import anthronet
 
     clean()
@@ -119,32 +119,32 @@ def layering():
     bpy.ops.anthronet.clip_builtin(name="IDLE", in_place=True)
     idle = anthronet.builtin_clip("idle", body).in_place().resample(30)
     off = _off(character, idle, (1, 20, 40), 30)
-    check("nothing of an earlier clip stays in the pose", off < 1e-4, f"{1000 * off:.3f} mm")
+    check("no channel keeps a value of an earlier pose", off < 1e-4, f"{1000 * off:.3f} mm")
 
     own = bpy.data.actions.new("own")
     character.animation_data.action = own
     character.pose.bones["jaw"].keyframe_insert("rotation_quaternion", frame=3)
     bpy.ops.anthronet.clip_builtin(name="SQUAT")
-    check("an action that was replaced stays in the file", own.use_fake_user and own.name in bpy.data.actions)
+    check("a replaced action is kept with a fake user", own.use_fake_user and own.name in bpy.data.actions)
     character.animation_data.action = own
     bpy.ops.anthronet.clip_builtin(name="SQUAT", nla=True, frame_start=11)
     tracks = character.animation_data.nla_tracks
     strips = [strip for track in tracks for strip in track.strips]
     check(
-        "as a strip: the action of before is a strip below",
+        "As NLA Strip: the earlier action is the strip below",
         [strip.action.name for strip in strips] == ["own", strips[-1].action.name]
         and character.animation_data.action is None,
         str([strip.action.name for strip in strips]),
     )
     if module("compat").HAS_SLOTS:
-        check("strips have their slots", all(strip.action_slot is not None for strip in strips))
+        check("NLA strips have slots", all(strip.action_slot is not None for strip in strips))
     squat = anthronet.builtin_clip("squat", body).resample(30)
     off = _off(character, squat, (11, 30, 45), 30, start=11)
-    check("and the pose is the clip's", off < 1e-4, f"{1000 * off:.3f} mm")
+    check("As NLA Strip: the pose is the clip's", off < 1e-4, f"{1000 * off:.3f} mm")
 
 
 def refitting():
-    """A clip was made for a body: after a change of it, it can be made again."""
+    """Refit Clip, after a change of the body."""
     import anthronet
 
     clean()
@@ -153,15 +153,15 @@ def refitting():
     action = service("action")
     bpy.ops.anthronet.clip_builtin(name="WALK", frame_start=3)
     played = character.animation_data.action
-    check("a clip is of its body", not action.is_of_another_body(character))
+    check("a new action is not outdated", not action.is_outdated(character))
     character.anthronet.height = 1.50
-    check("after a change it is of another one", action.is_of_another_body(character))
+    check("after a change of the body the action is outdated", action.is_outdated(character))
     bpy.ops.anthronet.clip_refit()
     clip = anthronet.builtin_clip("walk", generated(character)).resample(30)
     off = _off(character, clip, (3, 12, 25), 30, start=3)
     check(
-        "refitted, it is the clip of this one, in the same action",
-        off < 1e-4 and character.animation_data.action == played and not action.is_of_another_body(character),
+        "Refit Clip bakes the clip of the new body into the same action",
+        off < 1e-4 and character.animation_data.action == played and not action.is_outdated(character),
         f"{1000 * off:.3f} mm",
     )
     path = home / "refit.glb"
@@ -172,20 +172,20 @@ def refitting():
     other = next(one for one in people() if one != character)
     other.anthronet.height = 1.80
     select(other)
-    before = [one.name for one in action.of(character)]
+    before = [one.name for one in action.used_by(character)]
     bpy.ops.anthronet.clip_refit()
     check(
-        "a shared action is left to the other character",
-        [one.name for one in action.of(character)] == before
-        and not set(action.of(other)) & set(action.of(character))
-        and not action.is_of_another_body(other),
-        f"{before} {[one.name for one in action.of(other)]}",
+        "Refit Clip does not change an action that another character uses",
+        [one.name for one in action.used_by(character)] == before
+        and not set(action.used_by(other)) & set(action.used_by(character))
+        and not action.is_outdated(other),
+        f"{before} {[one.name for one in action.used_by(other)]}",
     )
 
 
 def _directions(places, pairs):
-    ways = np.array([places[b] - places[a] for a, b in pairs])
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    offsets = np.array([places[b] - places[a] for a, b in pairs])
+    return offsets / np.linalg.norm(offsets, axis=1, keepdims=True)
 
 
 #: Bones whose directions are compared, as our joints: from one to the other.
@@ -200,7 +200,7 @@ _LIMBS = (
 )
 
 
-def _compared(character, source, names, frames, first):
+def _largest_angle(character, source, names, frames, first):
     """The largest angle between limbs of an armature and of the character, degrees, over frames of the armature's action that
     came to the frames from 1 on."""
     scene, worst = bpy.context.scene, 0.0
@@ -226,13 +226,13 @@ def _key(bone, angle, frames):
 
 
 def following():
-    """The motion of another armature: one with Mixamo's names in centimetres, turned about, playing one of its actions."""
+    """Retargeting of another armature: with Mixamo's names, in centimetres, rotated, with two actions."""
     clean()
     scene = bpy.context.scene
     scene.render.fps = 30
     character = add(sex="MALE", height=1.80)
     body = generated(character)
-    check("without another armature there is no motion to take", not bpy.ops.anthronet.clip_from_armature.poll())
+    check("without another armature the operator is not available", not bpy.ops.anthronet.clip_from_armature.poll())
     armature = bpy.data.armatures.new("Mixamo")
     rig = bpy.data.objects.new("Mixamo", armature)
     bpy.context.collection.objects.link(rig)
@@ -263,23 +263,23 @@ def following():
     result = bpy.ops.anthronet.clip_from_armature(
         source="Mixamo", action=action.name, limits=False, feet=False, fingers="SOURCE"
     )
-    check("the armature plays what it played, and the frame is that of before",
+    check("the armature has its earlier action, and the scene its earlier frame",
           rig.animation_data.action == other and scene.frame_current == 2)
     length = character.animation_data.action.frame_range[1]
     check("the motion is as long as the action", result == {"FINISHED"} and abs(length - 21) < 1e-3, f"{length}")
-    module("compat").assign(rig, action)
+    module("compat").assign_action(rig, action)
     scene.frame_set(31)
-    worst = _compared(character, rig, names, (11, 20, 31), 11)
+    worst = _largest_angle(character, rig, names, (11, 20, 31), 11)
     check("a Mixamo rig in centimetres: limbs point the same way", worst < 1.0, f"{worst:.2f}°")
 
 
 def rigging():
-    """Rigify: the metarig lies in the character, the rig that it makes moves it."""
+    """Rigify: the metarig fits the character, and motion of the generated rig is retargeted."""
     clean()
     scene = bpy.context.scene
     scene.render.fps = 30
     character = add(sex="FEMALE", height=1.64)
-    check("without Rigify there is no metarig", not bpy.ops.anthronet.metarig_add.poll())
+    check("without Rigify the operator is not available", not bpy.ops.anthronet.metarig_add.poll())
     bpy.ops.preferences.addon_enable(module="rigify")
     bpy.ops.anthronet.metarig_add()
     metarig = bpy.context.object
@@ -295,13 +295,13 @@ def rigging():
     # Rigify wants elbows and knees out of the straight.
     bent = max(offs.pop(f"{meta}.{side}") for meta in ("forearm", "shin") for side in "LR")
     check(
-        "the metarig's joints are the character's, elbows and knees bent a little",
+        "the joints of the metarig are the character's, elbows and knees slightly bent",
         max(offs.values()) < 1e-5 and bent < 0.01,
         f"{1000 * max(offs.values()):.3f} mm, {1000 * bent:.1f} mm",
     )
     for meta, axis in (("forearm", (0, 0, -1)), ("shin", (1, 0, 0)), ("f_middle.02", (0, 1, 0))):
         left, right = (metarig.data.bones[f"{meta}.{side}"].matrix_local.to_3x3().col[0] for side in "LR")
-        check(f"{meta}: rolled alike on both sides", abs(left.x - right.x) < 0.02 and abs(left.y + right.y) < 0.02
+        check(f"{meta}: the roll is symmetric", abs(left.x - right.x) < 0.02 and abs(left.y + right.y) < 0.02
               and abs(left.z + right.z) < 0.02, f"{left} {right}")
         check(f"{meta}: bends about the axis of Rigify's own metarig", left.dot(axis) > 0.9, f"{left}")
     before = set(bpy.data.objects)
@@ -312,7 +312,7 @@ def rigging():
         for meta, joint in pairs.items()
         if f"DEF-{meta}" in rig.data.bones
     )
-    check("Rigify generates its rig there", off < 0.01 and len(rig.data.bones) > 300, f"{1000 * off:.2f} mm")
+    check("the generated rig is where the character is", off < 0.01 and len(rig.data.bones) > 300, f"{1000 * off:.2f} mm")
 
     for side in "LR":
         for limb in ("upper_arm_parent", "thigh_parent"):
@@ -329,120 +329,135 @@ def rigging():
         for joint, meta in (("upperarm", "upper_arm"), ("lowerarm", "forearm"), ("hand", "hand"), ("thigh", "thigh"),
                             ("calf", "shin"), ("foot", "foot"))
     }  # fmt: skip
-    worst = _compared(character, rig, names, (1, 8, 15), 1)
+    worst = _largest_angle(character, rig, names, (1, 8, 15), 1)
     check("a Rigify rig: limbs point the same way", worst < 3.0, f"{worst:.2f}°")
     bpy.ops.preferences.addon_disable(module="rigify")
 
 
 def slicing():
-    """Long work in slices: what a window's timer does, by hand."""
+    """Long work in slices, as the timer of a window does them."""
+    _slices_of_a_crowd()
+    _ends_of_modal_operators()
+    _stopped_sampling()
+
+
+def _slices_of_a_crowd():
     clean()
-    job = module("operators.job")
+    modal = module("operators.modal")
     crowd = bpy.types.ANTHRONET_OT_crowd_add
-    asked = SimpleNamespace(count=40, seed=3, spacing=1.5, lod="3", skin_tones=True, changed=False)
-    asked._place = lambda context, index: crowd._place(asked, context, index)
-    steps = job.Steps(crowd.work(asked, bpy.context))
-    while not asked.changed:
-        steps.step(0.01)
-    some = len(people())
-    check("a slice makes some people", 0 < some < 40 and not steps.done and 0 < steps.progress < 1, f"{some}")
-    steps.close()
-    check("Esc keeps those that stand", len(people()) == some and steps.done and steps.step())
+    options = SimpleNamespace(count=40, seed=3, spacing=1.5, lod="3", skin_tones=True, changed=False)
+    options._location = lambda context, index: crowd._location(options, context, index)
+    work = modal.SlicedWork(crowd.work(options, bpy.context))
+    while not options.changed:
+        work.run_slice(0.01)
+    count = len(people())
+    check("a slice adds some characters", 0 < count < 40 and not work.done and 0 < work.progress < 1, f"{count}")
+    work.close()
+    check("after Esc they are still there", len(people()) == count and work.done and work.run_slice())
 
-    class Window:
-        """What a modal operator asks of Blender, counted."""
 
-        def __init__(self):
-            self.timers = self.bars = 0
-            self.text = ""
+class _Window:
+    """A window manager and workspace for a modal operator. Counts timers and progress bars."""
 
-        def event_timer_add(self, _time, window):
-            self.timers += 1
-            return object()
+    def __init__(self):
+        self.timers = self.bars = 0
+        self.text = ""
 
-        def event_timer_remove(self, _timer):
-            self.timers -= 1
+    def event_timer_add(self, _time, window):
+        self.timers += 1
+        return object()
 
-        def progress_begin(self, *_):
-            self.bars += 1
+    def event_timer_remove(self, _timer):
+        self.timers -= 1
 
-        def progress_end(self):
-            self.bars -= 1
+    def progress_begin(self, *_):
+        self.bars += 1
 
-        def progress_update(self, _):
-            pass
+    def progress_end(self):
+        self.bars -= 1
 
-        def modal_handler_add(self, _):
-            pass
+    def progress_update(self, _):
+        pass
 
-        def status_text_set(self, text):
-            self.text = text or ""
+    def modal_handler_add(self, _):
+        pass
 
-    class Asked(job.ModalJob):
-        """An operator that counts, and breaks at a number."""
+    def status_text_set(self, text):
+        self.text = text or ""
 
-        bl_label = "Count"
-        options = SimpleNamespace(is_invoke=True, is_repeat=False)
 
-        def __init__(self, breaks_at, error):
-            self.breaks_at, self.error, self.said, self.closed = breaks_at, error, [], False
+class _CountingOperator:
+    """What a modal operator needs besides the mix-in: work that counts and raises an error at a number."""
 
-        def report(self, kinds, text):
-            self.said.append((next(iter(kinds)), text))
+    bl_label = "Count"
+    options = SimpleNamespace(is_invoke=True, is_repeat=False)
 
-        def work(self, _context):
-            try:
-                for number in range(1000):
-                    self.changed = number > 2
-                    if number == self.breaks_at:
-                        raise self.error
-                    yield number / 1000
-                    yield None
-            finally:
-                self.closed = True
+    def __init__(self, fails_at, error):
+        self.fails_at, self.error, self.reports, self.closed = fails_at, error, [], False
 
+    def report(self, kinds, text):
+        self.reports.append((next(iter(kinds)), text))
+
+    def work(self, _context):
+        try:
+            for number in range(1000):
+                self.changed = number > 2
+                if number == self.fails_at:
+                    raise self.error
+                yield number / 1000
+                yield None
+        finally:
+            self.closed = True
+
+
+def _run_modal(fails_at, error, events):
+    """Sends events to a modal operator until it ends: operator, window, result."""
+    modal = module("operators.modal")
+    operator = type("Operator", (_CountingOperator, modal.ModalOperator), {})(fails_at, error)
+    window = _Window()
+    context = SimpleNamespace(window_manager=window, workspace=window, window=None)
+    operator._work = modal.SlicedWork(operator.work(context))
+    operator._start_modal(context)
+    for event in events:
+        result = operator.modal(context, event)
+        if result != {"RUNNING_MODAL"}:
+            break
+    return operator, window, result
+
+
+def _ends_of_modal_operators():
     tick, escape, move = (SimpleNamespace(type=kind) for kind in ("TIMER", "ESC", "MOUSEMOVE"))
-
-    def run(breaks_at, error, events):
-        window = Window()
-        context = SimpleNamespace(window_manager=window, workspace=window, window=None)
-        asked = Asked(breaks_at, error)
-        asked._steps = job.Steps(asked.work(context))
-        asked._start(context)
-        for event in events:
-            result = asked.modal(context, event)
-            if result != {"RUNNING_MODAL"}:
-                break
-        return asked, window, result
-
-    for name, breaks_at, error, events, expected, said in (
+    for name, fails_at, error, events, expected, reported in (
         ("Esc after some work", None, None, [tick, move, tick, escape], {"FINISHED"}, "INFO"),
         ("Esc before any", None, None, [move, escape], {"CANCELLED"}, "INFO"),
         ("the end", None, None, [tick] * 5000, {"FINISHED"}, None),
-        ("a failure", 0, ValueError("no such thing"), [tick], {"CANCELLED"}, "ERROR"),
-        ("a failure after some work", 5, ValueError("no such thing"), [tick] * 20, {"FINISHED"}, "ERROR"),
-        ("a fault of the program's", 5, KeyError("a"), [tick] * 20, {"FINISHED"}, "ERROR"),
+        ("an error", 0, ValueError("no such thing"), [tick], {"CANCELLED"}, "ERROR"),
+        ("an error after some work", 5, ValueError("no such thing"), [tick] * 20, {"FINISHED"}, "ERROR"),
+        ("a programming error", 5, KeyError("a"), [tick] * 20, {"FINISHED"}, "ERROR"),
     ):
         with contextlib.redirect_stderr(io.StringIO()):
-            asked, window, result = run(breaks_at, error, events)
+            operator, window, result = _run_modal(fails_at, error, events)
         left = (window.timers, window.bars, window.text)
-        kinds = [kind for kind, _ in asked.said]
+        kinds = [kind for kind, _ in operator.reports]
         check(
-            f"{name}: no timer, bar or text is left",
-            result == expected and left == (0, 0, "") and asked.closed == (name != "Esc before any")
-            and kinds == ([said] if said else []),
-            f"{result} {left} {asked.said}",
+            f"{name}: no timer, progress bar or text is left",
+            result == expected and left == (0, 0, "") and operator.closed == (name != "Esc before any")
+            and kinds == ([reported] if reported else []),
+            f"{result} {left} {operator.reports}",
         )
 
+
+def _stopped_sampling():
+    clean()
     character = add(sex="FEMALE")
     bpy.ops.anthronet.clip_builtin(name="WALK")
     scene = bpy.context.scene
     scene.frame_set(4)
-    work = service("action").to_clip(character, generated(character), scene, "walk", 1, 50)
+    work = service("sampling").sample_clip(character, generated(character), scene, "walk", 1, 50)
     next(work), next(work)
     shown = [modifier.show_viewport for modifier in mesh_of(character).modifiers]
     work.close()
     check(
-        "Esc while frames are read: the frame and the modifiers come back",
+        "Esc while frames are sampled: the frame and the modifiers are as before",
         scene.frame_current == 4 and not any(shown) and mesh_of(character).modifiers[0].show_viewport,
     )

@@ -53,7 +53,7 @@ def picturing():
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(str(path))
     pixels = np.array(image.pixels[:]).reshape(height, width, -1)[..., :3].mean(axis=2)
-    # People are darker or brighter than the wall beside them, in each third.
+    # In each third of the picture a person contrasts with the wall.
     thirds = [third.std() for third in np.array_split(pixels[height // 8 : -height // 8], 3, axis=1)]
     check("a picture of three people", tuple(image.size) == (width, height) and min(thirds) > 0.03, str(thirds))
 

@@ -28,11 +28,11 @@ namespace Anthronet.Tests
             var own = animator.Clip;
             animator.Play((AnthroClip)null);
             Expect.Throws<ObjectDisposedException>(() => own.Bake(), "its own clip is freed");
-            character.Rig.ToBindPose();
+            character.Rig.ApplyBindPose();
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        /// Compares the keys of curves, and what lies between them, with the library's own sampling.
+        /// Compares curves with the library's own sampling, at their keys and between them.
         static void Compare(AnimationClip made, AnthroClip clip, AnthroRig rig, string prefix)
         {
             Expect.Equal(clip.Name, made.name, "name");
@@ -45,11 +45,11 @@ namespace Anthronet.Tests
             for (var joint = 0; joint < clip.JointCount; joint++)
             {
                 var path = rig.Path(joint) + ":";
-                Expect.That(Find(rig, path) == rig.Bones[joint], path + " leads elsewhere");
+                Expect.That(Find(rig, path) == rig.Bones[joint], path + " leads to another joint");
                 var q = rotation.Select(name => made.Curves[path + name].keys).ToArray();
                 var moves = made.Curves.ContainsKey(path + position[0]);
                 moving += moves ? 1 : 0;
-                Expect.That(moves || joint > 1, "no places of " + path);
+                Expect.That(moves || joint > 1, "no positions of " + path);
                 Expect.Equal(clip.FrameCount, q[0].Length, "keys of " + path);
                 for (var frame = 0; frame < clip.FrameCount; frame++)
                 {
@@ -66,9 +66,9 @@ namespace Anthronet.Tests
                     var place = moves ? new Vector3(made.Curves[path + position[0]].keys[frame].value,
                         made.Curves[path + position[1]].keys[frame].value, made.Curves[path + position[2]].keys[frame].value)
                         : rig.Joints[joint].local.translation;
-                    Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " is elsewhere");
+                    Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " has another position");
                 }
-                // Half way between two frames: straight lines, whose quaternion is next to the one on the arc.
+                // Half way between two frames: linear interpolation, which is close to the quaternion on the arc.
                 var half = 1.5 / clip.FramesPerSecond;
                 clip.Sample(half, AnthroWrap.Once, pose);
                 var between = rotation.Select(name => (double)made.Curves[path + name].Evaluate((float)half)).ToArray();
@@ -78,7 +78,7 @@ namespace Anthronet.Tests
                 Expect.Near(1, Math.Abs(dot), 1e-4, path + " between frames");
             }
             Expect.Equal(0, flips, "signs that change");
-            Expect.That(moving >= 2 && moving < clip.JointCount, moving + " joints have places");
+            Expect.That(moving >= 2 && moving < clip.JointCount, moving + " joints have positions");
         }
 
         static Transform Find(AnthroRig rig, string path)
@@ -89,7 +89,7 @@ namespace Anthronet.Tests
             return names.Skip(1).Aggregate(at, (parent, name) => parent.Find(name));
         }
 
-        [Test(Description = "clips become Unity's with the keys that the library samples: legacy at run time, not in the editor")]
+        [Test(Description = "animation clips have the keys that the library samples: legacy at run time, not in the editor")]
         public static void Baked()
         {
             var character = Scene.Character(3, 3);
@@ -115,33 +115,33 @@ namespace Anthronet.Tests
                 Expect.That(UnityEditor.AssetDatabase.Contains(saved) && !saved.Loops, "not saved");
                 UnityEditor.AssetDatabase.DeleteAsset(path);
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
-        [Test(Description = "a quaternion that changes its sign is baked without a jump")]
+        [Test(Description = "quaternions that change sign are baked without a jump")]
         public static void Signs()
         {
             var character = Scene.Character(3, 3);
             using (var walk = AnthroClip.Builtin("walk", character.Body))
             {
                 var frames = walk.Bake();
-                // The same rotations, every other frame with the other sign.
+                // The same rotations, every other frame negated.
                 for (var i = 0; i < frames.Length; i++)
                 {
                     var q = frames[i].rotation;
                     frames[i].rotation = i / walk.JointCount % 2 == 0 ? q : new Quaternion(-q.x, -q.y, -q.z, -q.w);
                 }
-                using (var flipped = AnthroClip.Of(character.Body, "walk", walk.FramesPerSecond, frames))
+                using (var flipped = AnthroClip.FromPoses(character.Body, "walk", walk.FramesPerSecond, frames))
                 {
                     var made = flipped.ToAnimationClip(character.Rig);
                     Compare(made, walk, character.Rig, "l");
                     UnityEngine.Object.Destroy(made);
                 }
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
-        [Test(Description = "when the character becomes another its own clip is made anew and goes on at the same time")]
+        [Test(Description = "a built-in clip follows its character to another body and continues at the same time")]
         public static void Rebound()
         {
             var character = Scene.Character(3, 3);
@@ -158,11 +158,11 @@ namespace Anthronet.Tests
             {
                 var pose = new AnthroTransform[fresh.JointCount];
                 fresh.Sample((double)0.4f, AnthroWrap.Loop, pose, true);
-                var hips = Scene.At(character.Rig.Find("pelvis"));
+                var hips = Scene.WorldPosition(character.Rig.Find("pelvis"));
                 var expected = pose[Scene.Joint(character, "pelvis")].translation;
                 Expect.That((hips - expected).magnitude < 1e-5, "not in the pose of the clip at once: " + hips + ", " + expected);
             }
-            // A clip of the caller's stays.
+            // A clip of the caller's stays as it is.
             using (var mine = AnthroClip.Builtin("idle", character.Body))
             {
                 animator.Play(mine);
@@ -171,16 +171,16 @@ namespace Anthronet.Tests
                 animator.Play((AnthroClip)null);
                 Expect.That(mine.Bake().Length > 0, "it was freed");
             }
-            // After a reload of the code it goes on, too.
+            // Playback continues after a domain reload.
             animator.Play("walk");
             animator.Advance(0.3f);
             Editor.AnthroReload.Release();
             Scene.Reload(character);
             Scene.Reload(animator);
-            Expect.That(animator.Clip != null && animator.Clip.Name == "walk", "it stands still");
+            Expect.That(animator.Clip != null && animator.Clip.Name == "walk", "it does not play");
             Expect.Near(0.3, animator.Time, 1e-6, "time");
             animator.Advance(0.1f);
-            Scene.End(character);
+            Scene.Destroy(character);
             var bare = new GameObject("bare");
             bare.SetActive(false);
             var nobody = bare.AddComponent<AnthroAnimator>();

@@ -6,11 +6,11 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// The humanoid.
+    /// The humanoid avatar.
     [TestFixture]
     public static class AvatarTests
     {
-        [Test(Description = "every bone that a humanoid requires is there, once, and the avatar is valid")]
+        [Test(Description = "every bone that a humanoid requires is mapped once, and the avatar is valid")]
         public static void Humanoid()
         {
             var traits = HumanTrait.BoneName;
@@ -31,17 +31,17 @@ namespace Anthronet.Tests
             var description = AnthroHumanoid.Describe(character.Rig, character.transform);
             Expect.Equal(character.Rig.Bones.Length + 1, description.skeleton.Length, "skeleton");
             Expect.That(description.human.All(bone => bone.limit.useDefaultValues), "limits");
-            // A name that stands twice is told.
+            // A duplicate name is reported.
             var clash = new GameObject("pelvis");
             clash.transform.SetParent(character.transform, false);
             Debug.Errors.Clear();
             character.Generate();
-            Expect.That(character.Avatar == null && Debug.Errors.Any(error => error.Contains("pelvis")), "a clash is not told");
+            Expect.That(character.Avatar == null && Debug.Errors.Any(error => error.Contains("pelvis")), "a duplicate name is not reported");
             Debug.Errors.Clear();
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        [Test(Description = "every human parent is above its bone, UpperChest has its Chest, arms are level within a degree")]
+        [Test(Description = "every human parent is above its bone, UpperChest has a Chest, arms are horizontal within a degree")]
         public static void Demands()
         {
             foreach (var sex in new[] { AnthroSex.Female, AnthroSex.Male })
@@ -53,7 +53,7 @@ namespace Anthronet.Tests
                     AvatarBuilder.BuildHumanAvatar(
                         character.gameObject, AnthroHumanoid.Describe(character.Rig, character.transform));
                     Expect.That(AvatarBuilder.Why == null, sex + " " + seed + ": " + AvatarBuilder.Why);
-                    Scene.End(character);
+                    Scene.Destroy(character);
                 }
             }
         }
@@ -77,8 +77,8 @@ namespace Anthronet.Tests
             var arm = character.Rig.Find("upperarm_l");
             arm.localRotation = new Quaternion(0.1f, 0f, 0.1f, 0.9899495f);
             refused("is not level", human => human);
-            character.Rig.ToBindPose();
-            Scene.End(character);
+            character.Rig.ApplyBindPose();
+            Scene.Destroy(character);
         }
 
         static HumanBone[] Swapped(HumanBone[] human, string first, string second)
@@ -90,7 +90,7 @@ namespace Anthronet.Tests
             return human;
         }
 
-        [Test(Description = "a new avatar lets the animator go on in its states, with its parameters")]
+        [Test(Description = "a new avatar keeps the animator's states and parameters")]
         public static void KeepsState()
         {
             var character = Scene.Character(3, 3);
@@ -118,7 +118,7 @@ namespace Anthronet.Tests
             Expect.Equal(1.5f, animator.GetFloat(Animator.StringToHash("speed")), "speed");
             Expect.Equal(3, animator.GetInteger(Animator.StringToHash("weapon")), "weapon");
             Expect.That(animator.GetBool(Animator.StringToHash("armed")), "armed");
-            Scene.End(character);
+            Scene.Destroy(character);
         }
     }
 }

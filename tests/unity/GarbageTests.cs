@@ -6,17 +6,17 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Nothing is left to the collector by what runs every frame.
+    /// What runs every frame allocates no managed memory.
     [TestFixture]
     public static class GarbageTests
     {
-        // This counter of the runtime is missing from the compiler's reference assemblies.
+        // The compiler's reference assemblies lack this counter.
         static readonly Func<long> Allocated = (Func<long>)Delegate.CreateDelegate(typeof(Func<long>),
             typeof(GC).GetMethod("GetAllocatedBytesForCurrentThread", BindingFlags.Static | BindingFlags.Public | BindingFlags.NonPublic));
 
         static void Nothing(string what, int times, Action frame)
         {
-            // The first run compiles.
+            // The first run is compiled just in time.
             frame();
             var before = Allocated();
             for (var i = 0; i < times; i++)
@@ -34,7 +34,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "zero bytes per frame: sampling, animating, skinning a crowd, polling")]
+        [Test(Description = "zero bytes of managed memory per frame: sampling, animating, skinning a crowd, polling")]
         public static void PerFrame()
         {
             var start = Allocated();
@@ -52,8 +52,8 @@ namespace Anthronet.Tests
                 character.AddBlendShape("other", other);
             }
             Nothing("weights of blend shapes", 1000, () => character.SetBlendShapeWeight("other", 30f));
-            var correctives = character.gameObject.AddComponent<AnthroCorrectives>();
-            Nothing("correctives", 1000, correctives.Apply);
+            var poseDriven = character.gameObject.AddComponent<AnthroPoseDrivenShapes>();
+            Nothing("pose-driven shapes", 1000, poseDriven.Apply);
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];
             Nothing("reports", 1000, () => character.Body.Measures(reports));
             using (var surface = new AnthroSurface(character.Body, 3))
@@ -71,7 +71,7 @@ namespace Anthronet.Tests
                 var jobs = crowd.Jobs;
                 Nothing("skinning as Burst calls it", 300, () => Skin(jobs));
             }
-            using (var job = AnthroModel.Default.Start(new[] { new AnthroRequest() }))
+            using (var job = AnthroModel.Default.StartJob(new[] { new AnthroRequest() }))
             {
                 int done;
                 Nothing("polling", 2000, () => job.Poll(out done));

@@ -10,7 +10,7 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// Structures as a compiler of C lays them out, and the functions of the header.
+    /// Memory layout of structures compared with a C compiler's, and the functions of the header.
     [TestFixture]
     public static class LayoutTests
     {
@@ -25,7 +25,7 @@ namespace Anthronet.Tests
             return type.GetFields(BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic);
         }
 
-        /// A program that prints what `Lines` says.
+        /// A C program that prints the same as `Lines`.
         internal static string Source()
         {
             var source = new StringBuilder("#include <stddef.h>\n#include <stdio.h>\n#include \"anthronet.h\"\nint main(void) {\n");
@@ -52,7 +52,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "structures are laid out as in C"), Category("NeedsC")]
+        [Test(Description = "structures have the memory layout that C gives them"), Category("NeedsC")]
         public static void LaidOut()
         {
             var file = Environment.GetEnvironmentVariable("ANTHRONET_LAYOUT");
@@ -77,7 +77,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "public structures are laid out as the library's")]
+        [Test(Description = "public structures have the memory layout of the native ones")]
         public static void Public()
         {
             Same(typeof(AnthroTransform), typeof(anthronet_transform), "rotation", "translation");
@@ -100,7 +100,7 @@ namespace Anthronet.Tests
             Array.ForEach(functions, Marshal.Prelink);
         }
 
-        [Test(Description = "the enumerations of errors agree")]
+        [Test(Description = "AnthroError has all error codes of the header")]
         public static void Errors()
         {
             var codes = typeof(NativeMethods).GetFields(BindingFlags.Static | BindingFlags.NonPublic)

@@ -9,7 +9,7 @@ namespace Anthronet.Tests
     [TestFixture]
     public static class LibraryTests
     {
-        [Test(Description = "without the library a program of its own is told which file is expected and how to get it")]
+        [Test(Description = "without the library a program gets an error with the expected file and how to get it")]
         public static void Missing()
         {
             var start = new ProcessStartInfo("mono", "\"" + typeof(LibraryTests).Assembly.Location + "\" --missing");

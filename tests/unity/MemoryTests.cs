@@ -10,7 +10,7 @@ using UnityEngine.Rendering;
 
 namespace Anthronet.Tests
 {
-    /// What a person costs in memory, from the counts of what its meshes hold.
+    /// Memory per character, from the sizes of its meshes.
     [TestFixture]
     public static class MemoryTests
     {
@@ -29,19 +29,19 @@ namespace Anthronet.Tests
             };
         }
 
-        [Test(Description = "memory per avatar is what the documentation's table says")]
+        [Test(Description = "memory per character is as in the documentation's table")]
         public static void Table()
         {
             var text = File.ReadAllText(Path.Combine(SampleTests.Root, "unity_plugin/Documentation~/index.md"));
             var rows = Regex.Matches(text, @"^\| LOD(\d) \|(.*)\|\r?$", RegexOptions.Multiline).Cast<Match>().ToArray();
             Expect.Equal(4, rows.Length, "rows of the table");
-            string all = "", said = "";
+            string all = "", table = "";
             using (var body = AnthroModel.Default.Generate(new AnthroRequest()))
             {
                 foreach (var row in rows)
                 {
                     var lod = int.Parse(row.Groups[1].Value);
-                    var told = row.Groups[2].Value.Split('|')
+                    var documented = row.Groups[2].Value.Split('|')
                         .Select(cell => double.Parse(cell.Trim().Replace(",", ""), CultureInfo.InvariantCulture)).ToArray();
                     using (var surface = new AnthroSurface(body, lod))
                     {
@@ -50,15 +50,15 @@ namespace Anthronet.Tests
                         var expected = found.Concat(new[] { found[2] + found[3] + found[4] })
                             .Select(value => Math.Round(value)).ToArray();
                         all += "LOD" + lod + " " + string.Join(" ", expected) + "\n";
-                        said += "LOD" + lod + " " + string.Join(" ", told) + "\n";
+                        table += "LOD" + lod + " " + string.Join(" ", documented) + "\n";
                         UnityEngine.Object.Destroy(mesh);
                     }
                 }
             }
-            Expect.Equal(all, said, "the table");
+            Expect.Equal(all, table, "the table");
         }
 
-        [Test(Description = "a native body stays within what the documentation says of it")]
+        [Test(Description = "a native body needs no more memory than the documentation says")]
         public static void Bodies()
         {
             var text = File.ReadAllText(Path.Combine(SampleTests.Root, "unity_plugin/Documentation~/index.md"));

@@ -7,20 +7,20 @@ using UnityEngine.Rendering;
 
 namespace Anthronet.Tests
 {
-    /// Meshes as Unity would get them.
+    /// Meshes as Unity gets them.
     [TestFixture]
     public static class MeshTests
     {
-        [Test(Description = "the left hand is at -X, the face at +Z, the feet on the floor")]
+        [Test(Description = "the left hand is at -X, the face at +Z, the feet are on the floor")]
         public static void Handedness()
         {
             var character = Scene.Character();
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             var left = character.Rig.Find("hand_l").localToWorldMatrix;
             var right = character.Rig.Find("hand_r").localToWorldMatrix;
             Expect.That(left.m03 < -0.4 && right.m03 > 0.4, "hands at x " + left.m03 + " and " + right.m03);
             Expect.That(left.m13 > 1.2, "a T-pose has its hands at the height of the shoulders, not at " + left.m13);
-            // Vertices of the left hand are there, too.
+            // So are the vertices of the left hand.
             var bone = Scene.Joint(character, "hand_l");
             var at = 0;
             var xs = new List<float>();
@@ -41,8 +41,8 @@ namespace Anthronet.Tests
             UnityEngine.Object.Destroy(character.gameObject);
         }
 
-        /// How many triangles of a part go round so that their front is where their normals point, and how many do not. In
-        /// Unity's left-handed space the front is where Cross(b - a, c - a) points.
+        /// Counts the triangles of a part that face along their vertex normals, and those that do not. In Unity's
+        /// left-handed space a triangle faces along Cross(b - a, c - a).
         static void Count(Mesh mesh, int part, out int along, out int against, out double volume)
         {
             var of = mesh.GetSubMesh(part);
@@ -60,7 +60,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "triangles of all parts go round as Unity's: clockwise seen from outside")]
+        [Test(Description = "triangles of all parts are clockwise seen from outside, as Unity expects")]
         public static void Winding()
         {
             foreach (var lod in new[] { 0, 1, 2, 3 })
@@ -78,7 +78,8 @@ namespace Anthronet.Tests
                         Expect.That(against * 25 <= along, name + ": " + against + " against, " + along + " along their normals");
                         if (part == 0)
                         {
-                            // Closed but for the mouth and eyes, so near the body's volume, with the sign of outward faces.
+                            // Closed except for mouth and eyes: about the body's volume, positive if faces point
+                            // outwards.
                             Expect.Near(body.Volume, volume, 0.05 * body.Volume, name + ": volume");
                         }
                     }
@@ -87,11 +88,11 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "normals of eyes point out of them, and eyes are in the head on their own sides")]
+        [Test(Description = "normals of eyes point outwards, and each eye is on its side of the head")]
         public static void Eyes()
         {
             var character = Scene.Character();
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             var names = new List<string>();
             using (var surface = new AnthroSurface(character.Body, 1))
             {
@@ -103,13 +104,13 @@ namespace Anthronet.Tests
             var found = 0;
             foreach (var side in new[] { "eye_l", "eye_r" })
             {
-                var middle = Scene.At(character.Rig.Find(side));
+                var middle = Scene.WorldPosition(character.Rig.Find(side));
                 var bone = Scene.Joint(character, side);
                 Expect.That(side == "eye_l" ? middle.x < -0.02 : middle.x > 0.02, side + " is at " + middle);
                 int at = 0, outward = 0, count = 0;
                 for (var v = 0; v < mesh.vertexCount; v++)
                 {
-                    // Of the eyes' own parts: lids hang on other joints, too.
+                    // Only parts of the eyes: eyelids belong to other joints, too.
                     var part = Enumerable.Range(0, mesh.subMeshCount).First(
                         i => v < mesh.GetSubMesh(i).firstVertex + mesh.GetSubMesh(i).vertexCount);
                     if (names[part].StartsWith("Eye") && !names[part].StartsWith("Eyel") && mesh.Weights[at].boneIndex == bone)
@@ -123,16 +124,16 @@ namespace Anthronet.Tests
                 Expect.That(count > 20 && outward > 0.8 * count, side + ": " + outward + " of " + count + " look outwards");
             }
             Expect.That(found > 0, "no eyes among " + string.Join(", ", names));
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
-        [Test(Description = "bind pose x vertex = vertex, weights are sorted and of sum 1")]
+        [Test(Description = "bind pose x vertex = vertex; bone weights are sorted and their sum is 1")]
         public static void Binding()
         {
             foreach (var lod in new[] { 0, 1, 2, 3 })
             {
                 var character = Scene.Character(lod, lod);
-                var mesh = character.MeshOf(lod);
+                var mesh = character.GetMesh(lod);
                 var matrices = character.Rig.Bones
                     .Select((bone, i) => bone.localToWorldMatrix * mesh.bindposes[i]).ToArray();
                 var at = 0;
@@ -158,7 +159,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "sub-meshes cover their vertices and stay within them")]
+        [Test(Description = "sub-meshes cover their vertices and use no others")]
         public static void Parts()
         {
             using (var body = NativeTests.Body())
@@ -190,7 +191,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "indices have 16 bits where they fit, and count from their part's first vertex")]
+        [Test(Description = "indices have 16 bits where they fit, relative to their part's first vertex")]
         public static void Narrow()
         {
             using (var body = AnthroModel.Default.Generate(Scene.Request()))

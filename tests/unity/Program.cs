@@ -1,15 +1,14 @@
-// The tests of the Unity package as a program: its own code with stand-ins for Unity's, and the real library. NUnit's
-// console runs the tests in it; alone it does what is around them.
+// The tests of the Unity package as a program: the package with stand-ins for Unity's API and the real native library.
+// NUnit's console runs the tests; run on its own, the program does the following.
 //
-//     mono anthronet-unity-tests.exe --report FILE      prints NUnit's results as `ok NAME`, `FAILED NAME: why`, `skipped NAME: why`
-//     mono anthronet-unity-tests.exe --layout-source    prints a program in C whose output the tests compare layouts with
-//     mono anthronet-unity-tests.exe --signatures       prints what the stand-ins have of Unity, as signatures.txt lists it
-//     mono anthronet-unity-tests.exe --missing          calls the library and prints what is thrown
-//     mono anthronet-unity-tests.exe --speed COUNT      prints times beside their bars, with COUNT characters; 1 where one is
-//                                                       several times over its bar
+//     mono anthronet-unity-tests.exe --report FILE      prints NUnit's results as `ok NAME`, `FAILED NAME: why`, `skipped
+// NAME: why`     mono anthronet-unity-tests.exe --layout-source    prints a C program whose output is compared with the
+// memory layouts     mono anthronet-unity-tests.exe --signatures       prints the API of the stand-ins in the format of
+// signatures.txt     mono anthronet-unity-tests.exe --missing          calls the library and prints the exception
+//     mono anthronet-unity-tests.exe --speed COUNT      prints times with their targets, for COUNT characters
 //
-// The tests read two variables of the environment: ANTHRONET_SAME_BYTES, the folder that the tests of `ffi` leave, and
-// ANTHRONET_LAYOUT, the output of that program in C.
+// The tests read environment variables: ANTHRONET_SAME_BYTES, the folder that the tests of `ffi` write; ANTHRONET_LAYOUT,
+// the output of the C program; ANTHRONET_CLIPS, a folder of motion files.
 using System;
 using System.Xml;
 

@@ -7,7 +7,7 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// The same bytes as from Rust. `ffi/tests/same_bytes.rs` says what is hashed and leaves the list of it.
+    /// The same bytes as from Rust. `ffi/tests/same_bytes.rs` says what is hashed, and writes the list of hashes.
     [TestFixture]
     public static class SameBytesTests
     {
@@ -33,7 +33,7 @@ namespace Anthronet.Tests
             sha.TransformBlock(bytes, 0, bytes.Length, null, 0);
         }
 
-        [Test(Description = "same bytes as from Rust over 200 requests: files, and filled meshes in Unity's left-handed space with bind poses and joints")]
+        [Test(Description = "same bytes as from Rust for 200 requests: files, and filled meshes in Unity's left-handed space with bind poses and joints")]
         public static void Same()
         {
             var requests = Lines("requests.jsonl");
@@ -73,7 +73,7 @@ namespace Anthronet.Tests
             }
         }
 
-        /// Part by part what the mesh holds, then what it hangs on.
+        /// Hashes the mesh part by part, then bind poses and joints.
         static string Hash(Mesh mesh, AnthroJoint[] joints)
         {
             using (var sha = SHA256.Create())

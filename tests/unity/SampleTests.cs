@@ -2,6 +2,7 @@ using System;
 using System.Collections.Generic;
 using System.IO;
 using System.Linq;
+using System.Runtime.CompilerServices;
 using NUnit.Framework;
 using UnityEngine;
 using Anthronet.Samples;
@@ -16,12 +17,12 @@ namespace Anthronet.Tests
         public static void Single()
         {
             var single = new GameObject("single").AddComponent<SingleCharacter>();
-            MonoBehaviour.Tell(single, "Start");
+            MonoBehaviour.Send(single, "Start");
             single.height = 1.9f;
-            MonoBehaviour.Tell(single, "Update");
+            MonoBehaviour.Send(single, "Update");
             var person = single.transform.GetChild(0).gameObject.GetComponent<AnthroCharacter>();
             Expect.Near(1.9, person.Body.Measures()[3].obtained, 1e-3, "height");
-            MonoBehaviour.Tell(person.GetComponent<AnthroAnimator>(), "LateUpdate");
+            MonoBehaviour.Send(person.GetComponent<AnthroAnimator>(), "LateUpdate");
             UnityEngine.Object.Destroy(single.gameObject);
         }
 
@@ -30,21 +31,18 @@ namespace Anthronet.Tests
             get { return File.ReadAllText(Path.Combine(Root, "unity_plugin/Samples~/Crowd/population.jsonl.txt")); }
         }
 
-        /// The repository: tests run below it.
+        /// The repository, from the path that this file was compiled from: Cargo's target folder may be elsewhere.
         internal static string Root
         {
-            get
-            {
-                var at = new DirectoryInfo(Path.GetDirectoryName(typeof(SampleTests).Assembly.Location));
-                while (at != null && !Directory.Exists(Path.Combine(at.FullName, "unity_plugin")))
-                {
-                    at = at.Parent;
-                }
-                return at == null ? Directory.GetCurrentDirectory() : at.FullName;
-            }
+            get { return Path.GetFullPath(Path.Combine(Path.GetDirectoryName(SourceFile()), "../..")); }
         }
 
-        [Test(Description = "crowd: the population file is 200 different requests, all of which the model takes")]
+        static string SourceFile([CallerFilePath] string path = "")
+        {
+            return path;
+        }
+
+        [Test(Description = "crowd: the population file has 200 different requests, and the model accepts all of them")]
         public static void PopulationFile()
         {
             var requests = Crowd.Requests(Population, 1000);
@@ -53,7 +51,7 @@ namespace Anthronet.Tests
             Expect.Equal(7, Crowd.Requests(Population, 7).Length, "as many as asked for");
             Expect.That(requests.All(request => request.IsGiven(3) && request.Fill == AnthroFill.Sample), "statures");
             Expect.Equal(100, requests.Count(request => request.Sex == AnthroSex.Female), "women");
-            using (var job = AnthroModel.Default.Start(requests))
+            using (var job = AnthroModel.Default.StartJob(requests))
             {
                 int done;
                 while (job.Poll(out done) == AnthroJobState.Running)
@@ -70,18 +68,18 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "crowd: people of the file stand apart, each with one animator, all walking at different times")]
+        [Test(Description = "crowd: people stand apart, each with one animator, all walking at different times")]
         public static void CrowdRuns()
         {
             var crowd = new GameObject("crowd").AddComponent<Crowd>();
             crowd.population = new TextAsset(Population);
             crowd.count = 12;
-            MonoBehaviour.Tell(crowd, "Start");
+            MonoBehaviour.Send(crowd, "Start");
             for (var frame = 0; AnthroRunner.Count > 0; frame++)
             {
                 Expect.That(frame < 30000, "never done");
                 System.Threading.Thread.Sleep(1);
-                MonoBehaviour.Tell((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
+                MonoBehaviour.Send((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
             }
             var people = Enumerable.Range(0, crowd.transform.childCount).Select(i => crowd.transform.GetChild(i).gameObject).ToArray();
             Expect.Equal(12, people.Length, "people");
@@ -112,45 +110,45 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "measure editor: a slider and a switch change the person, a refusal is shown")]
+        [Test(Description = "measure editor: slider and toggle change the character, errors are shown")]
         public static void Editor()
         {
             var editor = new GameObject("editor").AddComponent<MeasureEditor>();
-            MonoBehaviour.Tell(editor, "Start");
+            MonoBehaviour.Send(editor, "Start");
             var person = editor.transform.GetChild(0).gameObject.GetComponent<AnthroCharacter>();
             try
             {
                 var before = person.Body;
-                MonoBehaviour.Tell(editor, "OnGUI");
-                Expect.That(ReferenceEquals(before, person.Body), "made anew although nothing was done");
+                MonoBehaviour.Send(editor, "OnGUI");
+                Expect.That(ReferenceEquals(before, person.Body), "generated again without a change");
                 var row = -1;
-                User.Does = (label, value) => label == "slider" && ++row == 3 ? (object)1.61f : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "slider" && ++row == 3 ? (object)1.61f : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.Near(1.61, person.Body.Measures()[3].obtained, 1e-3, "height");
                 Expect.That(person.Body.Measures()[3].Given && !person.Body.Measures()[0].Given, "given");
-                User.Does = (label, value) => label == "waist circumference" ? (object)true : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "waist circumference" ? (object)true : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(person.Body.Measures()[0].Given, "the waist is not given");
-                User.Does = (label, value) => label == "waist circumference" ? (object)false : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "waist circumference" ? (object)false : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(!person.Body.Measures()[0].Given, "the waist is still given");
-                User.Does = (label, value) => label == "Somebody else" ? (object)true : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "Another person" ? (object)true : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.Equal(1ul, person.Body.Seed, "seed");
                 before = person.Body;
                 row = -1;
-                User.Does = (label, value) => label == "slider" && ++row == 3 ? (object)9f : null;
-                MonoBehaviour.Tell(editor, "OnGUI");
+                User.Answer = (label, value) => label == "slider" && ++row == 3 ? (object)9f : null;
+                MonoBehaviour.Send(editor, "OnGUI");
                 Expect.That(ReferenceEquals(before, person.Body), "a refused request changes the person");
             }
             finally
             {
-                User.Does = null;
+                User.Answer = null;
                 UnityEngine.Object.Destroy(editor.gameObject);
             }
         }
 
-        [Test(Description = "clip player: built-in clips, a file, pause and the bar")]
+        [Test(Description = "clip player: built-in clips, a motion file, pause and the time slider")]
         public static void Player()
         {
             var file = Path.Combine(Path.GetTempPath(), "anthronet-player-" + System.Diagnostics.Process.GetCurrentProcess().Id + ".bvh");
@@ -159,20 +157,20 @@ namespace Anthronet.Tests
             player.file = file;
             try
             {
-                MonoBehaviour.Tell(player, "Start");
+                MonoBehaviour.Send(player, "Start");
                 var animator = player.transform.GetChild(0).gameObject.GetComponent<AnthroAnimator>();
                 Expect.That(animator.Clip != null && animator.Clip.FrameCount == 3, "the file does not play");
-                User.Does = (label, value) => label == "walk" ? (object)true : null;
-                MonoBehaviour.Tell(player, "OnGUI");
+                User.Answer = (label, value) => label == "walk" ? (object)true : null;
+                MonoBehaviour.Send(player, "OnGUI");
                 Expect.Equal("walk", animator.Clip.Name, "clip");
-                User.Does = (label, value) => label == "Pause" ? (object)true : label == "slider" ? (object)0.25f : null;
-                MonoBehaviour.Tell(player, "OnGUI");
+                User.Answer = (label, value) => label == "Pause" ? (object)true : label == "slider" ? (object)0.25f : null;
+                MonoBehaviour.Send(player, "OnGUI");
                 Expect.Equal(0f, animator.Speed, "speed");
                 Expect.Near(0.25, animator.Time, 1e-6, "time");
             }
             finally
             {
-                User.Does = null;
+                User.Answer = null;
                 UnityEngine.Object.Destroy(player.gameObject);
                 File.Delete(file);
             }

@@ -1,10 +1,11 @@
 using System;
+using System.Collections.Generic;
 using System.Reflection;
 using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// What tests set up.
+    /// Shared set-up of tests.
     static class Scene
     {
         const BindingFlags Hidden = BindingFlags.Instance | BindingFlags.Static | BindingFlags.NonPublic;
@@ -21,18 +22,18 @@ namespace Anthronet.Tests
 
         internal static int Joint(AnthroCharacter character, string name)
         {
-            var place = Array.FindIndex(character.Rig.Bones, bone => bone.name == name);
+            var place = character.Rig.IndexOf(name);
             Expect.That(place >= 0, "no joint " + name);
             return place;
         }
 
-        internal static Vector3 At(Transform transform)
+        internal static Vector3 WorldPosition(Transform transform)
         {
             var m = transform.localToWorldMatrix;
             return new Vector3(m.m03, m.m13, m.m23);
         }
 
-        /// What the editor is when nobody plays, until it is disposed of.
+        /// Switches to edit mode until it is disposed.
         internal static IDisposable EditMode()
         {
             Application.Playing = false;
@@ -44,10 +45,10 @@ namespace Anthronet.Tests
             public void Dispose() { Application.Playing = true; }
         }
 
-        /// What loading the code anew leaves of a component: that which Unity serialises.
+        /// Simulates a domain reload of a component: only serialised fields survive.
         internal static void Reload(MonoBehaviour part)
         {
-            foreach (var field in part.GetType().GetFields(Hidden))
+            foreach (var field in Fields(part.GetType()))
             {
                 if (!field.IsStatic && !field.IsPublic && !Attribute.IsDefined(field, typeof(SerializeField)))
                 {
@@ -55,8 +56,26 @@ namespace Anthronet.Tests
                 }
             }
             part.Enabled = false;
-            MonoBehaviour.Tell(part, "OnEnable");
+            MonoBehaviour.Send(part, "OnEnable");
             part.Enabled = true;
+        }
+
+        /// All fields of a component, including private ones of base classes.
+        static IEnumerable<FieldInfo> Fields(Type type)
+        {
+            for (; type != typeof(MonoBehaviour); type = type.BaseType)
+            {
+                foreach (var field in type.GetFields(Hidden | BindingFlags.DeclaredOnly))
+                {
+                    yield return field;
+                }
+            }
+        }
+
+        /// A private field of an object.
+        internal static object Field(object home, string name)
+        {
+            return home.GetType().GetField(name, Hidden).GetValue(home);
         }
 
         internal static object Static(Type type, string name)
@@ -64,7 +83,7 @@ namespace Anthronet.Tests
             return type.GetField(name, Hidden).GetValue(null);
         }
 
-        internal static void End(AnthroCharacter character)
+        internal static void Destroy(AnthroCharacter character)
         {
             if (Application.isPlaying)
             {

@@ -21,7 +21,7 @@ namespace Anthronet.Tests
                 using (var surface = new AnthroSurface(heavy, 1))
                 {
                     var other = AnthroMeshes.Create(surface, heavy.Joints(), "heavy");
-                    var mesh = character.MeshOf(1);
+                    var mesh = character.GetMesh(1);
                     Vector3[] way = mesh.Shapes["heavy"], turn = mesh.ShapeNormals["heavy"];
                     Expect.That(turn.Any(delta => delta.magnitude > 0.1f), "normals do not turn");
                     for (var v = 0; v < mesh.vertexCount; v++)
@@ -33,12 +33,12 @@ namespace Anthronet.Tests
                 }
                 Expect.Code(AnthroError.Invalid, "", () => character.AddBlendShape("", heavy), "no name");
                 character.Generate();
-                Expect.Equal(0, character.MeshOf(1).blendShapeCount, "shapes of the body before");
+                Expect.Equal(0, character.GetMesh(1).blendShapeCount, "shapes of the body before");
                 UnityEngine.Object.Destroy(character.gameObject);
             }
         }
 
-        [Test(Description = "blend shapes take their arrays from a pool, whichever levels they are for")]
+        [Test(Description = "blend shapes reuse pooled arrays for all levels of detail")]
         public static void Pooled()
         {
             using (var heavy = AnthroModel.Default.Generate(Scene.Request().Set("waist_circumference", 1.2)))
@@ -46,18 +46,18 @@ namespace Anthronet.Tests
                 var character = Scene.Character(2, 3);
                 character.AddBlendShape("first", heavy);
                 var pool = (Dictionary<int, Vector3[][]>)Scene.Static(typeof(AnthroMeshes), "pool");
-                var arrays = new[] { 2, 3 }.Select(lod => pool[character.MeshOf(lod).vertexCount][0]).ToArray();
+                var arrays = new[] { 2, 3 }.Select(lod => pool[character.GetMesh(lod).vertexCount][0]).ToArray();
                 character.AddBlendShape("second", heavy);
-                Expect.That(new[] { 2, 3 }.Select(lod => pool[character.MeshOf(lod).vertexCount][0]).SequenceEqual(arrays), "new ones");
+                Expect.That(new[] { 2, 3 }.Select(lod => pool[character.GetMesh(lod).vertexCount][0]).SequenceEqual(arrays), "new ones");
                 character.SetBlendShapeWeight("second", 40f);
                 foreach (var lod in new[] { 2, 3 })
                 {
-                    Expect.Equal(40f, character.RendererOf(lod).GetBlendShapeWeight(1), "weight of LOD" + lod);
-                    Expect.Equal(0f, character.RendererOf(lod).GetBlendShapeWeight(0), "weight of the other one");
+                    Expect.Equal(40f, character.GetRenderer(lod).GetBlendShapeWeight(1), "weight of LOD" + lod);
+                    Expect.Equal(0f, character.GetRenderer(lod).GetBlendShapeWeight(0), "weight of the other one");
                 }
                 Expect.Throws<ArgumentException>(() => character.SetBlendShapeWeight("third", 1f), "a name that there is not");
-                Expect.Equal(2, character.MeshOf(2).blendShapeCount, "shapes");
-                Scene.End(character);
+                Expect.Equal(2, character.GetMesh(2).blendShapeCount, "shapes");
+                Scene.Destroy(character);
             }
         }
     }

@@ -8,13 +8,13 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// What the stand-ins have of Unity: nothing that is not on the list, each with the page that documents it.
+    /// Compares the API of the stand-ins with signatures.txt, which has a documentation page for every member.
     [TestFixture]
     public static class SignatureTests
     {
         const string Manual = "https://docs.unity3d.com/2021.3/Documentation/ScriptReference/";
         const string Burst = "https://docs.unity3d.com/Packages/com.unity.burst@1.8/api/";
-        /// Unity's own source, for what its manual has no page of.
+        /// Unity's own source, for members without a page in the manual.
         const string Source = "https://github.com/Unity-Technologies/UnityCsReference/blob/2021.3/";
         const BindingFlags Own = BindingFlags.Public | BindingFlags.Instance | BindingFlags.Static | BindingFlags.DeclaredOnly;
 
@@ -54,7 +54,7 @@ namespace Anthronet.Tests
                 (p.IsDefined(typeof(ParamArrayAttribute)) ? "params " : "") + Name(p.ParameterType) + " " + p.Name)) + ")";
         }
 
-        /// The page of a type: its name without UnityEngine and UnityEditor, nested ones after a dot.
+        /// The documentation page of a type: its name without UnityEngine or UnityEditor, with a dot before nested types.
         static string Page(Type type)
         {
             if (type.Namespace == "Unity.Burst")
@@ -69,7 +69,7 @@ namespace Anthronet.Tests
             return Manual + name;
         }
 
-        /// The file of Unity's source that has a member without a page; null of one that has a page.
+        /// The file of Unity's source for a member without a documentation page; null if it has one.
         static string Undocumented(Type type, string member)
         {
             switch (type.Name)
@@ -80,6 +80,8 @@ namespace Anthronet.Tests
                     return member.EndsWith("AnimationClipSettings") ? "Editor/Mono/Animation/AnimationUtility.bindings.cs" : null;
                 case "Matrix4x4":
                     return member.Length == 3 && member[0] == 'm' ? "Runtime/Export/Math/Matrix4x4.cs" : null;
+                case "MovedFromAttribute":
+                    return "Runtime/Export/Scripting/APIUpdating/UpdatedFromAttribute.cs";
                 case "SkinnedMeshRenderer":
                     return member == "rootBone" ? "Runtime/Export/Graphics/GraphicsRenderers.bindings.cs" : null;
                 default:
@@ -87,7 +89,7 @@ namespace Anthronet.Tests
             }
         }
 
-        /// A line of the list: what a type or a member of it is, and where it is documented.
+        /// A line of the list: a type or member, and where it is documented.
         static string Line(string what, Type type, string member, string page)
         {
             var file = Undocumented(type, member);
@@ -113,7 +115,7 @@ namespace Anthronet.Tests
             }
             foreach (var made in type.GetConstructors(Own).Where(made => made.GetParameters().Length > 0))
             {
-                yield return "  " + Name(type) + Parameters(made) + " | " + page + "-ctor.html";
+                yield return Line("  " + Name(type) + Parameters(made), type, "", page + "-ctor.html");
             }
             foreach (var property in type.GetProperties(Own))
             {
@@ -129,9 +131,9 @@ namespace Anthronet.Tests
                 yield return Line("  " + (reader.IsStatic ? "static " : "") + Name(property.PropertyType) + " " + name + " {" + access + " }",
                     type, property.Name, page + place + ".html");
             }
-            foreach (var told in type.GetEvents(Own))
+            foreach (var raised in type.GetEvents(Own))
             {
-                yield return "  event " + Name(told.EventHandlerType) + " " + told.Name + " | " + page + "-" + told.Name + ".html";
+                yield return "  event " + Name(raised.EventHandlerType) + " " + raised.Name + " | " + page + "-" + raised.Name + ".html";
             }
             foreach (var method in type.GetMethods(Own).Where(method => !method.IsSpecialName || method.Name.StartsWith("op_")))
             {
@@ -157,7 +159,7 @@ namespace Anthronet.Tests
             }
         }
 
-        /// The list as it is to be.
+        /// The list as it should be.
         internal static string Text()
         {
             var text = new StringBuilder();
@@ -168,7 +170,7 @@ namespace Anthronet.Tests
             return text.ToString();
         }
 
-        [Test(Description = "the stand-ins have of Unity what signatures.txt lists, each member with its page, and nothing else")]
+        [Test(Description = "the stand-ins have exactly the API in signatures.txt, where each member has its documentation page")]
         public static void Listed()
         {
             var file = Path.Combine(SampleTests.Root, "tests/unity/signatures.txt");

@@ -9,13 +9,13 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Skinning on the processor.
+    /// Skinning on the CPU.
     [TestFixture]
     public static unsafe class SkinTests
     {
         const double Seconds = 0.35;
 
-        /// Positions and normals of one part by Unity's formula, on the joints' transforms.
+        /// Positions and normals of a part by Unity's formula, from the joints' transforms.
         static void Formula(AnthroCharacter character, Mesh mesh, int part, Vector3[] positions, Vector3[] normals)
         {
             var matrices = character.Rig.Bones.Select((bone, i) => bone.localToWorldMatrix * mesh.bindposes[i]).ToArray();
@@ -37,11 +37,11 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "skinning on the processor agrees with Unity's formula: positions and normals of all parts")]
+        [Test(Description = "skinning on the CPU agrees with Unity's formula: positions and normals of all parts")]
         public static void Skinning()
         {
             var character = Scene.Character(1, 1);
-            var mesh = character.MeshOf(1);
+            var mesh = character.GetMesh(1);
             using (var clip = AnthroClip.Builtin("walk", character.Body))
             using (var surface = new AnthroSurface(character.Body, 1))
             {
@@ -55,7 +55,7 @@ namespace Anthronet.Tests
                     crowd.Run();
                     var pose = new AnthroTransform[clip.JointCount];
                     clip.Sample(Seconds, AnthroWrap.Loop, pose);
-                    character.Rig.ToPose(pose);
+                    character.Rig.ApplyPose(pose);
                     for (var part = 0; part < skinners.Length; part++)
                     {
                         var count = skinners[part].VertexCount;
@@ -74,10 +74,10 @@ namespace Anthronet.Tests
                 }
                 Array.ForEach(skinners, skinner => skinner.Dispose());
             }
-            Scene.End(character);
+            Scene.Destroy(character);
         }
 
-        [Test(Description = "the entry for Burst writes what the crowd's does: from a job, into one vertex buffer, and with its errors")]
+        [Test(Description = "AnthroSkin.Run gives the same as AnthroCrowdSkin: from a Burst job, interleaved in one vertex buffer, and with errors")]
         public static void Burst()
         {
             using (var body = AnthroModel.Default.Generate(Scene.Request()))
@@ -105,7 +105,7 @@ namespace Anthronet.Tests
                 Expect.That(expected.SequenceEqual(Enumerable.Range(0, expected.Length).Select(i => crowd.Positions[i])), "positions");
                 Expect.That(turned.SequenceEqual(Enumerable.Range(0, turned.Length).Select(i => crowd.Normals[i])), "normals");
 
-                // Position and normal of a vertex beside each other, as a vertex buffer has them.
+                // Position and normal interleaved, as in a vertex buffer.
                 var rows = new Vector3[2 * skinner.VertexCount];
                 fixed (Vector3* first = rows)
                 {
@@ -140,7 +140,7 @@ namespace Anthronet.Tests
         [DllImport("anthronet")]
         static extern void UnityPluginUnload();
 
-        [Test(Description = "as a rendering plugin: Unity loads it, the render thread poses a batch, other events pose nothing")]
+        [Test(Description = "rendering plugin: Unity loads it, the render thread skins a batch, other events do nothing")]
         public static void RenderThread()
         {
             UnityPluginLoad((IntPtr)4096);
@@ -186,7 +186,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "what Burst is handed has pointers and numbers alone")]
+        [Test(Description = "structures for Burst have only pointers and numbers")]
         public static void Blittable()
         {
             foreach (var field in typeof(AnthroSkinJob).GetFields())
@@ -198,7 +198,7 @@ namespace Anthronet.Tests
             Expect.Equal(sizeof(AnthroSkinJob), Marshal.SizeOf(typeof(AnthroSkinJob)), "size");
         }
 
-        [Test(Description = "a crowd that nobody disposes of is freed by its finaliser")]
+        [Test(Description = "a crowd that nobody disposes is freed by its finaliser")]
         public static void Finalised()
         {
             using (var body = AnthroModel.Default.Generate(new AnthroRequest()))

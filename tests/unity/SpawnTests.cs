@@ -6,20 +6,20 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Characters that are made over frames, and pools.
+    /// Spawning over several frames, and pools.
     [TestFixture]
     public static class SpawnTests
     {
-        [Test(Description = "characters spawn over frames, some fail, some are cancelled")]
+        [Test(Description = "characters spawn over several frames, some fail, some are cancelled")]
         public static void Spawn()
         {
             var requests = Enumerable.Range(1, 6).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
             requests[2].Set("height", 9);
             var settings = new AnthroSettings { finestLod = 2, coarsestLod = 3 };
-            var told = new List<int>();
+            var spawned = new List<int>();
             var spawn = AnthroFactory.CreateAsync(requests, settings);
             requests[0].Set("height", 9);
-            spawn.OnSpawned += (i, character) => told.Add(i);
+            spawn.OnSpawned += (i, character) => spawned.Add(i);
             var frames = 0;
             while (!spawn.Advance(0))
             {
@@ -28,11 +28,11 @@ namespace Anthronet.Tests
                 Expect.That(frames < 30000, "never done");
             }
             Expect.That(frames > 5 * 5, "only " + frames + " frames: a budget of nothing does one step a frame");
-            Expect.Equal("0 1 3 4 5", string.Join(" ", told), "spawned");
+            Expect.Equal("0 1 3 4 5", string.Join(" ", spawned), "spawned");
             Expect.Equal(AnthroError.Request, spawn.Error(2).Code, "its error");
             Expect.That(spawn.Character(2) == null && spawn.Character(5).Body.Seed == 6, "characters");
             spawn.Dispose();
-            foreach (var i in told)
+            foreach (var i in spawned)
             {
                 UnityEngine.Object.Destroy(spawn.Character(i).gameObject);
             }
@@ -50,7 +50,7 @@ namespace Anthronet.Tests
             many.Dispose();
         }
 
-        [Test(Description = "a spawn that is disposed of leaves nothing half made")]
+        [Test(Description = "disposing a spawn leaves nothing half made")]
         public static void Halfway()
         {
             var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 });
@@ -63,10 +63,10 @@ namespace Anthronet.Tests
             spawn.Dispose();
             spawn.Dispose();
             Expect.Equal(before, UnityEngine.Object.Alive, "objects that are alive");
-            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it goes on");
+            Expect.That(spawn.Advance(1) && spawn.Character(0) == null, "it continues");
         }
 
-        [Test(Description = "as many jobs as there are cores, and no more than requests")]
+        [Test(Description = "one job per core, and no more than requests")]
         public static void Jobs()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
@@ -74,20 +74,19 @@ namespace Anthronet.Tests
             {
                 using (var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), count).ToArray(), settings))
                 {
-                    var jobs = (AnthroJob[])typeof(AnthroSpawn).GetField("jobs", System.Reflection.BindingFlags.Instance
-                        | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+                    var jobs = (AnthroJob[])Scene.Field(spawn, "jobs");
                     Expect.Equal(Math.Max(1, Math.Min(count, Math.Min(16, Environment.ProcessorCount))), jobs.Length, "jobs");
                     Expect.Equal(count == 0, spawn.IsDone, "done");
                 }
             }
         }
 
-        [Test(Description = "what fails on the main thread is the error of that character, and handlers that throw stop nobody")]
+        [Test(Description = "an exception on the main thread is the error of that character alone, and handlers that throw stop nothing")]
         public static void Thrown()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
-            // The materials are kept for the next ones: make them first.
-            Scene.End(Scene.Character(3, 3));
+            // Make the materials first: they stay cached.
+            Scene.Destroy(Scene.Character(3, 3));
             var alive = UnityEngine.Object.Alive;
             using (var spawn = AnthroFactory.CreateAsync(
                 Enumerable.Range(1, 4).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray(), settings))
@@ -100,18 +99,17 @@ namespace Anthronet.Tests
                     }
                 };
                 Debug.Errors.Clear();
-                var half = (AnthroCharacter[])typeof(AnthroSpawn).GetField("characters",
-                    System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
-                // A budget of nothing takes one step: while the third is made its object is taken away.
+                var half = (AnthroCharacter[])Scene.Field(spawn, "characters");
+                // A zero budget takes one step per call: destroys the third character while it is being made.
                 while (!spawn.Advance(0))
                 {
-                    if (spawn.Done == 2 && half[2] != null)
+                    if (spawn.DoneCount == 2 && half[2] != null)
                     {
                         UnityEngine.Object.Destroy(half[2].gameObject);
                     }
                     System.Threading.Thread.Sleep(1);
                 }
-                Expect.That(Debug.Errors.Any(error => error.Contains("a handler")), "the handler is not told");
+                Expect.That(Debug.Errors.Any(error => error.Contains("a handler")), "the handler's exception is not logged");
                 Debug.Errors.Clear();
                 for (var i = 0; i < 4; i++)
                 {
@@ -123,7 +121,7 @@ namespace Anthronet.Tests
             Expect.Equal(alive, UnityEngine.Object.Alive, "objects that are alive");
         }
 
-        [Test(Description = "nobody is seen before it is whole")]
+        [Test(Description = "nothing is visible before it is complete")]
         public static void Asleep()
         {
             using (var spawn = AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, new AnthroSettings { finestLod = 2 }))
@@ -134,9 +132,9 @@ namespace Anthronet.Tests
                 {
                     while (!other.Advance(0))
                     {
-                        Expect.That(parent.childCount == 0 || !parent.GetChild(0).gameObject.activeSelf, "awake");
+                        Expect.That(parent.childCount == 0 || !parent.GetChild(0).gameObject.activeSelf, "active while unfinished");
                     }
-                    Expect.That(parent.GetChild(0).gameObject.activeSelf, "asleep when it is whole");
+                    Expect.That(parent.GetChild(0).gameObject.activeSelf, "inactive when finished");
                 }
                 UnityEngine.Object.Destroy(parent.gameObject);
             }
@@ -148,28 +146,28 @@ namespace Anthronet.Tests
             {
                 Expect.That(frame < 30000, "never done");
                 System.Threading.Thread.Sleep(1);
-                MonoBehaviour.Tell((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
+                MonoBehaviour.Send((AnthroRunner)Scene.Static(typeof(AnthroRunner), "runner"), "Update");
             }
         }
 
-        [Test(Description = "the runner advances spawns each frame, frees them, and goes on when one throws")]
+        [Test(Description = "the runner advances spawns every frame, disposes finished ones, and continues if one throws")]
         public static void Running()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
             var first = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest() }, settings));
             var second = AnthroRunner.Run(AnthroFactory.CreateAsync(new[] { new AnthroRequest { Seed = 2 } }, settings));
-            // Its parts are gone: it cannot go on.
+            // Break it, so that it throws.
             typeof(AnthroSpawn).GetField("requests", System.Reflection.BindingFlags.Instance
                 | System.Reflection.BindingFlags.NonPublic).SetValue(second, null);
             Debug.Errors.Clear();
             Frames(() => first.IsDone && AnthroRunner.Count == 0);
-            Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the one that throws is not told");
+            Expect.That(Debug.Errors.Any(error => error.Contains("NullReference")), "the exception is not logged");
             Debug.Errors.Clear();
             Expect.Throws<ObjectDisposedException>(first.Cancel, "it is not freed");
-            Scene.End(first.Character(0));
+            Scene.Destroy(first.Character(0));
         }
 
-        [Test(Description = "the runner ends with the play mode, and in edit mode the editor drives it")]
+        [Test(Description = "the runner ends with play mode, and in edit mode the editor drives it")]
         public static void RunnerEnds()
         {
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3 };
@@ -187,21 +185,21 @@ namespace Anthronet.Tests
                     UnityEditor.EditorApplication.update();
                 }
                 Expect.That(UnityEditor.EditorApplication.update == null, "the editor still calls it");
-                Scene.End(edited.Character(0));
+                Scene.Destroy(edited.Character(0));
                 var left = AnthroRunner.Run(AnthroFactory.CreateAsync(requests, settings));
                 UnityEditor.EditorApplication.update();
-                UnityEditor.EditorApplication.Tell(UnityEditor.PlayModeStateChange.ExitingEditMode);
+                UnityEditor.EditorApplication.Raise(UnityEditor.PlayModeStateChange.ExitingEditMode);
                 Expect.Throws<ObjectDisposedException>(left.Cancel, "not freed before the play mode");
                 Expect.Equal(0, AnthroRunner.Count, "spawns");
                 foreach (var i in Enumerable.Range(0, 50).Where(i => left.Character(i) != null))
                 {
-                    Scene.End(left.Character(i));
+                    Scene.Destroy(left.Character(i));
                 }
                 UnityEditor.EditorApplication.update();
             }
         }
 
-        [Test(Description = "before the code is loaded anew threads stop and native memory is released")]
+        [Test(Description = "before a domain reload threads stop and native memory is released")]
         public static void ReleasedBeforeReload()
         {
             var body = AnthroModel.Default.Generate(new AnthroRequest());
@@ -211,53 +209,52 @@ namespace Anthronet.Tests
             var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount);
             var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), 50).ToArray());
             System.Runtime.CompilerServices.RuntimeHelpers.RunClassConstructor(typeof(Editor.AnthroReload).TypeHandle);
-            UnityEditor.AssemblyReloadEvents.Tell();
+            UnityEditor.AssemblyReloadEvents.Raise();
             Expect.Throws<ObjectDisposedException>(() => body.Joints(), "body");
             Expect.Throws<ObjectDisposedException>(() => clip.Bake(), "clip");
             Expect.Throws<ObjectDisposedException>(() => crowd.Run(), "crowd");
             Expect.Throws<ObjectDisposedException>(spawn.Cancel, "spawn");
-            var packers = (System.Threading.Thread[])typeof(AnthroSpawn).GetField("packers", System.Reflection.BindingFlags.Instance
-                | System.Reflection.BindingFlags.NonPublic).GetValue(spawn);
+            var packers = (System.Threading.Thread[])Scene.Field(spawn, "packers");
             Expect.That(packers.All(thread => !thread.IsAlive), "threads run on");
-            // What comes afterwards begins anew.
+            // New objects work afterwards.
             using (var again = AnthroModel.Default.Generate(new AnthroRequest()))
             {
                 Expect.Equal(0ul, again.Seed, "seed");
             }
         }
 
-        [Test(Description = "the pool gives characters again: asleep, silent, without their clip, and each once")]
+        [Test(Description = "the pool reuses characters: inactive, without handlers and clip, each of them once")]
         public static void Pool()
         {
             var pool = new AnthroPool();
             var settings = new AnthroSettings { finestLod = 3, coarsestLod = 3, pool = pool };
             var first = AnthroFactory.Create(new AnthroRequest { Seed = 1 }, settings);
-            var told = 0;
-            first.OnReport += body => told++;
+            var reports = 0;
+            first.OnGenerated += body => reports++;
             var animator = first.gameObject.AddComponent<AnthroAnimator>();
             animator.Play("walk");
             pool.Release(first);
             pool.Release(first);
             Expect.Equal(1, pool.Count, "in the pool");
-            Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "awake, or still walking");
-            var taken = pool.Take();
-            Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "the old person is awake");
+            Expect.That(!first.gameObject.activeSelf && animator.Clip == null, "active, or still playing");
+            var taken = pool.Get();
+            Expect.That(ReferenceEquals(first, taken) && !taken.gameObject.activeSelf, "active with the old body");
             pool.Release(taken);
             var second = AnthroFactory.Create(new AnthroRequest { Seed = 2 }, settings);
-            Expect.That(ReferenceEquals(first, second) && second.gameObject.activeSelf, "the same, awake");
+            Expect.That(ReferenceEquals(first, second) && second.gameObject.activeSelf, "the same character, active");
             Expect.Equal(2ul, second.Body.Seed, "another person");
-            Expect.Equal(0, told, "reports of the other person");
+            Expect.Equal(0, reports, "events of the previous user");
             Debug.Errors.Clear();
             Expect.That(second.gameObject.AddComponent<AnthroAnimator>() == null && Debug.Errors.Count == 1, "two animators");
             Debug.Errors.Clear();
             animator.Play("idle");
-            var joint = Scene.At(second.Rig.Find("hand_l"));
+            var joint = Scene.WorldPosition(second.Rig.Find("hand_l"));
             second.Request.Set("height", 1.55);
             second.Generate();
-            Expect.That((Scene.At(second.Rig.Find("hand_l")) - joint).magnitude > 0.01f, "it does not follow");
+            Expect.That((Scene.WorldPosition(second.Rig.Find("hand_l")) - joint).magnitude > 0.01f, "it does not follow");
             pool.Release(second);
             UnityEngine.Object.Destroy(second.gameObject);
-            Expect.That(pool.Take() == null, "a destroyed one is not given");
+            Expect.That(pool.Get() == null, "a destroyed one is not given");
             var third = AnthroFactory.Create(new AnthroRequest { Seed = 3 }, settings);
             pool.Release(third);
             pool.Clear();

@@ -5,12 +5,12 @@ using UnityEngine;
 
 namespace Anthronet.Tests
 {
-    /// Prints times beside their bars. Machines differ and are shared: no time fails.
+    /// Prints times with their targets. Machines differ and are shared: no time fails.
     static class Speed
     {
         internal static void Print(int avatars)
         {
-            // Compiled, read, and allocated once.
+            // Warm-up: compilation, caches, allocation.
             Spawn(1, 1);
             var spawn = Enumerable.Range(0, 15).Select(i => Milliseconds(() => Fill((ulong)i + 20))).OrderBy(t => t).ToArray();
             Line("spawn of LOD1, request to filled buffers (median of 15)", spawn[7], "ms", 10);
@@ -82,8 +82,8 @@ namespace Anthronet.Tests
             Expect.Equal(avatars, whole, "characters");
         }
 
-        /// The longest step that `Advance` takes for a character, median of many, milliseconds. The stand-ins copy meshes as
-        /// Unity does; what else Unity does with them comes on top.
+        /// The longest step of `Advance` for a character, median of several, milliseconds. The stand-ins copy meshes as
+        /// Unity does; Unity's other work comes on top.
         static double Longest(int finest)
         {
             var requests = Enumerable.Range(1, 20).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
@@ -92,9 +92,9 @@ namespace Anthronet.Tests
             {
                 while (!spawn.IsDone)
                 {
-                    // Packing, which is beside the main thread, gets on meanwhile.
+                    // Packing continues on its own thread meanwhile.
                     System.Threading.Thread.Sleep(2);
-                    var at = spawn.Done;
+                    var at = spawn.DoneCount;
                     longest[at] = Math.Max(longest[at], Milliseconds(() => spawn.Advance(0)));
                 }
                 for (var i = 0; i < spawn.Count; i++)

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use anthronet::measure::MEASURE_COUNT;
 use anthronet::network::config::GeneratorConfig;
 use anthronet_trainer::generator::{ShapeStatistics, TrainingOptions, TrainingSet, synthetic_set, train};
 use safetensors::SafeTensors;
@@ -76,6 +77,6 @@ fn read(
     let mut coefficients: Vec<f32> = bytemuck::pod_collect_to_vec(get("coefficients")?.data());
     let mut measures: Vec<f32> = bytemuck::pod_collect_to_vec(get("measures")?.data());
     coefficients.truncate(count * k);
-    measures.truncate(count * 36);
+    measures.truncate(count * MEASURE_COUNT);
     Ok(TrainingSet { count, k, coefficients, measures, sex })
 }

@@ -125,7 +125,7 @@ impl<'a> Gauge<'a> {
         Self { definitions, place, stencils }
     }
 
-    /// The 36 measures of a body given its points.
+    /// The measures of a body given its points.
     pub fn read(&self, points: &[Vec3]) -> Measurements {
         let refined: Vec<DVec3> = self
             .stencils

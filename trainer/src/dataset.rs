@@ -22,7 +22,7 @@ pub struct Bodies {
     pub numbers: Vec<u64>,
     /// Coefficients, `COMPONENTS` a body, metres.
     pub coefficients: Vec<f32>,
-    /// Measures, 36 a body, metres.
+    /// Measures, `MEASURE_COUNT` a body, metres.
     pub measures: Vec<f32>,
     /// 0 female, 1 male.
     pub sex: Vec<u8>,
@@ -275,7 +275,7 @@ mod tests {
         );
         assert_eq!(read.rejected, DRAWN as usize - 7);
         assert_eq!((read.held_out.len(), read.held_out.sex(0)), (2, Sex::Male));
-        assert_eq!(read.train.measures(1), &written.train.measures[36..72]);
+        assert_eq!(read.train.measures(1), &written.train.measures[MEASURE_COUNT..2 * MEASURE_COUNT]);
 
         let bytes = std::fs::read(&path).unwrap();
         std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();

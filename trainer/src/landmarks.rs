@@ -7,7 +7,9 @@
 
 use std::collections::BTreeSet;
 
+use anthronet::Side;
 use anthronet::measure::{Definition, Kind, MeasureId, Point};
+use anthronet::skeleton::{RigJoint, SidedJoint};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -32,7 +34,7 @@ const NIPPLES: [u32; 2] = [1_840, 8_512];
 
 /// Name without side, and where it lies (left side).
 #[rustfmt::skip]
-const PLAN: [(&str, Landmarks); 24] = [
+const PLAN: &[(&str, Landmarks)] = &[
     ("waist_circumference", Loop(WAIST, [0.0, 1.0, 0.0])),
     ("chest_circumference", Torso(NIPPLES)),
     ("hip_circumference", Loop(HIP, [0.0, 1.0, 0.0])),
@@ -120,11 +122,10 @@ pub fn definitions(corpus: &Corpus, mirror: &dyn Fn(u32) -> Option<u32>) -> Resu
     let mut out = Vec::new();
     for id in MeasureId::all() {
         let name = id.name();
-        let right = name.ends_with("_right");
-        let stem = name.trim_end_matches("_left").trim_end_matches("_right");
+        let right = id.side() == Some(Side::Right);
         let (_, landmarks) = PLAN
             .iter()
-            .find(|p| p.0 == stem)
+            .find(|p| p.0 == id.base_name())
             .ok_or_else(|| Error::Invalid(format!("no landmarks for {name}")))?;
         let side = |v: u32| -> Result<u32> {
             if !right {
@@ -244,20 +245,24 @@ impl Surface {
     /// Edges of the torso that the nipple plane meets on some body, and two rings more.
     fn torso_cuts(&self, corpus: &Corpus, nipples: [u32; 2]) -> Result<Vec<[u32; 2]>> {
         let rig = &corpus.assets.rig;
-        let limb = |name: &str| {
-            [
-                "arm", "hand", "thumb", "index", "middle", "ring", "pinky", "thigh", "calf", "foot", "ball",
-                "head", "jaw", "neck",
-            ]
-            .iter()
-            .any(|part| name.contains(part))
+        let of_torso = |name: &str| {
+            use RigJoint as R;
+            // Eyes move no skin; that they are counted here makes no difference.
+            let sided = |joint| matches!(joint, SidedJoint::Clavicle | SidedJoint::Eye);
+            match RigJoint::from_name(name) {
+                Some(R::Root | R::Pelvis | R::Spine01 | R::Spine02 | R::Spine03) => true,
+                joint => joint.and_then(RigJoint::sided).is_some_and(sided),
+            }
         };
         // Torso share of each surface vertex, by refining the cage's.
         let share: Vec<Vec3> = rig.weights[..corpus.cage().vertex_count]
             .iter()
             .map(|w| {
-                let torso: f32 =
-                    w.iter().filter(|(j, _)| !limb(&rig.joints[usize::from(*j)].name)).map(|(_, w)| w).sum();
+                let torso: f32 = w
+                    .iter()
+                    .filter(|(j, _)| of_torso(&rig.joints[usize::from(*j)].name))
+                    .map(|(_, w)| w)
+                    .sum();
                 Vec3::splat(torso)
             })
             .collect();
@@ -310,10 +315,10 @@ mod tests {
     #[test]
     fn every_measure_has_its_landmarks() {
         for id in MeasureId::all() {
-            let stem = id.name().trim_end_matches("_left").trim_end_matches("_right");
-            assert_eq!(PLAN.iter().filter(|p| p.0 == stem).count(), 1, "{stem}");
+            let base = id.base_name();
+            assert_eq!(PLAN.iter().filter(|p| p.0 == base).count(), 1, "{base}");
         }
-        for (name, landmarks) in &PLAN {
+        for (name, landmarks) in PLAN {
             if let Loop(around, normal) = landmarks {
                 assert!(around.len() >= 20, "{name}");
                 assert!((DVec3::from(*normal).length() - 1.0).abs() < 1e-6, "{name}");

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use anthronet::measure::Sex;
 use anthronet::random::Random;
+use anthronet::skeleton::SidedJoint;
 use glam::Vec3;
 
 use crate::assets::{Assets, CROWN, HEELS, Modifier, Target};
@@ -230,11 +231,8 @@ fn three(value: f64, names: [&'static str; 3]) -> [(&'static str, f64); 3] {
 fn toe_length(assets: &Assets) -> Result<[Target; 2]> {
     let mut feet = [Target::default(), Target::default()];
     let heads = assets.mesh.raw_of_surface.len();
-    for (target, side) in feet.iter_mut().zip(["l", "r"]) {
-        let ball = assets
-            .rig
-            .find(&format!("ball_{side}"))
-            .ok_or_else(|| Error::Source(format!("the rig has no joint ball_{side}")))?;
+    for (target, ball) in feet.iter_mut().zip(SidedJoint::Ball.both()) {
+        let ball = assets.rig.require(ball.name())?;
         let start = assets.base[heads + ball];
         for (p, influences) in assets.rig.weights.iter().enumerate() {
             let ahead = assets.base[p].z - start.z;

@@ -4,10 +4,12 @@
 //! lie on one line along ±X. The swing is the shortest rotation, found anew for each body: one rotation for all
 //! bodies would leave the arms up to several millimetres off. Vertices follow by linear blend skinning.
 
+use anthronet::Side;
+use anthronet::skeleton::{RigJoint, SidedJoint};
 use glam::{Quat, Vec3};
 
+use crate::Result;
 use crate::assets::Assets;
-use crate::{Error, Result};
 
 /// The joints of one arm, and how much each point follows its three segments.
 struct Arm {
@@ -31,22 +33,24 @@ impl TPose {
     /// # Errors
     /// [`Error::Source`] when a joint is missing.
     pub fn new(assets: &Assets) -> Result<Self> {
-        let joint = |name: &str| {
-            assets.rig.find(name).ok_or_else(|| Error::Source(format!("the rig has no joint {name}")))
-        };
+        let joint = |joint: RigJoint| assets.rig.require(joint.name());
         let heads = assets.mesh.raw_of_surface.len();
-        let arm = |side: &str, outward: Vec3| -> Result<Arm> {
-            let names = ["upperarm", "lowerarm", "hand", "middle_01"];
+        let arm = |side: Side| -> Result<Arm> {
+            let chain = [SidedJoint::Upperarm, SidedJoint::Lowerarm, SidedJoint::Hand, SidedJoint::Middle01];
             let mut joints = [0; 4];
-            for (slot, name) in joints.iter_mut().zip(names) {
-                *slot = joint(&format!("{name}_{side}"))?;
+            for (slot, of_arm) in joints.iter_mut().zip(chain) {
+                *slot = joint(of_arm.on(side))?;
             }
+            let outward = match side {
+                Side::Left => Vec3::X,
+                Side::Right => Vec3::NEG_X,
+            };
             Ok(Arm { outward, chain: joints.map(|j| heads + j), weights: weights(assets, &joints) })
         };
         Ok(Self {
-            arms: [arm("l", Vec3::X)?, arm("r", Vec3::NEG_X)?],
-            pelvis: heads + joint("pelvis")?,
-            ground: heads + joint("Root")?,
+            arms: [arm(Side::Left)?, arm(Side::Right)?],
+            pelvis: heads + joint(RigJoint::Pelvis)?,
+            ground: heads + joint(RigJoint::Root)?,
         })
     }
 

@@ -4,7 +4,7 @@ using UnityEngine;
 
 namespace Anthronet.Editor
 {
-    /// <summary>The inspector of a character: its request with the report, generate, randomise, save.</summary>
+    /// <summary>Inspector of a character: request with report, Generate, Randomise, Save as prefab.</summary>
     [CustomEditor(typeof(AnthroCharacter))]
     public sealed class AnthroCharacterEditor : UnityEditor.Editor
     {
@@ -20,14 +20,8 @@ namespace Anthronet.Editor
         public override void OnInspectorGUI()
         {
             var character = (AnthroCharacter)target;
-            try
+            if (!AnthroRequestGui.DrawWithLibrary(() => Draw(character)))
             {
-                Draw(character);
-            }
-            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
-            {
-                // Thrown anew at each repaint until the library is there: nothing to fill the console with.
-                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
                 EditorGUILayout.PropertyField(serializedObject.FindProperty("generateOnAwake"), true);
                 serializedObject.ApplyModifiedProperties();
             }
@@ -59,7 +53,7 @@ namespace Anthronet.Editor
             serializedObject.ApplyModifiedProperties();
             if (character.IsBaked)
             {
-                EditorGUILayout.HelpBox("Baked: its meshes are assets. Generate makes it one that is generated.", MessageType.Info);
+                EditorGUILayout.HelpBox("Baked: meshes and avatar are assets. Generate replaces them by generated ones.", MessageType.Info);
             }
             if (GUILayout.Button("Generate"))
             {
@@ -72,10 +66,10 @@ namespace Anthronet.Editor
             if (body != null && GUILayout.Button("Save as prefab…"))
             {
                 var path = EditorUtility.SaveFilePanelInProject(
-                    "Save character", character.name, "prefab", "Where the character is saved with all that it consists of");
+                    "Save character", character.name, "prefab", "The prefab; request, meshes, avatar and materials go into an asset beside it.");
                 if (!string.IsNullOrEmpty(path))
                 {
-                    Told(() => AnthroSave.SavePrefab(character, path));
+                    ShowErrors(() => AnthroSave.SavePrefab(character, path));
                 }
             }
             if (character.Body != null)
@@ -84,7 +78,7 @@ namespace Anthronet.Editor
             }
         }
 
-        /// <summary>Makes it another person with the same given measures. Undone as one step.</summary>
+        /// <summary>Generates another person with the same requested measures. One undo step.</summary>
         internal static void Randomise(AnthroCharacter character)
         {
             var holder = character.RequestAsset != null ? (UnityEngine.Object)character.RequestAsset : character;
@@ -95,16 +89,16 @@ namespace Anthronet.Editor
             Generate(character, "Randomise");
         }
 
-        /// <summary>Generates it and marks the scene as changed; what is refused is told in a dialogue.</summary>
+        /// <summary>Generates the character and marks the scene as changed; errors are shown in a dialog.</summary>
         internal static void Generate(AnthroCharacter character, string step)
         {
             Undo.RecordObject(character, step);
-            Told(character.Generate);
+            ShowErrors(character.Generate);
             EditorUtility.SetDirty(character);
             PrefabUtility.RecordPrefabInstancePropertyModifications(character);
         }
 
-        static void Told(Action action)
+        static void ShowErrors(Action action)
         {
             try
             {

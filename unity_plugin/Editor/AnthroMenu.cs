@@ -4,16 +4,16 @@ using UnityEngine;
 
 namespace Anthronet.Editor
 {
-    /// <summary>What the package adds to the editor's menus.</summary>
+    /// <summary>Menu entries.</summary>
     public static class AnthroMenu
     {
-        /// <summary>Makes a character in the scene.</summary>
+        /// <summary>Adds a character to the scene.</summary>
         [MenuItem("GameObject/3D Object/AnthroNet Character", false, 10)]
         public static void Create(MenuCommand command)
         {
             var made = new GameObject("AnthroNet Character");
             GameObjectUtility.SetParentAndAlign(made, command.context as GameObject);
-            // It generates itself when it is added, and tells in the console where it cannot.
+            // The new component generates the character itself, and logs an error if it cannot.
             made.AddComponent<AnthroCharacter>();
             Undo.RegisterCreatedObjectUndo(made, "Create AnthroNet Character");
             Selection.activeObject = made;
@@ -21,8 +21,8 @@ namespace Anthronet.Editor
     }
 
     /// <summary>
-    /// Releases what is native before the code is loaded anew: threads, memory, materials. Characters and animators make
-    /// it again when Unity enables them.
+    /// Releases native memory, threads and materials before a domain reload. Characters and animators recreate theirs
+    /// when Unity enables them.
     /// </summary>
     [InitializeOnLoad]
     internal static class AnthroReload

@@ -1,9 +1,8 @@
-using System;
 using UnityEditor;
 
 namespace Anthronet.Editor
 {
-    /// <summary>The inspector of a request as an asset.</summary>
+    /// <summary>Inspector of a request asset.</summary>
     [CustomEditor(typeof(AnthroRequestAsset))]
     public sealed class AnthroRequestAssetEditor : UnityEditor.Editor
     {
@@ -13,14 +12,7 @@ namespace Anthronet.Editor
         public override void OnInspectorGUI()
         {
             serializedObject.Update();
-            try
-            {
-                gui.Draw(serializedObject.FindProperty("request"), null);
-            }
-            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
-            {
-                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
-            }
+            AnthroRequestGui.DrawWithLibrary(() => gui.Draw(serializedObject.FindProperty("request"), null));
             serializedObject.ApplyModifiedProperties();
         }
     }

@@ -1,10 +1,11 @@
+using System;
 using UnityEditor;
 using UnityEngine;
 
 namespace Anthronet.Editor
 {
-    /// <summary>Draws a request: sex, seed and filling, then the measures in groups, each with its switch, its slider, and
-    /// what the body has of it.</summary>
+    /// <summary>Draws a request: sex, seed and filling, then the measures in groups, each with a toggle, a slider and the
+    /// value of the body.</summary>
     internal sealed class AnthroRequestGui
     {
         struct Group
@@ -13,7 +14,7 @@ namespace Anthronet.Editor
             public int first;
         }
 
-        /// <summary>Measures of a group: twelve of the middle, and the same twelve of each side.</summary>
+        /// <summary>Measures per group: twelve without a side, then the same twelve for each side.</summary>
         internal const int GroupSize = 12;
 
         static readonly Group[] apart =
@@ -31,7 +32,7 @@ namespace Anthronet.Editor
 
         static readonly string[] fields = { "sex", "seed", "fill", "nearest" };
 
-        // Of all inspectors, as long as the code is loaded.
+        // Shared by all inspectors until the next domain reload.
         static readonly bool[] open = { true, false, false };
         internal static bool Linked = true;
 
@@ -41,7 +42,24 @@ namespace Anthronet.Editor
         bool ranges;
         bool reported;
 
-        /// <summary>Draws the property of a request, and beside it what a body has; null for none.</summary>
+        /// <summary>Draws an inspector that needs the native library. Where the library is missing or of another release,
+        /// the error is shown in the inspector: it would be thrown again at every repaint and fill the console.</summary>
+        /// <returns>Whether everything was drawn.</returns>
+        public static bool DrawWithLibrary(Action draw)
+        {
+            try
+            {
+                draw();
+                return true;
+            }
+            catch (Exception error) when (error is DllNotFoundException || error is NotSupportedException)
+            {
+                EditorGUILayout.HelpBox(error.Message, MessageType.Error);
+                return false;
+            }
+        }
+
+        /// <summary>Draws the serialised property of a request, with the values of a body; null for none.</summary>
         public void Draw(SerializedProperty request, AnthroBody body)
         {
             ReadRanges();
@@ -54,7 +72,7 @@ namespace Anthronet.Editor
             {
                 EditorGUILayout.PropertyField(request.FindPropertyRelative(field));
             }
-            Linked = EditorGUILayout.ToggleLeft("Left and right together", Linked);
+            Linked = EditorGUILayout.ToggleLeft("Link left and right", Linked);
             var metres = request.FindPropertyRelative("metres");
             var given = request.FindPropertyRelative("given");
             var groups = Linked ? linked : apart;
@@ -74,12 +92,12 @@ namespace Anthronet.Editor
         {
             for (var i = 0; !ranges && i < AnthroMeasures.Count; i++)
             {
-                AnthroModel.Default.Range(i, out min[i], out max[i]);
+                AnthroModel.Default.MeasureRange(i, out min[i], out max[i]);
             }
             ranges = true;
         }
 
-        /// <summary>A row: a measure, and the one of the other side that goes with it or itself.</summary>
+        /// <summary>Draws the row of a measure and of its counterpart on the other side, which may be the same.</summary>
         void Measure(int measure, int other, SerializedProperty metres, SerializedProperty given)
         {
             var value = metres.GetArrayElementAtIndex(measure);
@@ -97,7 +115,7 @@ namespace Anthronet.Editor
             }
             if (now)
             {
-                // A slider has not all digits of the number: it is written where the user moved it alone.
+                // The slider has less precision than the value: write the value only if the user moved the slider.
                 EditorGUI.BeginChangeCheck();
                 var moved = EditorGUILayout.Slider((float)value.doubleValue, (float)min[measure], (float)max[measure]);
                 if (EditorGUI.EndChangeCheck())
@@ -108,7 +126,7 @@ namespace Anthronet.Editor
             }
             if (reported)
             {
-                EditorGUILayout.LabelField(Told(reports[measure], now));
+                EditorGUILayout.LabelField(ReportText(reports[measure], now));
             }
             EditorGUILayout.EndHorizontal();
         }
@@ -118,30 +136,30 @@ namespace Anthronet.Editor
             given.GetArrayElementAtIndex(measure).boolValue = on;
             if (on)
             {
-                // It begins with what the body has.
+                // Start with the value of the body.
                 metres.GetArrayElementAtIndex(measure).doubleValue =
                     reported ? reports[measure].obtained : 0.5 * (min[measure] + max[measure]);
             }
         }
 
-        /// <summary>What the body has of a measure: of a given one the residual, of an open one the length and what 90 % of
-        /// such people have; of both the percentile.</summary>
-        internal static string Told(AnthroMeasureReport report, bool given)
+        /// <summary>The report of a measure: the residual of a requested one, the value and the 90 % interval of any
+        /// other one, and the percentile.</summary>
+        internal static string ReportText(AnthroMeasureReport report, bool given)
         {
             var percentile = ", percentile " + report.percentile.ToString("0");
             if (given)
             {
-                return (1000 * report.residual).ToString("+0.0;-0.0;0.0") + " mm" + percentile;
+                return "residual " + (1000 * report.residual).ToString("+0.0;-0.0;0.0") + " mm" + percentile;
             }
             return report.obtained.ToString("0.000") + " m (90 %: " + report.low90.ToString("0.000") + " to "
                 + report.high90.ToString("0.000") + ")" + percentile;
         }
 
-        /// <summary>The name of a measure as it is shown.</summary>
+        /// <summary>The label of a measure, with its unit.</summary>
         internal static string Label(int measure)
         {
             var name = AnthroMeasures.Names[measure].Replace("_left", "").Replace("_right", "").Replace('_', ' ');
-            return char.ToUpperInvariant(name[0]) + name.Substring(1);
+            return char.ToUpperInvariant(name[0]) + name.Substring(1) + " (m)";
         }
     }
 }

@@ -6,19 +6,19 @@ using UnityEngine;
 
 namespace Anthronet.Editor
 {
-    /// <summary>Characters and clips as assets of the project.</summary>
+    /// <summary>Saves characters and clips as project assets.</summary>
     public static class AnthroSave
     {
         /// <summary>
-        /// Saves a character as a prefab. Beside it, in an asset of the same name, lie its request and as parts of that its
-        /// meshes, avatar and those materials that were no assets. Character and prefab are baked from now on: they are not
-        /// generated when they awake.
+        /// Saves a character as a prefab. An asset of the same name beside it holds the request, with meshes, avatar and
+        /// generated materials as sub-assets. Character and prefab are baked from then on: they are not generated in
+        /// `Awake`.
         /// </summary>
-        /// <param name="character">It; generated now where it is not yet.</param>
-        /// <param name="path">Such as `Assets/Person.prefab`. What is there is replaced.</param>
+        /// <param name="character">The character; it is generated first if necessary.</param>
+        /// <param name="path">A path such as `Assets/Person.prefab`. Existing assets are replaced.</param>
         /// <returns>The prefab.</returns>
         /// <exception cref="ArgumentException">The path does not end in .prefab.</exception>
-        /// <exception cref="IOException">Unity could not save it; then no asset is left behind.</exception>
+        /// <exception cref="IOException">Unity could not save the prefab; no asset is left behind.</exception>
         public static GameObject SavePrefab(AnthroCharacter character, string path)
         {
             if (path == null || !path.EndsWith(".prefab", StringComparison.OrdinalIgnoreCase))
@@ -43,7 +43,7 @@ namespace Anthronet.Editor
                 var prefab = PrefabUtility.SaveAsPrefabAsset(character.gameObject, path, out saved);
                 if (!saved || prefab == null)
                 {
-                    throw new IOException("Unity did not save " + path);
+                    throw new IOException("Unity could not save " + path);
                 }
                 AssetDatabase.SaveAssets();
                 EditorUtility.SetDirty(character);
@@ -56,31 +56,31 @@ namespace Anthronet.Editor
                     character.Bake();
                 }
                 AssetDatabase.DeleteAsset(asset);
-                // What it wore went with the asset.
+                // Its meshes and avatar were deleted with the asset.
                 character.Generate();
                 character.GenerateOnAwake = generate;
                 throw;
             }
         }
 
-        /// <summary>Adds what a character consists of to an asset.</summary>
+        /// <summary>Adds the meshes, avatar and materials of a character to an asset.</summary>
         static void AddParts(AnthroCharacter character, AnthroRequestAsset to)
         {
             var copies = new Dictionary<Material, Material>();
             for (var lod = 0; lod <= 3; lod++)
             {
-                var renderer = character.RendererOf(lod);
+                var renderer = character.GetRenderer(lod);
                 if (renderer == null)
                 {
                     continue;
                 }
-                Add(character.MeshOf(lod), to);
-                var worn = renderer.sharedMaterials;
-                for (var i = 0; i < worn.Length; i++)
+                Add(character.GetMesh(lod), to);
+                var materials = renderer.sharedMaterials;
+                for (var i = 0; i < materials.Length; i++)
                 {
-                    worn[i] = AsAsset(worn[i], copies, to);
+                    materials[i] = AsAsset(materials[i], copies, to);
                 }
-                renderer.sharedMaterials = worn;
+                renderer.sharedMaterials = materials;
             }
             if (character.Avatar != null)
             {
@@ -88,7 +88,7 @@ namespace Anthronet.Editor
             }
         }
 
-        /// <summary>A material that is an asset: itself, or a copy, as others wear it too.</summary>
+        /// <summary>A material as an asset: the material itself, or a copy, since other characters share it.</summary>
         static Material AsAsset(Material material, Dictionary<Material, Material> copies, AnthroRequestAsset to)
         {
             if (material == null || AssetDatabase.Contains(material))
@@ -108,24 +108,21 @@ namespace Anthronet.Editor
 
         static void Add(UnityEngine.Object part, UnityEngine.Object to)
         {
-            // Unity refuses to save what is marked as not to be saved.
+            // Unity refuses to save objects that are flagged as not to be saved.
             part.hideFlags = HideFlags.None;
             AssetDatabase.AddObjectToAsset(part, to);
         }
 
-        /// <summary>A clip of ours as one of Unity's for an `Animator`, not saved yet.</summary>
-        /// <param name="clip">It.</param>
-        /// <param name="rig">The joints of the character that it is for.</param>
-        /// <param name="loops">Whether it begins anew at its end.</param>
+        /// <summary>Converts a clip to an `AnimationClip` for an `Animator`; it is not saved yet.</summary>
+        /// <param name="clip">The clip.</param>
+        /// <param name="rig">The skeleton of the character.</param>
+        /// <param name="loops">Whether the animation clip loops (Loop Time).</param>
         public static AnimationClip ToAnimationClip(AnthroClip clip, AnthroRig rig, bool loops)
         {
-            var made = new AnimationClip();
-            made.name = clip.Name;
-            made.legacy = false;
-            made.frameRate = (float)clip.FramesPerSecond;
-            foreach (var curve in AnthroCurves.Of(clip, rig))
+            var made = AnthroCurves.NewClip(clip, false);
+            foreach (var curve in AnthroCurves.FromClip(clip, rig))
             {
-                // As it is called in the file: localRotation.x is m_LocalRotation.x.
+                // Serialised property names: localRotation.x is m_LocalRotation.x.
                 var property = "m_L" + curve.property.Substring(1);
                 AnimationUtility.SetEditorCurve(
                     made, EditorCurveBinding.FloatCurve(curve.path, typeof(Transform), property), curve.keys);
@@ -137,8 +134,8 @@ namespace Anthronet.Editor
             return made;
         }
 
-        /// <summary>Saves a clip of ours as one of Unity's for an `Animator`.</summary>
-        /// <param name="path">Such as `Assets/Walk.anim`.</param>
+        /// <summary>Saves a clip as an `AnimationClip` asset for an `Animator`.</summary>
+        /// <param name="path">A path such as `Assets/Walk.anim`.</param>
         public static AnimationClip SaveClip(AnthroClip clip, AnthroRig rig, bool loops, string path)
         {
             var made = ToAnimationClip(clip, rig, loops);

@@ -1,7 +1,7 @@
-/* What Unity looks for in a native plugin, over the C interface of libanthronet. SPDX-License-Identifier: MIT OR Apache-2.0
+/* The entry points of a native Unity plugin, on top of the C interface of libanthronet. SPDX-License-Identifier: MIT OR Apache-2.0
  *
  * Linked with libanthronet.a into the library of the Unity package: `cargo xtask package unity` does it on Linux,
- * Documentation~/platforms.md says how to do it elsewhere. A library without it works, but for the render thread.
+ * Documentation~/platforms.md says how to do it on other platforms. Without it everything but the render thread works.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -16,14 +16,14 @@
 #define UNITY_API
 #endif
 
-/* The event that poses surfaces: `AnthroRenderEvent.Skin`. */
+/* The event that skins surfaces: `AnthroRenderEvent.Skin`. */
 #define ANTHRONET_UNITY_SKIN 1
 
-/* What the event is handed: `AnthroSkinBatch`. Everything stays as it is until the event has run. */
+/* The event's data: `AnthroSkinBatch`. Everything must stay valid until the event has run. */
 typedef struct anthronet_unity_batch {
     const anthronet_skin_job *jobs;
     uint32_t count;
-    /* Written: what anthronet_skin says. */
+    /* Receives the result of anthronet_skin. */
     int32_t status;
 } anthronet_unity_batch;
 
@@ -40,7 +40,7 @@ UNITY_EXPORT void UNITY_API UnityPluginUnload(void) {
     interfaces = NULL;
 }
 
-/* Unity's IUnityInterfaces for native code that draws what is posed here; NULL outside of Unity. */
+/* Unity's IUnityInterfaces, for native code that draws the skinned surfaces; NULL outside Unity. */
 UNITY_EXPORT void *anthronet_unity_interfaces(void) {
     return interfaces;
 }
@@ -52,7 +52,7 @@ static void UNITY_API on_render_thread(int event, void *data) {
     }
 }
 
-/* For CommandBuffer.IssuePluginEventAndData. */
+/* The callback for CommandBuffer.IssuePluginEventAndData. */
 UNITY_EXPORT anthronet_unity_event anthronet_unity_render_event(void) {
     return on_render_thread;
 }

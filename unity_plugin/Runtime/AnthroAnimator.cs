@@ -3,28 +3,29 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// Plays a clip of ours on a character: sampled natively each frame, without garbage. Where the character has an
-    /// `Animator` with a controller, it wins over it. A built-in clip is made anew when the character becomes another
-    /// body, and goes on at the same time; a clip of the caller's plays on as it is.
+    /// Plays an AnthroNet clip on a character: sampled natively every frame, without allocating managed memory. It runs
+    /// after the `Animator` and overrides its pose. When the character gets another body, a built-in clip is retargeted
+    /// to it and continues at the same time; a clip passed to `Play` by the caller stays as it is.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Animator")]
-    [RequireComponent(typeof(AnthroCharacter))]
     [DisallowMultipleComponent]
-    public sealed class AnthroAnimator : MonoBehaviour
+    public sealed class AnthroAnimator : AnthroCharacterBehaviour
     {
+        [Tooltip("Name of the built-in clip that plays, such as walk; empty for none.")]
         [SerializeField] string builtin = "";
+        [Tooltip("Playback speed: 1 is the clip's own, negative values play backwards.")]
         [SerializeField] float speed = 1f;
+        [Tooltip("What happens outside the clip's duration: hold, loop, or loop with accumulating root motion.")]
         [SerializeField] AnthroWrap wrap = AnthroWrap.Loop;
-        // Goes on here after the code was loaded anew.
+        // Serialised so that playback continues after a domain reload.
         [SerializeField] [HideInInspector] double time;
 
-        AnthroCharacter character;
         AnthroClip clip;
         AnthroBody madeFor;
         bool own;
         AnthroTransform[] pose;
 
-        /// <summary>The clip that plays; null where none does.</summary>
+        /// <summary>The playing clip; null if none.</summary>
         public AnthroClip Clip
         {
             get { return clip; }
@@ -37,22 +38,22 @@ namespace Anthronet
             set { time = value; }
         }
 
-        /// <summary>Seconds of the clip per second; negative ones go backwards.</summary>
+        /// <summary>Playback speed, clip seconds per second; negative values play backwards.</summary>
         public float Speed
         {
             get { return speed; }
             set { speed = value; }
         }
 
-        /// <summary>What the clip is outside its duration.</summary>
+        /// <summary>What happens outside the clip's duration.</summary>
         public AnthroWrap Wrap
         {
             get { return wrap; }
             set { wrap = value; }
         }
 
-        /// <summary>Plays a clip from its beginning; null stops. The clip stays the caller's: it may play on many characters.
-        /// </summary>
+        /// <summary>Plays a clip from the start; null stops playback. The caller keeps ownership of the clip, which may
+        /// play on many characters.</summary>
         public void Play(AnthroClip next)
         {
             Use(next);
@@ -60,8 +61,9 @@ namespace Anthronet
             time = 0.0;
         }
 
-        /// <summary>Plays a built-in clip, such as `walk`, made for this character.</summary>
-        /// <exception cref="AnthroException">There is none of that name.</exception>
+        /// <summary>Plays a built-in clip, such as `walk`, made for this character's body.</summary>
+        /// <exception cref="AnthroException">There is no built-in clip of this name.</exception>
+        /// <exception cref="System.InvalidOperationException">The character is not generated yet.</exception>
         public void Play(string name)
         {
             Make(name);
@@ -71,12 +73,7 @@ namespace Anthronet
 
         void Make(string name)
         {
-            var body = Character().Body;
-            if (body == null)
-            {
-                throw new System.InvalidOperationException(
-                    "the character has to be generated before a clip is made for it: " + gameObject.name);
-            }
+            var body = RequireBody();
             Use(AnthroClip.Builtin(name, body));
             madeFor = body;
             own = true;
@@ -92,34 +89,8 @@ namespace Anthronet
             }
         }
 
-        AnthroCharacter Character()
-        {
-            if (character == null)
-            {
-                character = GetComponent<AnthroCharacter>();
-            }
-            return character;
-        }
-
-        void OnEnable()
-        {
-            Character().OnReport += Rebind;
-            if (Character().Body != null)
-            {
-                Rebind(Character().Body);
-            }
-        }
-
-        void OnDisable()
-        {
-            if (Character() != null)
-            {
-                Character().OnReport -= Rebind;
-            }
-        }
-
-        /// <summary>Makes a clip of its own for the body that the character is now, at the same time.</summary>
-        void Rebind(AnthroBody body)
+        /// <summary>Remakes a built-in clip for the character's new body; playback continues at the same time.</summary>
+        internal override void OnBody(AnthroBody body)
         {
             if (!string.IsNullOrEmpty(builtin) && !ReferenceEquals(madeFor, body))
             {
@@ -131,22 +102,22 @@ namespace Anthronet
             }
         }
 
-        // After Unity's own animation, which may write to the same transforms.
+        // After Unity's own animation system, which may write to the same transforms.
         void LateUpdate()
         {
             Advance(UnityEngine.Time.deltaTime);
         }
 
-        /// <summary>Goes on by seconds and poses the character. `LateUpdate` does it each frame.</summary>
+        /// <summary>Advances the time and poses the character. `LateUpdate` calls it every frame.</summary>
         public void Advance(float seconds)
         {
-            if (clip == null || Character().Rig == null)
+            if (clip == null || Character.Rig == null)
             {
                 return;
             }
             time += (double)speed * seconds;
             clip.Sample(time, wrap, pose);
-            character.Rig.ToPose(pose);
+            Character.Rig.ApplyPose(pose);
         }
 
         void OnDestroy()

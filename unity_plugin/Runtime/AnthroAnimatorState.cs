@@ -3,8 +3,8 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// What an `Animator` is doing: the states of its layers and its parameters. Another avatar makes it start anew, and
-    /// this lets it go on where it was.
+    /// The current states of an `Animator`'s layers and its parameters. Assigning another avatar resets an `Animator`;
+    /// this restores what it was doing.
     /// </summary>
     internal struct AnthroAnimatorState
     {
@@ -13,8 +13,8 @@ namespace Anthronet
         AnimatorControllerParameter[] parameters;
         float[] values;
 
-        /// <summary>Of an animator; of one that is not running, nothing.</summary>
-        public static AnthroAnimatorState Of(Animator animator)
+        /// <summary>Captures the state of an animator; nothing if the animator is not running.</summary>
+        public static AnthroAnimatorState Capture(Animator animator)
         {
             var state = new AnthroAnimatorState();
             if (!animator.isActiveAndEnabled || animator.runtimeAnimatorController == null || animator.avatar == null)
@@ -42,8 +42,8 @@ namespace Anthronet
             return state;
         }
 
-        /// <summary>Lets an animator go on from here. A trigger that nothing used yet is lost.</summary>
-        public void To(Animator animator)
+        /// <summary>Restores the captured state. Triggers that no transition has consumed yet are lost.</summary>
+        public void Restore(Animator animator)
         {
             if (states == null)
             {

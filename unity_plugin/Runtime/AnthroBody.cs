@@ -4,7 +4,7 @@ using Anthronet.Native;
 namespace Anthronet
 {
     /// <summary>
-    /// A person in the bind pose (a T-pose), with the report of how it was made. Immutable; may be used by many threads.
+    /// A person in the bind pose (a T-pose) with the report of the solve. Immutable; any thread may use it.
     /// </summary>
     public sealed unsafe class AnthroBody : IDisposable
     {
@@ -26,7 +26,7 @@ namespace Anthronet
             get { return handle; }
         }
 
-        /// <summary>Whether it was freed.</summary>
+        /// <summary>Whether the native memory is freed.</summary>
         internal bool IsFreed
         {
             get { return handle.IsClosed; }
@@ -62,13 +62,13 @@ namespace Anthronet
             get { return summary.bmi; }
         }
 
-        /// <summary>Largest difference between a given measure and the body's, metres.</summary>
+        /// <summary>Largest difference between a requested measure and the body's, metres.</summary>
         public double SolveResidual
         {
             get { return summary.solve_residual; }
         }
 
-        /// <summary>Whether the exact solve met its tolerance.</summary>
+        /// <summary>Whether the exact solve reached its tolerance.</summary>
         public bool Converged
         {
             get { return summary.converged != 0; }
@@ -86,15 +86,15 @@ namespace Anthronet
             get { return (int)summary.joint_count; }
         }
 
-        /// <summary>Fills the report of the 36 measures, in the order of `AnthroMeasures.Names`.</summary>
-        public void Measures(AnthroMeasureReport[] into)
+        /// <summary>Writes the report of the 36 measures, in the order of `AnthroMeasures.Names`.</summary>
+        public void Measures(AnthroMeasureReport[] results)
         {
             using (var held = new Held(handle))
-            fixed (AnthroMeasureReport* first = Library.Given(into, "into"))
+            fixed (AnthroMeasureReport* first = Library.NotNull(results, "results"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_measures((anthronet_body*)held.Pointer,
-                    (anthronet_measure_report*)first, (uint)into.Length, &error), &error);
+                    (anthronet_measure_report*)first, (uint)results.Length, &error), &error);
             }
         }
 
@@ -106,47 +106,41 @@ namespace Anthronet
             return reports;
         }
 
-        /// <summary>The whole report as JSON, with warnings and conflicts.</summary>
+        /// <summary>The complete report as JSON, with warnings and conflicts.</summary>
         public string ReportJson
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_body_report(
-                        (anthronet_body*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_body_report((anthronet_body*)pointer, bytes, error));
             }
         }
 
-        /// <summary>The latent numbers of the body, `AnthroModel.LatentSize` of them.</summary>
-        public void Latent(double[] into)
+        /// <summary>Writes the latent values of the body, `AnthroModel.LatentSize` of them.</summary>
+        public void Latent(double[] results)
         {
             using (var held = new Held(handle))
-            fixed (double* first = Library.Given(into, "into"))
+            fixed (double* first = Library.NotNull(results, "results"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_latent(
-                    (anthronet_body*)held.Pointer, first, (uint)into.Length, &error), &error);
+                    (anthronet_body*)held.Pointer, first, (uint)results.Length, &error), &error);
             }
         }
 
-        /// <summary>Fills the joints in the bind pose in Unity's space, parents first, `JointCount` of them.</summary>
-        public void Joints(AnthroJoint[] into)
+        /// <summary>Writes the joints in the bind pose, in Unity's space, parents first, `JointCount` of them.</summary>
+        public void Joints(AnthroJoint[] results)
         {
             using (var held = new Held(handle))
-            fixed (AnthroJoint* first = Library.Given(into, "into"))
+            fixed (AnthroJoint* first = Library.NotNull(results, "results"))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_body_joints((anthronet_body*)held.Pointer,
-                    NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_joint*)first, (uint)into.Length, &error), &error);
+                    NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_joint*)first, (uint)results.Length, &error), &error);
             }
         }
 
-        /// <summary>The joints in the bind pose in Unity's space, parents first.</summary>
+        /// <summary>The joints in the bind pose, in Unity's space, parents first.</summary>
         public AnthroJoint[] Joints()
         {
             var joints = new AnthroJoint[JointCount];
@@ -154,24 +148,19 @@ namespace Anthronet
             return joints;
         }
 
-        /// <summary>The name of a joint in the rig, such as `upperarm_l`. No two are the same.</summary>
+        /// <summary>The name of a joint in the rig, such as `upperarm_l`. Names are unique.</summary>
         public string JointName(int joint)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_body_joint_name((anthronet_body*)held.Pointer,
-                    checked((uint)joint), NativeMethods.ANTHRONET_NAMES_NATIVE, &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)joint);
+            return Library.Text(handle, (pointer, name, error) => NativeMethods.anthronet_body_joint_name(
+                (anthronet_body*)pointer, index, NativeMethods.ANTHRONET_NAMES_NATIVE, name, error));
         }
 
-        /// <summary>Writes a file in the format of its ending: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj. It appears
-        /// whole or not at all.</summary>
-        /// <param name="path">Where to.</param>
+        /// <summary>Exports a file in the format of its extension: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj. The
+        /// file is written completely or not at all.</summary>
+        /// <param name="path">The file; an existing one is replaced.</param>
         /// <param name="lod">Level of detail, 0 to 3.</param>
-        /// <param name="clips">Motions that go into the file; their names must differ.</param>
+        /// <param name="clips">Animation clips to include; their names must differ.</param>
         public void Save(string path, int lod = 0, params AnthroClip[] clips)
         {
             ulong length;
@@ -188,7 +177,7 @@ namespace Anthronet
             });
         }
 
-        /// <summary>The bytes of the file that `Save` writes; `format` is its ending without the dot.</summary>
+        /// <summary>The bytes of the file that `Save` writes; `format` is its extension without the dot.</summary>
         public byte[] ToBytes(string format, int lod = 0, params AnthroClip[] clips)
         {
             ulong length;
@@ -211,14 +200,14 @@ namespace Anthronet
 
         static void Export(int lod, AnthroClip[] clips, Action<IntPtr> write)
         {
-            // One more: an empty array has no first entry to point at.
-            var pointers = new IntPtr[Library.Given(clips, "clips").Length + 1];
+            // One extra entry: `fixed` gives null for an empty array.
+            var pointers = new IntPtr[Library.NotNull(clips, "clips").Length + 1];
             var held = new Held[clips.Length];
             try
             {
                 for (var i = 0; i < clips.Length; i++)
                 {
-                    held[i] = new Held(Library.Given(clips[i], "clips").Handle);
+                    held[i] = new Held(Library.NotNull(clips[i], "clips").Handle);
                     pointers[i] = (IntPtr)held[i].Pointer;
                 }
                 fixed (IntPtr* first = pointers)
@@ -240,7 +229,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees it. What was made of it stays whole.</summary>
+        /// <summary>Frees the native memory. Surfaces, clips and exports made from the body stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

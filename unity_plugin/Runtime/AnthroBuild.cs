@@ -4,15 +4,15 @@ using System.Collections.Generic;
 namespace Anthronet
 {
     /// <summary>
-    /// A body with its surfaces packed, level of detail by level: what takes long of making a character, done on any
-    /// thread. One thread at a time.
+    /// A body with its surfaces packed for upload, per level of detail: the expensive part of making a character, which
+    /// may run on any thread. One thread at a time.
     /// </summary>
     internal sealed class AnthroBuild : IDisposable
     {
         readonly Dictionary<int, AnthroPacked> levels = new Dictionary<int, AnthroPacked>();
         readonly int skinTone;
 
-        /// <summary>For a body, which stays the caller's.</summary>
+        /// <summary>For a body, which the caller keeps owning.</summary>
         public AnthroBuild(AnthroBody body, int skinTone, bool bodyOnly)
         {
             Body = body;
@@ -24,24 +24,24 @@ namespace Anthronet
 
         public bool BodyOnly { get; private set; }
 
-        /// <summary>A level that `Pack` packed.</summary>
+        /// <summary>The packed data of a level of detail that `Pack` was called for.</summary>
         public AnthroPacked this[int lod]
         {
             get { return levels[lod]; }
         }
 
-        /// <summary>Packs a level, all of it or what an update needs.</summary>
+        /// <summary>Packs a level of detail: everything, or only what updating an existing mesh needs.</summary>
         /// <returns>Whether there was anything to do.</returns>
-        public bool Pack(int lod, bool whole)
+        public bool Pack(int lod, bool complete)
         {
             AnthroPacked there;
-            if (levels.TryGetValue(lod, out there) && (there.Whole || !whole))
+            if (levels.TryGetValue(lod, out there) && (there.Complete || !complete))
             {
                 return false;
             }
             using (var surface = new AnthroSurface(Body, lod, skinTone, BodyOnly))
             {
-                levels[lod] = new AnthroPacked(surface, whole);
+                levels[lod] = new AnthroPacked(surface, complete);
             }
             if (there != null)
             {
@@ -50,7 +50,7 @@ namespace Anthronet
             return true;
         }
 
-        /// <summary>Frees what was packed; the body stays.</summary>
+        /// <summary>Frees the packed data; the body stays.</summary>
         public void Dispose()
         {
             foreach (var level in levels.Values)

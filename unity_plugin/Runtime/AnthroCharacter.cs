@@ -6,10 +6,10 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// A person in the scene: made of its request, with a skeleton, a mesh per level of detail and a humanoid avatar.
-    /// Generating again changes it in place: objects, transforms and meshes stay the same ones. In the editor's edit mode
-    /// what it generates is not saved with the scene, but made again when the scene opens. A copy generates itself from the
-    /// request, too: one that became a body by other ways becomes who its request says.
+    /// A person in the scene, generated from a request: skeleton, one mesh per level of detail, humanoid avatar.
+    /// Generating again updates it in place: GameObjects, transforms and meshes are kept. In edit mode generated objects
+    /// are not saved with the scene but generated again when the scene opens. A duplicate generates itself from the
+    /// request, even if the original got its body by `SetBody`.
     /// </summary>
     [AddComponentMenu("AnthroNet/AnthroNet Character")]
     [DisallowMultipleComponent]
@@ -17,16 +17,25 @@ namespace Anthronet
     public sealed class AnthroCharacter : MonoBehaviour
     {
         [SerializeField] AnthroRequest request = new AnthroRequest();
+        [Tooltip("A request asset to use instead of the character's own request.")]
         [SerializeField] AnthroRequestAsset requestAsset = null;
+        [Tooltip("Finest level of detail, 0 to 3. Takes effect when the character is generated for the first time.")]
         [SerializeField] [Range(0, 3)] int finestLod = 0;
+        [Tooltip("Coarsest level of detail, 0 to 3. Takes effect when the character is generated for the first time.")]
         [SerializeField] [Range(0, 3)] int coarsestLod = 3;
+        [Tooltip("Skin tone on the Monk scale, 1 to 10; 0 for the default.")]
         [SerializeField] [Range(0, 10)] int skinTone = 0;
+        [Tooltip("Leaves out eyes, teeth, tongue and eyelashes.")]
         [SerializeField] bool bodyOnly = false;
+        [Tooltip("Builds a humanoid avatar.")]
         [SerializeField] bool humanoid = true;
+        [Tooltip("Generates the character when it awakes.")]
         [SerializeField] bool generateOnAwake = true;
+        [Tooltip("Materials that replace the default ones, by mesh part; empty entries get the default.")]
         [SerializeField] Material[] materials = new Material[0];
 
-        // These survive a reload of the code, and copying: then the former are the copy's own, the latter the original's.
+        // Serialised to survive domain reloads and duplication: a duplicate's `made` are its own children, but `owned`
+        // are the original's.
         [SerializeField] [HideInInspector] List<GameObject> made = new List<GameObject>();
         [SerializeField] [HideInInspector] List<UnityEngine.Object> owned = new List<UnityEngine.Object>();
         [SerializeField] [HideInInspector] int owner;
@@ -34,14 +43,14 @@ namespace Anthronet
 
         AnthroBody body;
         AnthroFigure figure;
-        AnthroFigure half;
-        int turns;
+        AnthroFigure pending;
+        int latestTurn;
 
-        /// <summary>Called on the main thread when the character has become a body. The body is the character's.</summary>
-        public event Action<AnthroBody> OnReport;
+        /// <summary>Raised on the main thread after the character got a new body, which the character owns.</summary>
+        public event Action<AnthroBody> OnGenerated;
 
-        /// <summary>Who it is to be; takes effect with `Generate`. Of the asset where it has one;
-        /// setting another takes the asset off.</summary>
+        /// <summary>The person to generate; changes take effect with `Generate`. With a request asset it is that asset's
+        /// request; setting a request detaches the asset.</summary>
         public AnthroRequest Request
         {
             get { return requestAsset != null ? requestAsset.Request : request; }
@@ -52,97 +61,97 @@ namespace Anthronet
             }
         }
 
-        /// <summary>An asset that says who it is to be, instead of a request of its own; null for none.</summary>
+        /// <summary>A request asset to use instead of the character's own request; null for none.</summary>
         public AnthroRequestAsset RequestAsset
         {
             get { return requestAsset; }
             set { requestAsset = value; }
         }
 
-        /// <summary>Who it is; null before it is generated, and in a baked one. Freed with the character, or when it becomes
-        /// another.</summary>
+        /// <summary>The current body; null before the character is generated, and if it is baked. The character owns it
+        /// and disposes it when it gets another body or is destroyed.</summary>
         public AnthroBody Body
         {
             get { return body; }
         }
 
-        /// <summary>Its joints; null before it is generated, and in a baked one.</summary>
+        /// <summary>The skeleton; null before the character is generated, and if it is baked.</summary>
         public AnthroRig Rig
         {
             get { return figure == null ? null : figure.Rig; }
         }
 
-        /// <summary>Its humanoid avatar; null where it has none.</summary>
+        /// <summary>The humanoid avatar; null if it has none.</summary>
         public Avatar Avatar
         {
             get { return figure == null ? null : figure.Avatar; }
         }
 
-        /// <summary>Whether its meshes and avatar are assets, saved by the editor: then it is not generated when it awakes.
-        /// `Generate` makes it one that is.</summary>
+        /// <summary>Whether meshes and avatar are saved assets. A baked character is not generated in `Awake`; `Generate`
+        /// turns it back into a generated one.</summary>
         public bool IsBaked
         {
             get { return baked; }
         }
 
-        /// <summary>The finest level of detail that it gets, 0 to 3. Takes effect with the first `Generate`.</summary>
+        /// <summary>Finest level of detail, 0 to 3. Takes effect with the first `Generate`.</summary>
         public int FinestLod
         {
             get { return finestLod; }
             set { finestLod = Mathf.Clamp(value, 0, 3); }
         }
 
-        /// <summary>The coarsest level of detail that it gets, 0 to 3. Takes effect with the first `Generate`.</summary>
+        /// <summary>Coarsest level of detail, 0 to 3. Takes effect with the first `Generate`.</summary>
         public int CoarsestLod
         {
             get { return coarsestLod; }
             set { coarsestLod = Mathf.Clamp(value, 0, 3); }
         }
 
-        /// <summary>Step of the Monk scale, 1 to 10; 0 for the default. Takes effect with `Generate`.</summary>
+        /// <summary>Skin tone on the Monk scale, 1 to 10; 0 for the default. Takes effect with `Generate`.</summary>
         public int SkinTone
         {
             get { return skinTone; }
             set { skinTone = Mathf.Clamp(value, 0, 10); }
         }
 
-        /// <summary>Whether it is without eyes, teeth, tongue and lashes. Takes effect with `Generate`.</summary>
+        /// <summary>Leaves out eyes, teeth, tongue and eyelashes. Takes effect with `Generate`.</summary>
         public bool BodyOnly
         {
             get { return bodyOnly; }
             set { bodyOnly = value; }
         }
 
-        /// <summary>Whether an avatar is built. Takes effect with `Generate`.</summary>
+        /// <summary>Builds a humanoid avatar. Takes effect with `Generate`.</summary>
         public bool Humanoid
         {
             get { return humanoid; }
             set { humanoid = value; }
         }
 
-        /// <summary>Whether `Awake` generates it.</summary>
+        /// <summary>Generates the character in `Awake`.</summary>
         public bool GenerateOnAwake
         {
             get { return generateOnAwake; }
             set { generateOnAwake = value; }
         }
 
-        /// <summary>Materials to use instead of the made ones, by part; missing ones are made.</summary>
+        /// <summary>Materials that replace the default ones, by mesh part; null entries get the default.</summary>
         public Material[] Materials
         {
             get { return materials; }
             set { materials = value ?? new Material[0]; }
         }
 
-        /// <summary>The mesh of a level of detail; null where it has none.</summary>
-        public Mesh MeshOf(int lod)
+        /// <summary>The mesh of a level of detail; null if there is no such level.</summary>
+        public Mesh GetMesh(int lod)
         {
             var level = LevelOf(lod);
             return level == null ? null : level.mesh;
         }
 
-        /// <summary>The renderer of a level of detail; null where it has none.</summary>
-        public SkinnedMeshRenderer RendererOf(int lod)
+        /// <summary>The renderer of a level of detail; null if there is no such level.</summary>
+        public SkinnedMeshRenderer GetRenderer(int lod)
         {
             var level = LevelOf(lod);
             return level == null ? null : level.renderer;
@@ -155,29 +164,32 @@ namespace Anthronet
 
         void Awake()
         {
-            // Of one that is enabled Unity calls `OnEnable` next: once is enough to be told what is wrong.
+            // Unity calls `OnEnable` next on an enabled component; generating there alone reports an error once, not
+            // twice.
             if (!enabled)
             {
-                Wake();
+                GenerateIfNeeded();
             }
         }
 
-        // After a reload of the code it is this alone that Unity calls.
+        // The only message that Unity sends after a domain reload.
         void OnEnable()
         {
-            Wake();
+            GenerateIfNeeded();
         }
 
-        /// <summary>Generates what has no body: a new one if it is to, and always one that had been generated before its
-        /// code was loaded anew or it was copied. What fails is told, since nobody could catch it.</summary>
-        void Wake()
+        /// <summary>Generates the character if it has no body but should have one: on `Awake` if enabled, and always if
+        /// it had been generated before a domain reload or duplication. Logs exceptions, since Unity's messages have no
+        /// caller to catch them.
+        /// </summary>
+        void GenerateIfNeeded()
         {
             if (body != null && body.IsFreed)
             {
-                // Released before the code was to be loaded anew, which then did not happen.
+                // Released before a domain reload that then did not take place.
                 body = null;
             }
-            if (baked || body != null || half != null || !(generateOnAwake || made.Exists(child => child != null)))
+            if (baked || body != null || pending != null || !(generateOnAwake || made.Exists(child => child != null)))
             {
                 return;
             }
@@ -191,51 +203,50 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Makes it the person that the request describes, at once.</summary>
-        /// <exception cref="AnthroException">The request is refused; the character stays as it was.</exception>
+        /// <summary>Generates the person that the request describes, synchronously.</summary>
+        /// <exception cref="AnthroException">The request is refused; the character is unchanged.</exception>
         public void Generate()
         {
-            Become(AnthroModel.Default.Generate(Request));
+            SetBody(AnthroModel.Default.Generate(Request));
         }
 
-        /// <summary>Makes it a body, at once. The body is the character's from now on.</summary>
-        public void Become(AnthroBody next)
+        /// <summary>Gives the character a body, synchronously. The character owns the body from now on.</summary>
+        public void SetBody(AnthroBody newBody)
         {
-            for (var steps = BecomeInSteps(next); steps.MoveNext();)
+            for (var steps = SetBodyInSteps(newBody); steps.MoveNext();)
             {
             }
         }
 
         /// <summary>
-        /// As `Become`, in steps of a few milliseconds. Until the last it stays who it was, or is not to be seen if it was
-        /// nobody; where the steps are not taken to their end it stays so. Another `Become` in between wins.
+        /// As `SetBody`, as a coroutine in steps of a few milliseconds. Until the last step the character keeps its
+        /// previous body, or stays invisible if it had none; if the steps are abandoned, it stays so. A later `SetBody`
+        /// cancels an unfinished one.
         /// </summary>
-        public IEnumerator BecomeInSteps(AnthroBody next)
+        public IEnumerator SetBodyInSteps(AnthroBody newBody)
         {
-            if (next == null)
-            {
-                throw new ArgumentNullException("next");
-            }
-            return Steps(new AnthroBuild(next, skinTone, bodyOnly));
+            Native.Library.NotNull(newBody, "newBody");
+            return SetBodySteps(new AnthroBuild(newBody, skinTone, bodyOnly));
         }
 
-        /// <summary>As `BecomeInSteps`, of what may be packed already. Takes body and build.</summary>
-        internal IEnumerator Steps(AnthroBuild build)
+        /// <summary>As `SetBodyInSteps`, for a build that may be packed already. Takes ownership of body and
+        /// build.</summary>
+        internal IEnumerator SetBodySteps(AnthroBuild build)
         {
-            var turn = ++turns;
+            var turn = ++latestTurn;
             var next = build.Body;
             var done = false;
             try
             {
                 var lods = Lods();
-                var whole = figure == null || figure.BodyOnly != build.BodyOnly;
+                var complete = figure == null || figure.BodyOnly != build.BodyOnly;
                 foreach (var lod in lods)
                 {
-                    if (build.Pack(lod, whole))
+                    if (build.Pack(lod, complete))
                     {
                         yield return null;
                     }
-                    if (turn != turns || this == null)
+                    if (turn != latestTurn || this == null)
                     {
                         yield break;
                     }
@@ -246,17 +257,17 @@ namespace Anthronet
                 }
                 else
                 {
-                    Begin();
-                    for (var steps = half.Make(build, lods, humanoid); steps.MoveNext();)
+                    BeginFigure();
+                    for (var steps = pending.Make(build, lods, humanoid); steps.MoveNext();)
                     {
                         yield return null;
-                        if (turn != turns || this == null)
+                        if (turn != latestTurn || this == null)
                         {
                             yield break;
                         }
                     }
-                    figure = half;
-                    half = null;
+                    figure = pending;
+                    pending = null;
                 }
                 done = true;
             }
@@ -273,33 +284,35 @@ namespace Anthronet
                 body.Dispose();
             }
             body = next;
-            if (OnReport != null)
+            if (OnGenerated != null)
             {
-                OnReport(body);
+                OnGenerated(body);
             }
         }
 
-        /// <summary>A figure to make, in place of one that was not taken to its end.</summary>
-        void Begin()
+        /// <summary>Starts a new figure; an unfinished one is discarded.</summary>
+        void BeginFigure()
         {
-            if (half != null)
+            if (pending != null)
             {
-                half.Drop();
+                pending.DestroyOwned();
             }
             if (owner == GetInstanceID())
             {
-                // What it had before a reload of the code; those of the one that this is a copy of stay.
-                owned.ForEach(AnthroObjects.Discard);
+                // What it owned before a domain reload. If this is a duplicate, the list holds the original's objects,
+                // which stay.
+                owned.ForEach(AnthroObjects.DestroySafely);
             }
             owned.Clear();
             owner = GetInstanceID();
             if (baked)
             {
                 baked = false;
-                // Assets stay in the project, and the scene would hold renderers without a mesh.
+                // The saved assets stay in the project, and the generated meshes that replace them are not saved with the
+                // scene.
                 generateOnAwake = true;
             }
-            half = new AnthroFigure(this, made, owned);
+            pending = new AnthroFigure(this, made, owned);
         }
 
         List<int> Lods()
@@ -308,35 +321,30 @@ namespace Anthronet
             {
                 return figure.Levels.ConvertAll(level => level.lod);
             }
-            var lods = new List<int>();
-            for (var lod = Mathf.Min(finestLod, coarsestLod); lod <= Mathf.Max(finestLod, coarsestLod); lod++)
-            {
-                lods.Add(lod);
-            }
-            return lods;
+            return AnthroFigure.LodRange(finestLod, coarsestLod);
         }
 
         /// <summary>
-        /// Adds a blend shape to all levels of detail that leads to the surface of another body, such as a heavier one; its
-        /// weight goes from 0 to 100. It is lost when the character becomes another body.
+        /// Adds a blend shape that leads to another body's surface, such as a heavier one, to all levels of detail; its
+        /// weight ranges from 0 to 100. Blend shapes are removed when the character gets another body.
         /// </summary>
-        public void AddBlendShape(string shape, AnthroBody to)
+        public void AddBlendShape(string name, AnthroBody target)
         {
             if (body == null)
             {
-                throw new InvalidOperationException("the character has to be generated before it gets blend shapes");
+                throw new InvalidOperationException("the character is not generated yet: blend shapes need its meshes");
             }
             foreach (var level in figure.Levels)
             {
                 using (var surface = new AnthroSurface(body, level.lod, skinTone, figure.BodyOnly))
                 {
-                    surface.AddBlendShape(shape, to);
+                    surface.AddBlendShape(name, target);
                     AnthroMeshes.AddBlendShapes(level.mesh, surface);
                 }
             }
         }
 
-        /// <summary>Takes all blend shapes off, as Unity takes no single one.</summary>
+        /// <summary>Removes all blend shapes; Unity cannot remove a single one.</summary>
         public void ClearBlendShapes()
         {
             for (var i = 0; figure != null && i < figure.Levels.Count; i++)
@@ -345,39 +353,45 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Sets how much of a blend shape is seen, 0 to 100, on all levels of detail. Makes no garbage.</summary>
-        /// <exception cref="ArgumentException">It has none of that name.</exception>
-        public void SetBlendShapeWeight(string shape, float weight)
+        internal bool HasBlendShape(string name)
+        {
+            return figure != null && figure.Levels.TrueForAll(level => level.mesh.GetBlendShapeIndex(name) >= 0);
+        }
+
+        /// <summary>Sets the weight of a blend shape, 0 to 100, on all levels of detail. Allocates no managed
+        /// memory.</summary>
+        /// <exception cref="ArgumentException">There is no blend shape of this name.</exception>
+        public void SetBlendShapeWeight(string name, float weight)
         {
             for (var i = 0; figure != null && i < figure.Levels.Count; i++)
             {
                 var level = figure.Levels[i];
-                var place = level.mesh.GetBlendShapeIndex(shape);
+                var place = level.mesh.GetBlendShapeIndex(name);
                 if (place < 0)
                 {
-                    throw new ArgumentException("LOD" + level.lod + " has no blend shape \"" + shape + "\"", "shape");
+                    throw new ArgumentException("LOD" + level.lod + " has no blend shape \"" + name + "\"", "name");
                 }
                 level.renderer.SetBlendShapeWeight(place, weight);
             }
         }
 
-        /// <summary>Who hears of the next person is to be told anew: for characters that are used again.</summary>
-        internal void Forget()
+        /// <summary>Removes all handlers of events: for pooled characters.</summary>
+        internal void ClearListeners()
         {
-            OnReport = null;
+            OnGenerated = null;
         }
 
         /// <summary>
-        /// Makes it a character whose meshes and avatar are assets: it owns them no longer, is saved as it stands, and is
-        /// not generated when it awakes.
+        /// Turns it into a baked character, whose meshes and avatar are assets: it no longer owns them, is saved as it
+        /// is, and is not generated in `Awake`.
         /// </summary>
         internal void Bake()
         {
             if (figure == null)
             {
-                throw new InvalidOperationException("the character has to be generated before it is baked");
+                throw new InvalidOperationException("the character is not generated yet: there is nothing to bake");
             }
-            turns++;
+            latestTurn++;
             figure.Bake();
             figure = null;
             baked = true;
@@ -390,19 +404,19 @@ namespace Anthronet
             Release();
         }
 
-        /// <summary>Frees what is its own and no object. Unity calls `OnDestroy` of none that never was awake: who destroys
-        /// such a one calls this before.</summary>
+        /// <summary>Destroys the owned meshes, avatar and body. Unity sends no `OnDestroy` to a component that never was
+        /// active: whoever destroys such a character calls this first.</summary>
         internal void Release()
         {
-            turns++;
-            if (half != null)
+            latestTurn++;
+            if (pending != null)
             {
-                half.Drop();
-                half = null;
+                pending.DestroyOwned();
+                pending = null;
             }
             if (figure != null)
             {
-                figure.Drop();
+                figure.DestroyOwned();
                 figure = null;
             }
             if (body != null)

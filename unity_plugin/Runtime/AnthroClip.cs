@@ -4,28 +4,29 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>How a motion file comes onto a body. Zeros are the defaults.</summary>
-    public struct AnthroRetarget
+    /// <summary>How a motion is retargeted to a body. Default values are the recommended ones.</summary>
+    public struct AnthroRetargetOptions
     {
-        /// <summary>What the fingers do.</summary>
+        /// <summary>Finger motion.</summary>
         public AnthroFingers fingers;
-        /// <summary>Leaves joints beyond what people's joints do.</summary>
+        /// <summary>Does not keep joints within anatomical limits.</summary>
         public bool noLimits;
-        /// <summary>Leaves feet where the motion puts them.</summary>
+        /// <summary>Does not correct feet that slide or go below the floor.</summary>
         public bool noFeet;
-        /// <summary>Leaves out the way over the ground.</summary>
+        /// <summary>Removes root motion: the character stays in place.</summary>
         public bool inPlace;
-        /// <summary>Makes the end meet the beginning.</summary>
+        /// <summary>Blends the end into the start, so that the clip loops.</summary>
         public bool looped;
-        /// <summary>Gives the way over the ground to the joint `Root` instead of the pelvis.</summary>
+        /// <summary>Puts root motion on the joint `Root` instead of the pelvis.</summary>
         public bool rootMotion;
-        /// <summary>Frames per second; 0 keeps those of the file.</summary>
+        /// <summary>Frames per second of the clip; 0 keeps the file's.</summary>
         public double framesPerSecond;
-        /// <summary>Which joint of the file drives which of ours, as JSON; null to find all of them.</summary>
+        /// <summary>Which joint of the file drives which joint of the rig, as JSON; null maps all of them
+        /// automatically.</summary>
         public string mappingJson;
     }
 
-    /// <summary>A motion of a body's joints. Immutable; may be sampled by many threads at once.</summary>
+    /// <summary>An animation clip for a body's joints. Immutable; any number of threads may sample it.</summary>
     public sealed unsafe class AnthroClip : IDisposable
     {
         readonly ClipHandle handle;
@@ -61,7 +62,7 @@ namespace Anthronet
         /// <summary>Frames per second.</summary>
         public double FramesPerSecond { get; private set; }
 
-        /// <summary>From the first frame to the last, seconds.</summary>
+        /// <summary>Time from the first frame to the last, seconds.</summary>
         public double Duration { get; private set; }
 
         /// <summary>The names of the built-in clips.</summary>
@@ -79,12 +80,12 @@ namespace Anthronet
             return names;
         }
 
-        /// <summary>A built-in clip for a body, such as `walk`.</summary>
-        /// <exception cref="AnthroException">There is none of that name.</exception>
+        /// <summary>Makes a built-in clip, such as `walk`, for a body.</summary>
+        /// <exception cref="AnthroException">There is no built-in clip of this name.</exception>
         public static AnthroClip Builtin(string name, AnthroBody body)
         {
             ulong length;
-            using (var held = new Held(Library.Given(body, "body").Handle))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -96,24 +97,26 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// Reads the first clip of a motion file onto a body: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc,
-        /// .usdz. `AnthroMotion` does it in two steps, for files with many clips or for many bodies.
+        /// Reads the first clip of a motion file and retargets it to a body: .bvh, .fbx, .glb, .gltf, .npz (AMASS,
+        /// SMPL-X), .usda, .usdc, .usdz. For files with several clips, or for several bodies, use `AnthroMotion`.
         /// </summary>
-        /// <exception cref="AnthroException">The file is not such a one, or its joints are not found.</exception>
-        public static AnthroClip Open(string path, AnthroBody body, AnthroRetarget options = default(AnthroRetarget))
+        /// <exception cref="AnthroException">The file is not valid, or joints of a humanoid were not found in
+        /// it.</exception>
+        public static AnthroClip Open(string path, AnthroBody body, AnthroRetargetOptions options = default(AnthroRetargetOptions))
         {
             using (var motion = AnthroMotion.Open(path))
             {
-                return motion.Onto(body, 0, options);
+                return motion.Retarget(body, 0, options);
             }
         }
 
-        /// <summary>A clip of poses: frame by frame, every joint relative to its parent in Unity's space.</summary>
-        public static AnthroClip Of(AnthroBody body, string name, double framesPerSecond, AnthroTransform[] frames)
+        /// <summary>Makes a clip of poses: all joints of each frame, relative to their parents, in Unity's
+        /// space.</summary>
+        public static AnthroClip FromPoses(AnthroBody body, string name, double framesPerSecond, AnthroTransform[] frames)
         {
             ulong length;
-            using (var held = new Held(Library.Given(body, "body").Handle))
-            fixed (AnthroTransform* first = Library.Given(frames, "frames"))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
+            fixed (AnthroTransform* first = Library.NotNull(frames, "frames"))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
                 anthronet_clip* made;
@@ -131,32 +134,33 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// The pose at a time in Unity's space, `JointCount` joints. Makes no garbage.
+        /// Samples the pose of `JointCount` joints in Unity's space. Allocates no managed memory.
         /// </summary>
-        /// <param name="seconds">The time.</param>
-        /// <param name="wrap">What the clip is outside its duration.</param>
-        /// <param name="into">Filled: relative to the parents, or to the character if `toModel`.</param>
-        /// <param name="toModel">Relative to the character, as `AnthroSkinner` takes it.</param>
-        public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] into, bool toModel = false)
+        /// <param name="seconds">Time from the start of the clip.</param>
+        /// <param name="wrap">What happens outside the clip's duration.</param>
+        /// <param name="results">Receives the transforms: relative to the parents, or to the character if
+        /// `toModel`.</param>
+        /// <param name="toModel">Transforms relative to the character, as `AnthroSkinner` needs them.</param>
+        public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] results, bool toModel = false)
         {
-            fixed (AnthroTransform* first = Library.Given(into, "into"))
+            fixed (AnthroTransform* first = Library.NotNull(results, "results"))
             {
-                Sample(seconds, wrap, first, into.Length, toModel);
+                Sample(seconds, wrap, first, results.Length, toModel);
             }
         }
 
-        internal void Sample(double seconds, AnthroWrap wrap, AnthroTransform* into, int count, bool toModel)
+        internal void Sample(double seconds, AnthroWrap wrap, AnthroTransform* results, int count, bool toModel)
         {
             using (var held = new Held(handle))
             {
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_clip_sample((anthronet_clip*)held.Pointer, seconds, (uint)wrap,
                     toModel ? NativeMethods.ANTHRONET_RELATIVE_TO_MODEL : NativeMethods.ANTHRONET_RELATIVE_TO_PARENT,
-                    NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_transform*)into, (uint)count, &error), &error);
+                    NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_transform*)results, (uint)count, &error), &error);
             }
         }
 
-        /// <summary>All frames, one after the other, every joint relative to its parent in Unity's space.</summary>
+        /// <summary>All frames one after the other, every joint relative to its parent, in Unity's space.</summary>
         public AnthroTransform[] Bake()
         {
             var frames = new AnthroTransform[FrameCount * JointCount];
@@ -172,19 +176,16 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// As one of Unity's clips for the joints below a character's object, to be played by an `Animation` component: at
-        /// run time Unity fills no others. The editor's `AnthroSave` makes one for an `Animator`. A key per frame for every
-        /// rotation, and for the places of the root, the pelvis and whatever else moves; linear in between.
+        /// Converts the clip to a legacy `AnimationClip` for an `Animation` component on the character: at run time Unity
+        /// can only fill legacy clips. For an `Animator`, use the editor's `AnthroSave`. One key per frame: rotations of
+        /// all joints, positions of the root, the pelvis and other moving joints, with linear interpolation.
         /// </summary>
-        /// <param name="rig">The joints of the character that it is for.</param>
-        /// <exception cref="ArgumentException">The rig has other joints.</exception>
+        /// <param name="rig">The skeleton of the character.</param>
+        /// <exception cref="ArgumentException">The rig has a different number of joints.</exception>
         public AnimationClip ToAnimationClip(AnthroRig rig)
         {
-            var made = new AnimationClip();
-            made.name = Name;
-            made.legacy = true;
-            made.frameRate = (float)FramesPerSecond;
-            foreach (var curve in AnthroCurves.Of(this, rig))
+            var made = AnthroCurves.NewClip(this, true);
+            foreach (var curve in AnthroCurves.FromClip(this, rig))
             {
                 made.SetCurve(curve.path, typeof(Transform), curve.property, curve.keys);
             }
@@ -192,74 +193,59 @@ namespace Anthronet
             return made;
         }
 
-        /// <summary>At another rate.</summary>
-        public AnthroClip Resampled(double framesPerSecond)
+        /// <summary>The clip at another frame rate.</summary>
+        public AnthroClip Resample(double framesPerSecond)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_resample(
-                    (anthronet_clip*)held.Pointer, framesPerSecond, &made, &error), &error);
-                return new AnthroClip(made);
-            }
+            return Derive((clip, made, error) =>
+                NativeMethods.anthronet_clip_resample(clip, framesPerSecond, made, error));
         }
 
-        /// <summary>Without its way over the ground.</summary>
+        /// <summary>The clip without root motion.</summary>
         public AnthroClip InPlace()
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_in_place(
-                    (anthronet_clip*)held.Pointer, &made, &error), &error);
-                return new AnthroClip(made);
-            }
+            return Derive((clip, made, error) => NativeMethods.anthronet_clip_in_place(clip, made, error));
         }
 
-        /// <summary>With its end going over into its beginning during the last `seconds`.</summary>
+        /// <summary>The clip as a loop: its end blends into its start over the last `seconds`.</summary>
         public AnthroClip Looped(double seconds)
         {
+            return Derive((clip, made, error) => NativeMethods.anthronet_clip_looped(clip, seconds, made, error));
+        }
+
+        /// <summary>A blend of two clips of the same body: `weight` 0 is this clip, 1 the other.</summary>
+        public AnthroClip Blend(AnthroClip other, float weight)
+        {
+            using (var second = new Held(Library.NotNull(other, "other").handle))
+            {
+                var to = (anthronet_clip*)second.Pointer;
+                return Derive((clip, made, error) => NativeMethods.anthronet_clip_blend(clip, to, weight, made, error));
+            }
+        }
+
+        /// <summary>This clip followed by another of the same body, cross-faded over `seconds`.</summary>
+        public AnthroClip Crossfade(AnthroClip other, double seconds)
+        {
+            using (var second = new Held(Library.NotNull(other, "other").handle))
+            {
+                var to = (anthronet_clip*)second.Pointer;
+                return Derive((clip, made, error) => NativeMethods.anthronet_clip_crossfade(clip, to, seconds, made, error));
+            }
+        }
+
+        delegate int DeriveCall(anthronet_clip* clip, anthronet_clip** made, anthronet_error* error);
+
+        AnthroClip Derive(DeriveCall call)
+        {
             using (var held = new Held(handle))
             {
                 anthronet_clip* made;
                 anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_looped(
-                    (anthronet_clip*)held.Pointer, seconds, &made, &error), &error);
+                Library.Check(call((anthronet_clip*)held.Pointer, &made, &error), &error);
                 return new AnthroClip(made);
             }
         }
 
-        /// <summary>Two clips of one body at once: `weight` 0 is this, 1 the other.</summary>
-        public AnthroClip Blended(AnthroClip other, float weight)
-        {
-            using (var second = new Held(Library.Given(other, "other").handle))
-            using (var first = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_blend((anthronet_clip*)first.Pointer,
-                    (anthronet_clip*)second.Pointer, weight, &made, &error), &error);
-                return new AnthroClip(made);
-            }
-        }
-
-        /// <summary>Two clips of one body one after the other, overlapping by `seconds`.</summary>
-        public AnthroClip Then(AnthroClip other, double seconds)
-        {
-            using (var second = new Held(Library.Given(other, "other").handle))
-            using (var first = new Held(handle))
-            {
-                anthronet_clip* made;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_crossfade((anthronet_clip*)first.Pointer,
-                    (anthronet_clip*)second.Pointer, seconds, &made, &error), &error);
-                return new AnthroClip(made);
-            }
-        }
-
-        /// <summary>Frees it.</summary>
+        /// <summary>Frees the native memory.</summary>
         public void Dispose()
         {
             handle.Dispose();

@@ -7,8 +7,8 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// Poses the surfaces of many characters in one call, on all cores, into native arrays of positions and normals.
-    /// `Run` makes no garbage. One thread at a time.
+    /// Skins the surfaces of many characters on the CPU in one call, on all cores, into native arrays of positions and
+    /// normals. `Run` allocates no managed memory. One thread at a time.
     /// </summary>
     public sealed unsafe class AnthroCrowdSkin : IDisposable
     {
@@ -21,19 +21,20 @@ namespace Anthronet
         readonly int[] offsets;
         readonly int jointCount;
 
-        /// <summary>Makes room for characters.</summary>
-        /// <param name="skinners">One per character; the same one may stand more than once. Kept from being freed.</param>
-        /// <param name="jointCount">Joints of a pose: `AnthroClip.JointCount`.</param>
-        /// <param name="method">How.</param>
+        /// <summary>Allocates the arrays for a number of characters.</summary>
+        /// <param name="skinners">One per character; characters may share one. They stay alive as long as this
+        /// object.</param>
+        /// <param name="jointCount">Joints per pose: `AnthroClip.JointCount`.</param>
+        /// <param name="method">The skinning method.</param>
         public AnthroCrowdSkin(
             AnthroSkinner[] skinners, int jointCount, AnthroSkinning method = AnthroSkinning.Linear)
         {
-            this.skinners = (AnthroSkinner[])Library.Given(skinners, "skinners").Clone();
+            this.skinners = (AnthroSkinner[])Library.NotNull(skinners, "skinners").Clone();
             this.jointCount = jointCount;
             offsets = new int[skinners.Length + 1];
             for (var i = 0; i < skinners.Length; i++)
             {
-                offsets[i + 1] = checked(offsets[i] + Library.Given(skinners[i], "skinners").VertexCount);
+                offsets[i + 1] = checked(offsets[i] + Library.NotNull(skinners[i], "skinners").VertexCount);
             }
             var vertices = offsets[skinners.Length];
             held = new Held[skinners.Length];
@@ -47,7 +48,7 @@ namespace Anthronet
                 poses = new NativeArray<AnthroTransform>(checked(skinners.Length * jointCount), Allocator.Persistent);
                 positions = new NativeArray<Vector3>(vertices, Allocator.Persistent);
                 normals = new NativeArray<Vector3>(vertices, Allocator.Persistent);
-                Describe(method);
+                FillJobs(method);
             }
             catch
             {
@@ -57,7 +58,7 @@ namespace Anthronet
             AnthroAlive.Add(this);
         }
 
-        void Describe(AnthroSkinning method)
+        void FillJobs(AnthroSkinning method)
         {
             var firstPose = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses);
             var firstPosition = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(positions);
@@ -76,40 +77,41 @@ namespace Anthronet
             get { return skinners.Length; }
         }
 
-        /// <summary>Posed positions of all characters, one after the other, metres, each in its character's space.</summary>
+        /// <summary>Skinned positions of all characters, one after the other, metres, each in its character's
+        /// space.</summary>
         public NativeArray<Vector3> Positions
         {
             get { return positions; }
         }
 
-        /// <summary>Posed unit normals of all characters, one after the other.</summary>
+        /// <summary>Skinned unit normals of all characters, one after the other.</summary>
         public NativeArray<Vector3> Normals
         {
             get { return normals; }
         }
 
-        /// <summary>Where a character's vertices begin; of `Count`, where all end.</summary>
+        /// <summary>Index of a character's first vertex; for `Count`, the total number of vertices.</summary>
         public int FirstVertex(int character)
         {
             return offsets[character];
         }
 
-        /// <summary>Sets the pose of a character from a clip. Makes no garbage.</summary>
+        /// <summary>Sets the pose of a character from a clip. Allocates no managed memory.</summary>
         public void Pose(int character, AnthroClip clip, double seconds, AnthroWrap wrap)
         {
-            Open();
+            ThrowIfDisposed();
             if (character < 0 || character >= skinners.Length)
             {
                 throw new ArgumentOutOfRangeException("character");
             }
             var first = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses) + character * jointCount;
-            Library.Given(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
+            Library.NotNull(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
         }
 
-        /// <summary>Poses all surfaces. Makes no garbage.</summary>
+        /// <summary>Skins all surfaces. Allocates no managed memory.</summary>
         public void Run()
         {
-            Open();
+            ThrowIfDisposed();
             fixed (AnthroSkinJob* first = jobs)
             {
                 anthronet_error error;
@@ -118,18 +120,18 @@ namespace Anthronet
             }
         }
 
-        /// <summary>What `Run` hands to `AnthroSkin.Run`, to run in a job of your own: pin it, and keep this meanwhile.
-        /// </summary>
+        /// <summary>A copy of what `Run` passes to `AnthroSkin.Run`, for a job of your own: pin it, and keep this object
+        /// alive until the job is complete.</summary>
         public AnthroSkinJob[] Jobs
         {
             get
             {
-                Open();
+                ThrowIfDisposed();
                 return (AnthroSkinJob[])jobs.Clone();
             }
         }
 
-        void Open()
+        void ThrowIfDisposed()
         {
             if (!positions.IsCreated)
             {
@@ -137,14 +139,14 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees the arrays. What was got from `Positions` and `Normals` is not to be used any longer.</summary>
+        /// <summary>Frees the native arrays; arrays obtained from `Positions` and `Normals` become invalid.</summary>
         public void Dispose()
         {
             Release();
             GC.SuppressFinalize(this);
         }
 
-        // Native arrays have none of their own.
+        // Native arrays have no finaliser of their own.
         ~AnthroCrowdSkin()
         {
             Release();

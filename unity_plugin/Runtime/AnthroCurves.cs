@@ -4,13 +4,13 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A clip of ours as Unity's curves.</summary>
+    /// <summary>Converts AnthroNet clips to Unity's animation curves.</summary>
     internal static class AnthroCurves
     {
-        /// <summary>One number of one joint over time.</summary>
+        /// <summary>One scalar property of one joint over time.</summary>
         public struct Curve
         {
-            /// <summary>The joint, below the character's object.</summary>
+            /// <summary>Transform path of the joint below the character.</summary>
             public string path;
             /// <summary>Such as `localRotation.x`.</summary>
             public string property;
@@ -21,19 +21,27 @@ namespace Anthronet
             { "localRotation.x", "localRotation.y", "localRotation.z", "localRotation.w" };
         static readonly string[] position = { "localPosition.x", "localPosition.y", "localPosition.z" };
 
-        /// <summary>Joints whose place is always told: the root and the pelvis, by which a body moves.</summary>
+        /// <summary>Number of joints that always get position curves: the root and the pelvis, which carry root
+        /// motion.</summary>
         const int Movers = 2;
 
-        /// <summary>How far a joint is from where it rests before its place is told, metres.</summary>
+        /// <summary>Distance from the rest position above which a joint gets position curves, metres.</summary>
         const float Moved = 1e-6f;
 
-        /// <summary>All curves of a clip, joint by joint.</summary>
-        public static List<Curve> Of(AnthroClip clip, AnthroRig rig)
+        /// <summary>An animation clip with the name and frame rate of an AnthroNet clip, without curves.</summary>
+        public static AnimationClip NewClip(AnthroClip clip, bool legacy)
         {
-            if (rig == null)
-            {
-                throw new ArgumentNullException("rig");
-            }
+            var made = new AnimationClip();
+            made.name = clip.Name;
+            made.legacy = legacy;
+            made.frameRate = (float)clip.FramesPerSecond;
+            return made;
+        }
+
+        /// <summary>All curves of a clip, joint by joint.</summary>
+        public static List<Curve> FromClip(AnthroClip clip, AnthroRig rig)
+        {
+            Native.Library.NotNull(rig, "rig");
             var count = clip.JointCount;
             if (rig.Bones.Length != count)
             {
@@ -60,36 +68,37 @@ namespace Anthronet
             return curves;
         }
 
-        /// <summary>The rotations of a joint. q and −q are one rotation, but not to curves: each has the sign that is next
-        /// to the one before.</summary>
-        static void Rotations(AnthroTransform[] frames, int joint, int stride, float[][] into)
+        /// <summary>Writes the rotations of a joint. q and −q are the same rotation but not the same curves: each
+        /// quaternion gets the sign closest to its predecessor.</summary>
+        static void Rotations(AnthroTransform[] frames, int joint, int stride, float[][] results)
         {
             var before = frames[joint].rotation;
-            for (var frame = 0; frame < into[0].Length; frame++)
+            for (var frame = 0; frame < results[0].Length; frame++)
             {
                 var q = frames[frame * stride + joint].rotation;
                 if (Quaternion.Dot(before, q) < 0f)
                 {
                     q = new Quaternion(-q.x, -q.y, -q.z, -q.w);
                 }
-                into[0][frame] = q.x;
-                into[1][frame] = q.y;
-                into[2][frame] = q.z;
-                into[3][frame] = q.w;
+                results[0][frame] = q.x;
+                results[1][frame] = q.y;
+                results[2][frame] = q.z;
+                results[3][frame] = q.w;
                 before = q;
             }
         }
 
-        /// <summary>The places of a joint, and whether any is not the one where it rests.</summary>
-        static bool Positions(AnthroTransform[] frames, int joint, int stride, Vector3 rest, float[][] into)
+        /// <summary>Writes the positions of a joint, and returns whether any of them differs from the rest
+        /// position.</summary>
+        static bool Positions(AnthroTransform[] frames, int joint, int stride, Vector3 rest, float[][] results)
         {
             var moves = false;
-            for (var frame = 0; frame < into[0].Length; frame++)
+            for (var frame = 0; frame < results[0].Length; frame++)
             {
                 var p = frames[frame * stride + joint].translation;
-                into[0][frame] = p.x;
-                into[1][frame] = p.y;
-                into[2][frame] = p.z;
+                results[0][frame] = p.x;
+                results[1][frame] = p.y;
+                results[2][frame] = p.z;
                 moves |= (p - rest).magnitude > Moved;
             }
             return moves;
@@ -108,7 +117,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Keys with the slopes of straight lines from each to the next, as our own sampling goes.</summary>
+        /// <summary>Keys with linear tangents, which interpolate as the library does between frames.</summary>
         static Keyframe[] Keys(float[] values, double framesPerSecond)
         {
             var keys = new Keyframe[values.Length];

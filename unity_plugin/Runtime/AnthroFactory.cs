@@ -4,24 +4,25 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>What characters that the factory makes are like.</summary>
+    /// <summary>Settings of characters that the factory makes.</summary>
     public sealed class AnthroSettings
     {
-        /// <summary>The finest level of detail, 0 to 3.</summary>
+        /// <summary>Finest level of detail, 0 to 3.</summary>
         public int finestLod = 1;
-        /// <summary>The coarsest level of detail, 0 to 3.</summary>
+        /// <summary>Coarsest level of detail, 0 to 3.</summary>
         public int coarsestLod = 3;
-        /// <summary>Step of the Monk scale, 1 to 10; 0 for the default.</summary>
+        /// <summary>Skin tone on the Monk scale, 1 to 10; 0 for the default.</summary>
         public int skinTone;
-        /// <summary>Whether they are without eyes, teeth, tongue and lashes.</summary>
+        /// <summary>Leaves out eyes, teeth, tongue and eyelashes.</summary>
         public bool bodyOnly;
-        /// <summary>Whether they get a humanoid avatar.</summary>
+        /// <summary>Builds a humanoid avatar.</summary>
         public bool humanoid = true;
-        /// <summary>Where they go; null for the scene's root.</summary>
+        /// <summary>Parent transform; null for the root of the scene.</summary>
         public Transform parent;
-        /// <summary>The model that makes them; null for the library's own.</summary>
+        /// <summary>The model to generate with; null for `AnthroModel.Default`.</summary>
         public AnthroModel model;
-        /// <summary>Where characters are taken from: levels of detail are those that they have; null for none.</summary>
+        /// <summary>Pool to take characters from, which keep the levels of detail that they have; null for
+        /// none.</summary>
         public AnthroPool pool;
 
         internal AnthroSettings Copy()
@@ -30,24 +31,24 @@ namespace Anthronet
         }
     }
 
-    /// <summary>Makes characters from code.</summary>
+    /// <summary>Makes characters from scripts.</summary>
     public static class AnthroFactory
     {
-        /// <summary>Makes a character, at once. On the main thread.</summary>
-        /// <exception cref="AnthroException">The request is refused; the scene stays as it was.</exception>
+        /// <summary>Makes a character synchronously, on the main thread.</summary>
+        /// <exception cref="AnthroException">The request is refused; the scene is unchanged.</exception>
         public static AnthroCharacter Create(AnthroRequest request, AnthroSettings settings = null)
         {
             settings = settings ?? new AnthroSettings();
             var body = (settings.model ?? AnthroModel.Default).Generate(request);
-            var character = Asleep(request, settings);
+            var character = CreateInactive(request, settings);
             try
             {
-                character.Become(body);
+                character.SetBody(body);
             }
             catch
             {
                 character.Release();
-                AnthroObjects.Discard(character.gameObject);
+                AnthroObjects.DestroySafely(character.gameObject);
                 throw;
             }
             character.gameObject.SetActive(true);
@@ -55,24 +56,23 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// Makes characters: bodies and all that their meshes hold on threads, then the objects on the main thread in slices.
-        /// Something has to call `AnthroSpawn.Advance` each frame: `AnthroRunner.Run` does.
+        /// Makes characters asynchronously: bodies and mesh data on worker threads, then GameObjects on the main thread
+        /// in time slices. `AnthroSpawn.Advance` has to be called every frame; `AnthroRunner.Run` does that.
         /// </summary>
         public static AnthroSpawn CreateAsync(IList<AnthroRequest> requests, AnthroSettings settings = null)
         {
-            var copies = new AnthroRequest[Library.Given(requests, "requests").Count];
+            var copies = new AnthroRequest[Library.NotNull(requests, "requests").Count];
             for (var i = 0; i < copies.Length; i++)
             {
-                copies[i] = Library.Given(requests[i], "requests").Copy();
+                copies[i] = Library.NotNull(requests[i], "requests").Copy();
             }
             return new AnthroSpawn(copies, settings == null ? new AnthroSettings() : settings.Copy());
         }
 
-        /// <summary>A character that sleeps, so that nobody sees it before it is whole: of the pool, or one with nothing.
-        /// </summary>
-        internal static AnthroCharacter Asleep(AnthroRequest request, AnthroSettings settings)
+        /// <summary>An inactive character, invisible until it is complete: from the pool, or a new one.</summary>
+        internal static AnthroCharacter CreateInactive(AnthroRequest request, AnthroSettings settings)
         {
-            var character = settings.pool == null ? null : settings.pool.Take();
+            var character = settings.pool == null ? null : settings.pool.Get();
             if (character == null)
             {
                 var made = new GameObject("AnthroNet Character");

@@ -5,8 +5,8 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// The objects that a character consists of: joints, a renderer and a mesh per level of detail, the group of levels,
-    /// the avatar. What is there already is used again: after a reload of the code, in a copy, in an instance of a prefab.
+    /// The objects that a character consists of: joints, a renderer and a mesh per level of detail, the LODGroup, the
+    /// avatar. Existing ones are reused: after a domain reload, in a duplicate, in a prefab instance.
     /// </summary>
     internal sealed class AnthroFigure
     {
@@ -18,20 +18,20 @@ namespace Anthronet
             public SkinnedMeshRenderer renderer;
         }
 
-        static readonly float[] heights = { 0.5f, 0.2f, 0.08f, 0.01f };
+        static readonly float[] screenHeights = { 0.5f, 0.2f, 0.08f, 0.01f };
 
-        readonly AnthroCharacter home;
+        readonly AnthroCharacter character;
         readonly List<GameObject> made;
         readonly List<Object> owned;
         LODGroup group;
 
-        /// <summary>Nothing yet.</summary>
-        /// <param name="home">The character.</param>
-        /// <param name="made">Children that are the character's: what is found is used again, what is made is added.</param>
-        /// <param name="owned">Meshes and avatar of its own, added and taken off.</param>
-        public AnthroFigure(AnthroCharacter home, List<GameObject> made, List<Object> owned)
+        /// <summary>An empty figure.</summary>
+        /// <param name="character">The character.</param>
+        /// <param name="made">Child objects of the character: existing ones are reused, new ones are added.</param>
+        /// <param name="owned">Receives the meshes and the avatar that the character owns.</param>
+        public AnthroFigure(AnthroCharacter character, List<GameObject> made, List<Object> owned)
         {
-            this.home = home;
+            this.character = character;
             this.made = made;
             this.owned = owned;
             made.RemoveAll(child => child == null);
@@ -43,36 +43,48 @@ namespace Anthronet
 
         public Avatar Avatar { get; private set; }
 
-        /// <summary>Whether it is without eyes, teeth, tongue and lashes.</summary>
+        /// <summary>Whether eyes, teeth, tongue and eyelashes are left out.</summary>
         public bool BodyOnly { get; private set; }
 
-        /// <summary>In the editor's edit mode what is generated is not saved: the request is, and makes it again.</summary>
-        static HideFlags Flags
+        /// <summary>In edit mode generated objects are not saved: the scene has the request and generates them
+        /// again.</summary>
+        static HideFlags GeneratedFlags
         {
             get { return Application.isPlaying ? HideFlags.None : HideFlags.DontSave; }
         }
 
-        /// <summary>Makes it of a body in steps, with nothing to be seen before the last.</summary>
+        /// <summary>The levels of detail between two, in either order; finest first.</summary>
+        public static List<int> LodRange(int finest, int coarsest)
+        {
+            var lods = new List<int>();
+            for (var lod = Mathf.Min(finest, coarsest); lod <= Mathf.Max(finest, coarsest); lod++)
+            {
+                lods.Add(lod);
+            }
+            return lods;
+        }
+
+        /// <summary>Makes the figure in steps; nothing is visible before the last one.</summary>
         public IEnumerator Make(AnthroBuild build, IList<int> lods, bool humanoid)
         {
             BodyOnly = build.BodyOnly;
-            var left = new List<GameObject>(made);
-            MakeRig(build.Body, left);
+            var unused = new List<GameObject>(made);
+            MakeRig(build.Body, unused);
             yield return null;
             foreach (var lod in lods)
             {
-                var level = AddLevel(build, lod, left);
+                var level = AddLevel(build, lod, unused);
                 yield return null;
                 Bind(level, build[lod]);
                 yield return null;
             }
-            foreach (var child in left)
+            foreach (var child in unused)
             {
                 made.Remove(child);
-                AnthroObjects.Discard(child);
+                AnthroObjects.DestroySafely(child);
             }
-            Group();
-            Measure(build);
+            MakeGroup();
+            UpdateGroupBounds(build);
             if (humanoid)
             {
                 BuildAvatar();
@@ -84,43 +96,45 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Makes it another body, at once: objects, transforms and meshes stay the same ones.</summary>
+        /// <summary>Updates the figure to another body, synchronously: GameObjects, transforms and meshes are
+        /// kept.</summary>
         public void Update(AnthroBuild build, bool humanoid)
         {
-            var whole = BodyOnly != build.BodyOnly;
+            var partsChanged = BodyOnly != build.BodyOnly;
             BodyOnly = build.BodyOnly;
             Rig.Update(build.Body);
             foreach (var level in Levels)
             {
                 var packed = build[level.lod];
-                if (whole)
+                if (partsChanged)
                 {
                     Replace(level, packed);
                     continue;
                 }
                 AnthroMeshes.Update(level.mesh, packed, Rig.Joints);
-                Dress(level, packed);
+                ApplyMaterials(level, packed);
             }
-            Measure(build);
+            UpdateGroupBounds(build);
             if (humanoid)
             {
                 BuildAvatar();
             }
         }
 
-        /// <summary>Destroys what is its own and no object: meshes and avatar.</summary>
-        public void Drop()
+        /// <summary>Destroys the owned meshes and the avatar; GameObjects stay.</summary>
+        public void DestroyOwned()
         {
             foreach (var level in Levels)
             {
-                Disown(level.mesh);
+                DestroyOwned(level.mesh);
             }
             Levels.Clear();
-            Disown(Avatar);
+            DestroyOwned(Avatar);
             Avatar = null;
         }
 
-        /// <summary>Lets go of meshes and avatar, which are assets from now on, and lets all objects be saved.</summary>
+        /// <summary>Gives up ownership of meshes and avatar, which became assets, and makes all objects
+        /// savable.</summary>
         public void Bake()
         {
             owned.Clear();
@@ -134,65 +148,65 @@ namespace Anthronet
             }
             foreach (var child in made)
             {
-                Show(child.transform);
+                MakeSavable(child.transform);
             }
-            Show<LODGroup>();
-            Show<Animator>();
+            MakeSavable<LODGroup>();
+            MakeSavable<Animator>();
         }
 
-        void Show<T>() where T : Component
+        void MakeSavable<T>() where T : Component
         {
-            var part = home.GetComponent<T>();
+            var part = character.GetComponent<T>();
             if (part != null)
             {
                 part.hideFlags = HideFlags.None;
             }
         }
 
-        static void Show(Transform at)
+        static void MakeSavable(Transform at)
         {
             at.gameObject.hideFlags = HideFlags.None;
             for (var i = 0; i < at.childCount; i++)
             {
-                Show(at.GetChild(i));
+                MakeSavable(at.GetChild(i));
             }
         }
 
-        void MakeRig(AnthroBody body, List<GameObject> left)
+        void MakeRig(AnthroBody body, List<GameObject> unused)
         {
-            foreach (var child in left)
+            foreach (var child in unused)
             {
                 Rig = AnthroRig.Adopt(body, child.transform);
                 if (Rig != null)
                 {
-                    left.Remove(child);
+                    unused.Remove(child);
                     return;
                 }
             }
-            Rig = AnthroRig.Create(body, home.transform);
+            Rig = AnthroRig.Create(body, character.transform);
             foreach (var bone in Rig.Bones)
             {
-                bone.gameObject.hideFlags = Flags;
+                bone.gameObject.hideFlags = GeneratedFlags;
             }
             made.Add(Rig.Bones[0].gameObject);
         }
 
-        /// <summary>A level with its renderer and a mesh that has no weights yet.</summary>
-        Level AddLevel(AnthroBuild build, int lod, List<GameObject> left)
+        /// <summary>Adds a level of detail with its renderer and a mesh that has no bone weights yet.</summary>
+        Level AddLevel(AnthroBuild build, int lod, List<GameObject> unused)
         {
             var level = new Level();
             level.lod = lod;
             var name = "LOD" + lod;
-            var child = left.Find(one => one.name == name && one.GetComponent<SkinnedMeshRenderer>() != null);
+            var child = unused.Find(one => one.name == name && one.GetComponent<SkinnedMeshRenderer>() != null);
             if (child == null)
             {
                 child = new GameObject(name);
-                child.hideFlags = Flags;
-                child.transform.SetParent(home.transform, false);
+                child.hideFlags = GeneratedFlags;
+                child.transform.SetParent(character.transform, false);
                 made.Add(child);
                 child.AddComponent<SkinnedMeshRenderer>().enabled = false;
             }
-            left.Remove(child);
+            unused.Remove(child);
             level.renderer = child.GetComponent<SkinnedMeshRenderer>();
             Levels.Add(level);
             Fill(level, build[lod]);
@@ -201,8 +215,8 @@ namespace Anthronet
 
         void Fill(Level level, AnthroPacked packed)
         {
-            level.mesh = AnthroMeshes.Fill(packed, home.name + " LOD" + level.lod);
-            level.mesh.hideFlags = Flags;
+            level.mesh = AnthroMeshes.Fill(packed, character.name + " LOD" + level.lod);
+            level.mesh.hideFlags = GeneratedFlags;
             owned.Add(level.mesh);
         }
 
@@ -212,60 +226,60 @@ namespace Anthronet
             level.renderer.sharedMesh = level.mesh;
             level.renderer.bones = Rig.Bones;
             level.renderer.rootBone = Rig.Bones[1];
-            Dress(level, packed);
+            ApplyMaterials(level, packed);
         }
 
-        /// <summary>Another mesh, of other parts.</summary>
+        /// <summary>Replaces the mesh by one with other parts.</summary>
         void Replace(Level level, AnthroPacked packed)
         {
             var before = level.mesh;
             Fill(level, packed);
             Bind(level, packed);
-            Disown(before);
+            DestroyOwned(before);
         }
 
-        void Dress(Level level, AnthroPacked packed)
+        void ApplyMaterials(Level level, AnthroPacked packed)
         {
-            var own = home.Materials;
-            var worn = new Material[packed.Parts.Length];
-            for (var i = 0; i < worn.Length; i++)
+            var own = character.Materials;
+            var materials = new Material[packed.Parts.Length];
+            for (var i = 0; i < materials.Length; i++)
             {
-                worn[i] = i < own.Length && own[i] != null ? own[i] : AnthroMaterials.Of(packed.Parts[i]);
+                materials[i] = i < own.Length && own[i] != null ? own[i] : AnthroMaterials.Get(packed.Parts[i]);
             }
-            level.renderer.sharedMaterials = worn;
-            // Around the pelvis, whose space they are in; half as far again as the bind pose reaches is room for any pose.
-            var size = packed.Around.size;
+            level.renderer.sharedMaterials = materials;
+            // Relative to the pelvis, the root bone; half as large again as the bind pose, which leaves room for any
+            // pose.
+            var size = packed.TotalBounds.size;
             var reach = 1.5f * Mathf.Max(size.x, Mathf.Max(size.y, size.z));
             level.renderer.localBounds = new Bounds(Vector3.zero, new Vector3(reach, reach, reach));
         }
 
-        void Group()
+        void MakeGroup()
         {
-            group = home.GetComponent<LODGroup>();
+            group = character.GetComponent<LODGroup>();
             if (Levels.Count < 2)
             {
                 return;
             }
             if (group == null)
             {
-                group = home.gameObject.AddComponent<LODGroup>();
-                group.hideFlags = Flags;
+                group = character.gameObject.AddComponent<LODGroup>();
+                group.hideFlags = GeneratedFlags;
             }
             var lods = new LOD[Levels.Count];
             for (var i = 0; i < lods.Length; i++)
             {
-                lods[i] = new LOD(heights[i + heights.Length - lods.Length], new Renderer[] { Levels[i].renderer });
+                lods[i] = new LOD(screenHeights[i + screenHeights.Length - lods.Length], new Renderer[] { Levels[i].renderer });
             }
             group.SetLODs(lods);
         }
 
-        /// <summary>Tells the group how large the body is: of its mesh, since the renderers' bounds have room for poses.
-        /// </summary>
-        void Measure(AnthroBuild build)
+        /// <summary>Sets the size of the LODGroup from the mesh: the renderers' bounds include room for poses.</summary>
+        void UpdateGroupBounds(AnthroBuild build)
         {
             if (group != null)
             {
-                var around = build[Levels[0].lod].Around;
+                var around = build[Levels[0].lod].TotalBounds;
                 group.localReferencePoint = around.center;
                 group.size = Mathf.Max(around.size.x, Mathf.Max(around.size.y, around.size.z));
             }
@@ -274,28 +288,28 @@ namespace Anthronet
         void BuildAvatar()
         {
             var before = Avatar;
-            Avatar = AnthroHumanoid.Build(Rig, home.gameObject);
+            Avatar = AnthroHumanoid.Build(Rig, character.gameObject);
             if (Avatar != null)
             {
-                Avatar.hideFlags = Flags;
+                Avatar.hideFlags = GeneratedFlags;
                 owned.Add(Avatar);
-                var animator = home.GetComponent<Animator>();
+                var animator = character.GetComponent<Animator>();
                 if (animator == null)
                 {
-                    animator = home.gameObject.AddComponent<Animator>();
-                    animator.hideFlags = Flags;
+                    animator = character.gameObject.AddComponent<Animator>();
+                    animator.hideFlags = GeneratedFlags;
                 }
-                var state = AnthroAnimatorState.Of(animator);
+                var state = AnthroAnimatorState.Capture(animator);
                 animator.avatar = Avatar;
-                state.To(animator);
+                state.Restore(animator);
             }
-            Disown(before);
+            DestroyOwned(before);
         }
 
-        void Disown(Object one)
+        void DestroyOwned(Object one)
         {
             owned.Remove(one);
-            AnthroObjects.Discard(one);
+            AnthroObjects.DestroySafely(one);
         }
     }
 }

@@ -4,13 +4,13 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>Which joint is which bone of Unity's humanoid.</summary>
+    /// <summary>Maps joints of the rig to bones of Unity's humanoid.</summary>
     public static unsafe class AnthroHumanoid
     {
-        /// <summary>A joint of the rig that is a bone of the humanoid.</summary>
+        /// <summary>A humanoid bone and its joint.</summary>
         public struct Bone
         {
-            /// <summary>Name in the rig, such as `upperarm_l`.</summary>
+            /// <summary>Joint name in the rig, such as `upperarm_l`.</summary>
             public string joint;
             /// <summary>Name in Unity's `HumanTrait.BoneName`, such as `Left Thumb Proximal`.</summary>
             public string trait;
@@ -20,7 +20,7 @@ namespace Anthronet
 
         static Bone[] bones;
 
-        /// <summary>All of them.</summary>
+        /// <summary>All mapped bones.</summary>
         public static IReadOnlyList<Bone> Bones
         {
             get { return bones ?? (bones = Read()); }
@@ -44,9 +44,10 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// What `AvatarBuilder` needs: a T-pose, every bone, Unity's own limits of the muscles. Limits say what a muscle at
-        /// −1 and 1 is, so with others every humanoid clip, all of which were made for Unity's, would move this character by
-        /// other angles than everybody else; and our own clips are within the joints' limits before they come to Unity.
+        /// The description for `AvatarBuilder`: T-pose, every bone, Unity's default muscle limits. Muscle values are
+        /// relative to the limits: with custom limits, humanoid clips authored for the default ones would rotate joints
+        /// by other angles than on other characters. AnthroNet clips are within anatomical limits before they reach
+        /// Unity.
         /// </summary>
         public static HumanDescription Describe(AnthroRig rig, Transform root)
         {
@@ -82,7 +83,8 @@ namespace Anthronet
             return description;
         }
 
-        /// <summary>The humanoid avatar of a rig below `root`, or null with an error in the console.</summary>
+        /// <summary>Builds the humanoid avatar of a rig below `root`; returns null and logs an error if Unity refuses
+        /// it.</summary>
         public static Avatar Build(AnthroRig rig, GameObject root)
         {
             var avatar = AvatarBuilder.BuildHumanAvatar(root, Describe(rig, root.transform));
@@ -91,8 +93,8 @@ namespace Anthronet
                 avatar.name = root.name;
                 return avatar;
             }
-            Debug.LogError("AnthroNet: Unity made no humanoid avatar of " + root.name
-                + ": no object in it may be called as a joint, such as `pelvis`", root);
+            Debug.LogError("AnthroNet: Unity could not build a humanoid avatar for " + root.name
+                + ": no other object below it may have the name of a joint, such as `pelvis`", root);
             return null;
         }
     }

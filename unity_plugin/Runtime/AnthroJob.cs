@@ -3,18 +3,19 @@ using Anthronet.Native;
 
 namespace Anthronet
 {
-    /// <summary>How far a job is.</summary>
+    /// <summary>State of a job.</summary>
     public enum AnthroJobState
     {
-        /// <summary>Bodies are still being made.</summary>
+        /// <summary>Bodies are being generated.</summary>
         Running = 0,
-        /// <summary>Every request has its body or its error.</summary>
+        /// <summary>Every request has a body or an error.</summary>
         Done = 1,
-        /// <summary>Cancelled and stopped; what was made before can be taken.</summary>
+        /// <summary>Cancelled and stopped; finished bodies can still be taken.</summary>
         Cancelled = 2,
     }
 
-    /// <summary>Requests that the library is making into bodies. Any thread may poll, cancel and take.</summary>
+    /// <summary>Requests that worker threads of the library turn into bodies. Any thread may poll, cancel and
+    /// take.</summary>
     public sealed unsafe class AnthroJob : IDisposable
     {
         readonly BodyJobHandle handle;
@@ -28,7 +29,7 @@ namespace Anthronet
         /// <summary>Number of requests.</summary>
         public int Count { get; private set; }
 
-        /// <summary>How far it is. Returns at once and makes no garbage.</summary>
+        /// <summary>State and number of finished requests. Returns immediately; allocates no managed memory.</summary>
         public AnthroJobState Poll(out int done)
         {
             using (var held = new Held(handle))
@@ -43,7 +44,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Asks it to stop after the body that it is at. Returns at once.</summary>
+        /// <summary>Cancels the job after the current body. Returns immediately.</summary>
         public void Cancel()
         {
             using (var held = new Held(handle))
@@ -53,38 +54,39 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Takes the body of a request, once.</summary>
-        /// <exception cref="AnthroException">The error of that request; `Busy` before there is one, `Cancelled` when there
-        /// will be none, `Taken` the second time.</exception>
+        /// <summary>Takes the body of a request; possible once per request.</summary>
+        /// <exception cref="AnthroException">The request's own error; `Busy` while it is not finished, `Cancelled` if the
+        /// job was cancelled before it, `Taken` if it was taken already.</exception>
         public AnthroBody Take(int index)
         {
             AnthroBody body;
             AnthroException error;
             if (!TryTake(index, out body, out error))
             {
-                throw error ?? new AnthroException(AnthroError.Busy, "the body is still being made");
+                throw error ?? new AnthroException(AnthroError.Busy, "the body is still being generated");
             }
             return body;
         }
 
-        /// <summary>Takes the body of a request if it is there.</summary>
-        /// <returns>Whether it was; else `error` says why, or is null where it is still being made.</returns>
+        /// <summary>Takes the body of a request if it is finished.</summary>
+        /// <returns>Whether there was a body; if not, `error` has the reason, or is null while the body is being
+        /// generated.</returns>
         public bool TryTake(int index, out AnthroBody body, out AnthroException error)
         {
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
-                anthronet_error said;
+                anthronet_error nativeError;
                 var status = NativeMethods.anthronet_job_take(
-                    (anthronet_job*)held.Pointer, checked((uint)index), &made, &said);
+                    (anthronet_job*)held.Pointer, checked((uint)index), &made, &nativeError);
                 body = status == NativeMethods.ANTHRONET_OK ? new AnthroBody(made) : null;
                 error = status == NativeMethods.ANTHRONET_OK || status == NativeMethods.ANTHRONET_ERROR_BUSY
-                    ? null : new AnthroException((AnthroError)status, Utf8.Ended(said.message, 512));
+                    ? null : new AnthroException((AnthroError)status, Utf8.ZeroTerminated(nativeError.message, 512));
                 return body != null;
             }
         }
 
-        /// <summary>Cancels it, waits for the body that it is at, and frees it.</summary>
+        /// <summary>Cancels the job, waits for the current body, and frees the native memory.</summary>
         public void Dispose()
         {
             handle.Dispose();

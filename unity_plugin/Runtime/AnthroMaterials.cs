@@ -4,30 +4,29 @@ using UnityEngine.Rendering;
 
 namespace Anthronet
 {
-    /// <summary>Render pipelines that materials are made for.</summary>
+    /// <summary>Render pipelines with default materials.</summary>
     public enum AnthroPipeline
     {
-        /// <summary>Unity's own.</summary>
+        /// <summary>Built-in Render Pipeline.</summary>
         BuiltIn,
-        /// <summary>URP.</summary>
+        /// <summary>Universal Render Pipeline (URP).</summary>
         Universal,
-        /// <summary>HDRP.</summary>
+        /// <summary>High Definition Render Pipeline (HDRP).</summary>
         HighDefinition,
     }
 
     /// <summary>
-    /// Materials of the parts for the pipeline that is in use, shared by all characters with the same ones. On the main
-    /// thread alone.
+    /// Default materials for the active render pipeline, shared by all characters. Main thread only.
     /// </summary>
     public static class AnthroMaterials
     {
         static readonly Dictionary<string, Material> made = new Dictionary<string, Material>();
         static readonly HashSet<string> missed = new HashSet<string>();
 
-        /// <summary>Shaders that may stand in, the best first: what a build without a pipeline's own still has.</summary>
+        /// <summary>Fallback shaders in order of preference, for builds without the pipeline's own.</summary>
         static readonly string[] fallbacks = { "Standard", "Diffuse", "Unlit/Color", "Sprites/Default" };
 
-        /// <summary>The pipeline in use.</summary>
+        /// <summary>The active render pipeline.</summary>
         public static AnthroPipeline Pipeline
         {
             get
@@ -37,28 +36,28 @@ namespace Anthronet
                 {
                     return AnthroPipeline.BuiltIn;
                 }
-                // By name: neither package has to be installed.
+                // By type name, since neither pipeline package has to be installed.
                 var kind = asset.GetType().Name;
                 return kind.StartsWith("HD") || kind.Contains("HighDefinition")
                     ? AnthroPipeline.HighDefinition : AnthroPipeline.Universal;
             }
         }
 
-        /// <summary>The shader of a pipeline.</summary>
+        /// <summary>The shader for a render pipeline.</summary>
         public static string ShaderName(AnthroPipeline pipeline)
         {
             return pipeline == AnthroPipeline.BuiltIn ? "Standard"
                 : pipeline == AnthroPipeline.Universal ? "Universal Render Pipeline/Lit" : "HDRP/Lit";
         }
 
-        /// <summary>The material of a part; null, with an error in the console, where this build has no shader for it.
-        /// </summary>
-        public static Material Of(AnthroPart part)
+        /// <summary>The default material of a mesh part; null, with an error in the console, if this build has no usable
+        /// shader.</summary>
+        public static Material Get(AnthroPart part)
         {
             var pipeline = Pipeline;
             var key = pipeline + " " + part.name + " " + part.baseColor + " " + part.roughness + " " + part.doubleSided;
             Material material;
-            // A material of a scene that was closed is null to Unity.
+            // A cached material compares equal to null after its scene was unloaded.
             if (made.TryGetValue(key, out material) && material != null)
             {
                 return material;
@@ -79,17 +78,17 @@ namespace Anthronet
             material.name = "AnthroNet " + part.name;
             material.hideFlags = Application.isPlaying ? HideFlags.None : HideFlags.DontSave;
             material.enableInstancing = true;
-            // Unity's properties of colours are gamma, the library's are linear.
+            // Unity's colour properties are in gamma space, the library's colours are linear.
             var color = part.baseColor.gamma;
             color.a = part.baseColor.a;
-            // By what the shader has: a stand-in has not all of it.
+            // Only properties that the shader has: fallback shaders lack some.
             Set(material, "_BaseColor", color);
             Set(material, "_Color", color);
             Set(material, "_Smoothness", 1f - part.roughness);
             Set(material, "_Glossiness", 1f - part.roughness);
             if (part.doubleSided)
             {
-                // Built-in's Standard cannot: there back faces of lashes are not drawn.
+                // The Built-in pipeline's Standard shader has no such property: it does not draw back faces of eyelashes.
                 Set(material, "_Cull", (float)CullMode.Off);
                 Set(material, "_CullMode", (float)CullMode.Off);
                 Set(material, "_CullModeForward", (float)CullMode.Off);
@@ -98,7 +97,7 @@ namespace Anthronet
                 material.doubleSidedGI = true;
                 if (pipeline == AnthroPipeline.HighDefinition)
                 {
-                    // As HDRP's own inspector sets it: normals of back faces are mirrored.
+                    // As HDRP's own inspector does: mirrors the normals of back faces.
                     Set(material, "_DoubleSidedNormalMode", 1f);
                     material.SetVector("_DoubleSidedConstants", new Vector4(1f, 1f, -1f, 0f));
                     material.EnableKeyword("_DOUBLESIDED_ON");
@@ -107,7 +106,7 @@ namespace Anthronet
             return material;
         }
 
-        /// <summary>A shader, or the first there is that may stand in for it; told once.</summary>
+        /// <summary>Finds a shader or the first available fallback; reports a missing shader once.</summary>
         static Shader Find(string name)
         {
             var shader = Shader.Find(name);
@@ -121,9 +120,9 @@ namespace Anthronet
             }
             if (missed.Add(name))
             {
-                Debug.LogError("AnthroNet: the shader " + name + " is not in this build; put it into Always Included Shaders"
-                    + " in the graphics settings, or give the character materials of your own."
-                    + (shader == null ? "" : " " + shader.name + " stands in for it."));
+                Debug.LogError("AnthroNet: the shader " + name + " is not in this build; add it to Always Included Shaders"
+                    + " in the Graphics settings, or assign materials of your own to the character."
+                    + (shader == null ? "" : " Using " + shader.name + " instead."));
             }
             return shader;
         }
@@ -144,12 +143,13 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Destroys all that were made; those that wear them have none until they are generated anew.</summary>
+        /// <summary>Destroys all cached materials; renderers that use them have none until their character is generated
+        /// again.</summary>
         internal static void Release()
         {
             foreach (var material in made.Values)
             {
-                AnthroObjects.Discard(material);
+                AnthroObjects.DestroySafely(material);
             }
             made.Clear();
             missed.Clear();

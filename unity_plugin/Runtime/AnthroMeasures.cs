@@ -3,7 +3,8 @@ using System.Collections.Generic;
 
 namespace Anthronet
 {
-    /// <summary>The 36 measures, by name, in the order of the library. Known before the library is loaded.</summary>
+    /// <summary>The 36 measures, by name, in the order of the native library. Available without loading the
+    /// library.</summary>
     public static class AnthroMeasures
     {
         /// <summary>Number of measures.</summary>
@@ -22,18 +23,18 @@ namespace Anthronet
             "calf_length_right", "foot_width_right", "heel_to_ball_length_right", "heel_to_toe_length_right",
         };
 
-        /// <summary>Their names.</summary>
+        /// <summary>Names of the measures.</summary>
         public static readonly IReadOnlyList<string> Names = Array.AsReadOnly(all);
 
-        /// <summary>The place of a measure, −1 where there is none of that name.</summary>
+        /// <summary>The index of a measure; −1 if there is no measure of this name.</summary>
         public static int IndexOf(string name)
         {
             return Array.IndexOf(all, name);
         }
 
-        /// <summary>The places that a name speaks of: one, or both sides where it says no side.</summary>
-        /// <exception cref="AnthroException">There is no such measure.</exception>
-        public static void Sides(string name, out int first, out int second)
+        /// <summary>The indices that a name stands for: one, or those of both sides if the name has no side.</summary>
+        /// <exception cref="AnthroException">There is no measure of this name.</exception>
+        public static void IndicesOf(string name, out int first, out int second)
         {
             first = IndexOf(name);
             second = first;

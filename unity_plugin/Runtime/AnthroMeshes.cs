@@ -7,15 +7,14 @@ using UnityEngine.Rendering;
 namespace Anthronet
 {
     /// <summary>
-    /// Surfaces as Unity's meshes, with every part a sub-mesh: copied straight into the mesh's memory. On the main thread
-    /// alone.
+    /// Converts surfaces to Unity meshes, one sub-mesh per part, by copying straight into mesh memory. Main thread only.
     /// </summary>
     public static unsafe class AnthroMeshes
     {
         const MeshUpdateFlags Unchecked = MeshUpdateFlags.DontRecalculateBounds
             | MeshUpdateFlags.DontValidateIndices | MeshUpdateFlags.DontNotifyMeshUsers;
 
-        // Stream 0 is what an update changes.
+        // Updating a mesh to another body rewrites stream 0 only.
         static readonly VertexAttributeDescriptor[] layout =
         {
             new VertexAttributeDescriptor(VertexAttribute.Position, VertexAttributeFormat.Float32, 3, 0),
@@ -23,18 +22,18 @@ namespace Anthronet
             new VertexAttributeDescriptor(VertexAttribute.TexCoord0, VertexAttributeFormat.Float32, 2, 1),
         };
 
-        // Unity takes blend shapes from managed arrays alone, as long as the mesh: a pair per number of vertices serves all.
+        // Unity takes blend shapes only as managed arrays of the mesh's length: one pair per vertex count serves all.
         static readonly System.Collections.Generic.Dictionary<int, Vector3[][]> pool =
             new System.Collections.Generic.Dictionary<int, Vector3[][]>();
 
-        /// <summary>A mesh of a surface with bone weights and bind poses.</summary>
-        /// <param name="surface">The surface; not needed afterwards.</param>
-        /// <param name="joints">Of its body: the bind poses.</param>
-        /// <param name="name">What the mesh is called.</param>
+        /// <summary>Makes a mesh of a surface, with bone weights and bind poses.</summary>
+        /// <param name="surface">The surface; may be disposed afterwards.</param>
+        /// <param name="joints">The joints of its body, which have the bind poses.</param>
+        /// <param name="name">Name of the mesh.</param>
         public static Mesh Create(AnthroSurface surface, AnthroJoint[] joints, string name)
         {
-            Native.Library.Given(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), true))
+            Native.Library.NotNull(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), true))
             {
                 var mesh = Create(packed, joints, name);
                 AddBlendShapes(mesh, surface);
@@ -49,7 +48,7 @@ namespace Anthronet
             return mesh;
         }
 
-        /// <summary>A mesh of vertices and triangles, without weights: the first half of `Create`.</summary>
+        /// <summary>Makes a mesh of vertices and triangles without bone weights: the first half of `Create`.</summary>
         internal static Mesh Fill(AnthroPacked packed, string name)
         {
             var mesh = new Mesh();
@@ -58,7 +57,7 @@ namespace Anthronet
             return mesh;
         }
 
-        /// <summary>Gives a mesh weights and bind poses: the second half of `Create`.</summary>
+        /// <summary>Adds bone weights and bind poses to a mesh: the second half of `Create`.</summary>
         internal static void Bind(Mesh mesh, AnthroPacked packed, AnthroJoint[] joints)
         {
             FillWeights(mesh, packed);
@@ -66,14 +65,14 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// Gives a mesh that `Create` made the surface of another body, at the same level of detail. Triangles, texture
-        /// coordinates and weights are the same for everybody and stay; blend shapes go.
+        /// Updates a mesh that `Create` made to another body's surface of the same level of detail. Triangles, texture
+        /// coordinates and bone weights are the same for every body and are kept; blend shapes are removed.
         /// </summary>
         public static void Update(Mesh mesh, AnthroSurface surface, AnthroJoint[] joints)
         {
-            Native.Library.Given(mesh, "mesh");
-            Native.Library.Given(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.Given(surface, "surface"), false))
+            Native.Library.NotNull(mesh, "mesh");
+            Native.Library.NotNull(joints, "joints");
+            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), false))
             {
                 Update(mesh, packed, joints);
                 AddBlendShapes(mesh, surface);
@@ -87,7 +86,7 @@ namespace Anthronet
                 throw new ArgumentException("the mesh has " + mesh.vertexCount + " vertices, the surface "
                     + packed.VertexCount + ": of another level of detail");
             }
-            var count = AnthroPacked.Floats * packed.VertexCount;
+            var count = AnthroPacked.FloatsPerVertex * packed.VertexCount;
             var rows = new NativeArray<float>(count, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
             try
             {
@@ -104,12 +103,12 @@ namespace Anthronet
                 descriptor.bounds = packed.Bounds[part];
                 mesh.SetSubMesh(part, descriptor, Unchecked);
             }
-            mesh.bounds = packed.Around;
+            mesh.bounds = packed.TotalBounds;
             SetBindPoses(mesh, joints);
             mesh.ClearBlendShapes();
         }
 
-        /// <summary>Adds the blend shapes of a surface to a mesh of it, with full weight at 100.</summary>
+        /// <summary>Adds the blend shapes of a surface to its mesh, with full weight at 100.</summary>
         public static void AddBlendShapes(Mesh mesh, AnthroSurface surface)
         {
             var shapes = surface.BlendShapeCount;
@@ -152,22 +151,22 @@ namespace Anthronet
             {
                 var data = meshes[0];
                 data.SetVertexBufferParams(packed.VertexCount, layout);
-                data.SetIndexBufferParams(packed.IndexCount, packed.Wide ? IndexFormat.UInt32 : IndexFormat.UInt16);
+                data.SetIndexBufferParams(packed.IndexCount, packed.Use32BitIndices ? IndexFormat.UInt32 : IndexFormat.UInt16);
                 Copy(packed.Vertices, NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(0)),
                     (long)packed.VertexCount * AnthroPacked.Stride);
                 Copy(packed.Uvs, NativeArrayUnsafeUtility.GetUnsafePtr(data.GetVertexData<float>(1)),
                     (long)packed.VertexCount * AnthroPacked.UvStride);
-                var indices = packed.Wide
+                var indices = packed.Use32BitIndices
                     ? NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<uint>())
                     : NativeArrayUnsafeUtility.GetUnsafePtr(data.GetIndexData<ushort>());
-                Copy(packed.Indices, indices, packed.IndexCount * (packed.Wide ? 4L : 2L));
+                Copy(packed.Indices, indices, packed.IndexCount * (packed.Use32BitIndices ? 4L : 2L));
                 data.subMeshCount = packed.Parts.Length;
                 int vertex = 0, index = 0;
                 for (var part = 0; part < packed.Parts.Length; part++)
                 {
                     var of = packed.Parts[part];
                     var descriptor = new SubMeshDescriptor(index, 3 * of.triangleCount);
-                    // Triangles count from their part's first vertex.
+                    // Indices are relative to the part's first vertex.
                     descriptor.baseVertex = vertex;
                     descriptor.firstVertex = vertex;
                     descriptor.vertexCount = of.vertexCount;
@@ -178,7 +177,7 @@ namespace Anthronet
                 }
                 filled = true;
                 Mesh.ApplyAndDisposeWritableMeshData(meshes, mesh, Unchecked);
-                mesh.bounds = packed.Around;
+                mesh.bounds = packed.TotalBounds;
             }
             finally
             {
@@ -196,7 +195,7 @@ namespace Anthronet
                 packed.WeightCount, Allocator.Temp, NativeArrayOptions.UninitializedMemory);
             try
             {
-                Copy(packed.Numbers, NativeArrayUnsafeUtility.GetUnsafePtr(numbers), packed.VertexCount);
+                Copy(packed.BonesPerVertex, NativeArrayUnsafeUtility.GetUnsafePtr(numbers), packed.VertexCount);
                 Copy(packed.Weights, NativeArrayUnsafeUtility.GetUnsafePtr(rows),
                     (long)packed.WeightCount * sizeof(BoneWeight1));
                 mesh.SetBoneWeights(numbers, rows);

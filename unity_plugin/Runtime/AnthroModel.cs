@@ -5,7 +5,8 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A trained model: makes bodies of requests. Immutable; may be used by many threads at once.</summary>
+    /// <summary>A trained model, which generates bodies from requests. Immutable; any number of threads may use
+    /// it.</summary>
     public sealed unsafe class AnthroModel : IDisposable
     {
         static readonly object gate = new object();
@@ -18,8 +19,8 @@ namespace Anthronet
             handle = new ModelHandle(pointer);
         }
 
-        /// <summary>The model that the library carries, opened once. Do not dispose of it: `ReleaseDefault` does.
-        /// </summary>
+        /// <summary>The model embedded in the native library, opened once and shared. Do not dispose it; use
+        /// `ReleaseDefault`.</summary>
         /// <exception cref="DllNotFoundException">The native library is missing.</exception>
         public static AnthroModel Default
         {
@@ -32,7 +33,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees the model of `Default`; the next use opens it again. Bodies and jobs stay whole.</summary>
+        /// <summary>Frees the model of `Default`; the next use opens it again. Bodies and jobs stay valid.</summary>
         public static void ReleaseDefault()
         {
             lock (gate)
@@ -45,14 +46,14 @@ namespace Anthronet
             }
         }
 
-        // Without a reload of the domain, statics of the last play are still there.
+        // With domain reload disabled, static fields survive from the previous play session.
         [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
         static void Restart()
         {
             ReleaseDefault();
         }
 
-        /// <summary>Opens the model that the library carries.</summary>
+        /// <summary>Opens the model embedded in the native library.</summary>
         public static AnthroModel OpenEmbedded()
         {
             Library.Ensure();
@@ -63,7 +64,7 @@ namespace Anthronet
         }
 
         /// <summary>Opens a model file.</summary>
-        /// <exception cref="AnthroException">There is none, or it is damaged.</exception>
+        /// <exception cref="AnthroException">The file does not exist or is damaged.</exception>
         public static AnthroModel Open(string path)
         {
             Library.Ensure();
@@ -77,18 +78,15 @@ namespace Anthronet
             return new AnthroModel(made);
         }
 
-        /// <summary>Opens a model from the bytes of its file, such as those of a TextAsset.</summary>
-        /// <exception cref="AnthroException">They are none.</exception>
+        /// <summary>Opens a model from the bytes of a model file, such as those of a TextAsset.</summary>
+        /// <exception cref="AnthroException">The bytes are not a valid model file.</exception>
         public static AnthroModel Open(byte[] bytes)
         {
-            if (bytes == null)
-            {
-                throw new ArgumentNullException("bytes");
-            }
+            Library.NotNull(bytes, "bytes");
             Library.Ensure();
             anthronet_model* made;
             anthronet_error error;
-            // An empty array has no first byte to point at.
+            // `fixed` gives null for an empty array.
             fixed (byte* data = bytes.Length == 0 ? new byte[1] : bytes)
             {
                 Library.Check(
@@ -97,40 +95,29 @@ namespace Anthronet
             return new AnthroModel(made);
         }
 
-        /// <summary>Number of latent numbers of a body.</summary>
+        /// <summary>Number of latent values of a body.</summary>
         public int LatentSize
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint size;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_model_latent_size(
-                        (anthronet_model*)held.Pointer, &size, &error), &error);
-                    return (int)size;
-                }
+                return Library.Number(handle, (pointer, size, error) =>
+                    NativeMethods.anthronet_model_latent_size((anthronet_model*)pointer, size, error));
             }
         }
 
-        /// <summary>What the model is, as JSON: measures with definitions and ranges, joints, versions, scores.</summary>
+        /// <summary>Description of the model as JSON: measures with definitions and ranges, joints, versions,
+        /// scores.</summary>
         public string InfoJson
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_model_info(
-                        (anthronet_model*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_model_info((anthronet_model*)pointer, bytes, error));
             }
         }
 
-        /// <summary>The smallest and largest value that a request may give of a measure, metres.</summary>
-        public void Range(int measure, out double min, out double max)
+        /// <summary>The smallest and the largest value that a request may have for a measure, metres.</summary>
+        public void MeasureRange(int measure, out double min, out double max)
         {
             using (var held = new Held(handle))
             {
@@ -143,15 +130,11 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Makes the body that a request describes. May be called from any thread.</summary>
+        /// <summary>Generates the body that a request describes. May be called from any thread.</summary>
         /// <exception cref="AnthroException">The request is refused; the message says why.</exception>
         public AnthroBody Generate(AnthroRequest request)
         {
-            if (request == null)
-            {
-                throw new ArgumentNullException("request");
-            }
-            using (var asked = request.Make())
+            using (var asked = Library.NotNull(request, "request").Make())
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
@@ -163,15 +146,11 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Makes the body at the share `t`, 0 to 1, of the way between two requests.</summary>
+        /// <summary>Generates a body between two requests: `t` 0 is the first, 1 the second.</summary>
         public AnthroBody Interpolate(AnthroRequest from, AnthroRequest to, double t)
         {
-            if (from == null || to == null)
-            {
-                throw new ArgumentNullException(from == null ? "from" : "to");
-            }
-            using (var first = from.Make())
-            using (var second = to.Make())
+            using (var first = Library.NotNull(from, "from").Make())
+            using (var second = Library.NotNull(to, "to").Make())
             using (var held = new Held(handle))
             {
                 anthronet_body* made;
@@ -183,21 +162,17 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Starts to make the bodies of requests, in order, on threads of the library.</summary>
-        public AnthroJob Start(IList<AnthroRequest> requests)
+        /// <summary>Starts generating the bodies of requests, in order, on worker threads of the library.</summary>
+        public AnthroJob StartJob(IList<AnthroRequest> requests)
         {
-            if (requests == null)
-            {
-                throw new ArgumentNullException("requests");
-            }
-            var asked = new RequestHandle[requests.Count];
+            var asked = new RequestHandle[Library.NotNull(requests, "requests").Count];
             try
             {
-                // One more: an empty array has no first entry to point at.
+                // One extra entry: `fixed` gives null for an empty array.
                 var pointers = new IntPtr[requests.Count + 1];
                 for (var i = 0; i < asked.Length; i++)
                 {
-                    asked[i] = Library.Given(requests[i], "requests").Make();
+                    asked[i] = Library.NotNull(requests[i], "requests").Make();
                     pointers[i] = asked[i].DangerousGetHandle();
                 }
                 using (var held = new Held(handle))
@@ -223,7 +198,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees it. Bodies and jobs that it made stay whole.</summary>
+        /// <summary>Frees the native memory. Bodies and jobs made by the model stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

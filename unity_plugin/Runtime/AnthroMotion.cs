@@ -3,7 +3,7 @@ using Anthronet.Native;
 
 namespace Anthronet
 {
-    /// <summary>A motion file as it was read, of its own skeleton. Immutable; may be used by many threads.</summary>
+    /// <summary>A motion file with its own skeleton, before retargeting. Immutable; any thread may use it.</summary>
     public sealed unsafe class AnthroMotion : IDisposable
     {
         readonly MotionHandle handle;
@@ -13,8 +13,8 @@ namespace Anthronet
             handle = new MotionHandle(pointer);
         }
 
-        /// <summary>Reads a file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.</summary>
-        /// <exception cref="AnthroException">It is not such a file.</exception>
+        /// <summary>Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.</summary>
+        /// <exception cref="AnthroException">The file is not valid.</exception>
         public static AnthroMotion Open(string path)
         {
             Library.Ensure();
@@ -28,14 +28,11 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Reads the bytes of a file; the ending of its name tells the format.</summary>
-        /// <exception cref="AnthroException">They are not such a file's.</exception>
+        /// <summary>Reads a motion file from memory; the extension of `name` says the format.</summary>
+        /// <exception cref="AnthroException">The bytes are not a valid motion file.</exception>
         public static AnthroMotion Open(byte[] bytes, string name)
         {
-            if (bytes == null)
-            {
-                throw new ArgumentNullException("bytes");
-            }
+            Library.NotNull(bytes, "bytes");
             Library.Ensure();
             ulong length;
             fixed (byte* text = Utf8.Bytes(name, "name", out length))
@@ -49,58 +46,41 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Number of clips: at least one.</summary>
+        /// <summary>Number of clips, at least one.</summary>
         public int ClipCount
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint count;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_motion_clip_count(
-                        (anthronet_motion*)held.Pointer, &count, &error), &error);
-                    return (int)count;
-                }
+                return Library.Number(handle, (pointer, count, error) =>
+                    NativeMethods.anthronet_motion_clip_count((anthronet_motion*)pointer, count, error));
             }
         }
 
         /// <summary>The name of a clip.</summary>
         public string ClipName(int clip)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_motion_clip_name(
-                    (anthronet_motion*)held.Pointer, checked((uint)clip), &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)clip);
+            return Library.Text(handle, (pointer, name, error) =>
+                NativeMethods.anthronet_motion_clip_name((anthronet_motion*)pointer, index, name, error));
         }
 
-        /// <summary>How the file was understood, as JSON.</summary>
+        /// <summary>How the file was interpreted, as JSON.</summary>
         public string ReportJson
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    anthronet_bytes* json;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_motion_report(
-                        (anthronet_motion*)held.Pointer, &json, &error), &error);
-                    return Utf8.TakeText(json);
-                }
+                return Library.BytesText(handle, (pointer, bytes, error) =>
+                    NativeMethods.anthronet_motion_report((anthronet_motion*)pointer, bytes, error));
             }
         }
 
-        /// <summary>Brings one of its clips onto a body.</summary>
-        /// <exception cref="AnthroException">Joints that a person needs are not found.</exception>
-        public AnthroClip Onto(AnthroBody body, int clip = 0, AnthroRetarget options = default(AnthroRetarget))
+        /// <summary>Retargets a clip to a body.</summary>
+        /// <exception cref="AnthroException">Joints of a humanoid were not found in the file.</exception>
+        public AnthroClip Retarget(AnthroBody body, int clip = 0, AnthroRetargetOptions options = default(AnthroRetargetOptions))
         {
             ulong length;
             var mapping = Utf8.Bytes(options.mappingJson ?? string.Empty, "mappingJson", out length);
-            using (var wearer = new Held(Library.Given(body, "body").Handle))
+            using (var target = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* json = mapping)
             {
@@ -118,12 +98,12 @@ namespace Anthronet
                 anthronet_clip* made;
                 anthronet_error error;
                 Library.Check(NativeMethods.anthronet_motion_retarget((anthronet_motion*)held.Pointer,
-                    checked((uint)clip), (anthronet_body*)wearer.Pointer, &retarget, &made, null, &error), &error);
+                    checked((uint)clip), (anthronet_body*)target.Pointer, &retarget, &made, null, &error), &error);
                 return AnthroClip.Wrap(made);
             }
         }
 
-        /// <summary>Frees it. Clips made of it stay whole.</summary>
+        /// <summary>Frees the native memory. Clips made from the motion stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

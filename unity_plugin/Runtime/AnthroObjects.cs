@@ -2,12 +2,12 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>Destroying of what the package made.</summary>
+    /// <summary>Destroying objects in play mode and in edit mode.</summary>
     internal static class AnthroObjects
     {
-        /// <summary>Destroys an object as the mode wants it. What belongs to an instance of a prefab, which Unity lets
-        /// nobody destroy, is put to sleep instead.</summary>
-        public static void Discard(Object one)
+        /// <summary>Destroys an object with the function for the current mode. GameObjects of a prefab instance, which
+        /// Unity does not allow to destroy, are deactivated instead.</summary>
+        public static void DestroySafely(Object one)
         {
             if (one == null)
             {

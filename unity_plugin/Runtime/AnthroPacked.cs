@@ -5,58 +5,58 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// A surface laid out as Unity's meshes hold it, in memory of our own: any thread may make it, and the main thread has
-    /// no more to do than to copy. Stream 0 is what differs from body to body.
+    /// A surface in the memory layout of Unity's meshes, in native memory: any thread may pack it, and the main thread
+    /// only copies. Vertex stream 0 has what differs between bodies.
     /// </summary>
     internal sealed unsafe class AnthroPacked : IDisposable
     {
-        /// <summary>Floats of a vertex in stream 0: position and normal.</summary>
-        public const int Floats = 6;
-        /// <summary>Bytes of a vertex in stream 0.</summary>
-        public const int Stride = Floats * sizeof(float);
-        /// <summary>Bytes of a vertex in stream 1: a texture coordinate.</summary>
+        /// <summary>Floats per vertex in stream 0: position and normal.</summary>
+        public const int FloatsPerVertex = 6;
+        /// <summary>Bytes per vertex in stream 0.</summary>
+        public const int Stride = FloatsPerVertex * sizeof(float);
+        /// <summary>Bytes per vertex in stream 1: a texture coordinate.</summary>
         public const int UvStride = 2 * sizeof(float);
-        /// <summary>Most vertices of a part whose triangles are numbered with 16 bits.</summary>
-        public const int Narrow = 65535;
+        /// <summary>Largest number of vertices of a part with 16-bit indices.</summary>
+        public const int Max16BitVertices = 65535;
 
         readonly MemoryHandle memory;
 
         /// <summary>Packs a surface.</summary>
-        /// <param name="surface">It; not needed afterwards.</param>
-        /// <param name="whole">False packs stream 0 and bounds alone: what an update takes.</param>
-        public AnthroPacked(AnthroSurface surface, bool whole)
+        /// <param name="surface">The surface; may be disposed afterwards.</param>
+        /// <param name="complete">False packs only stream 0 and bounds, which updating a mesh needs.</param>
+        public AnthroPacked(AnthroSurface surface, bool complete)
         {
             const int Each = AnthroSurface.Influences;
             Parts = new AnthroPart[surface.PartCount];
             Bounds = new Bounds[Parts.Length];
             VertexCount = surface.VertexCount;
             IndexCount = 3 * surface.TriangleCount;
-            Whole = whole;
+            Complete = complete;
             for (var part = 0; part < Parts.Length; part++)
             {
                 Parts[part] = surface.Part(part);
-                Wide |= Parts[part].vertexCount > Narrow;
+                Use32BitIndices |= Parts[part].vertexCount > Max16BitVertices;
             }
             var bytes = (long)VertexCount * Stride;
             long uvs = bytes, indices = uvs + (long)VertexCount * UvStride;
-            // Indices end at a multiple of four bytes, the weights' numbers stand last.
-            var weights = indices + (IndexCount * (Wide ? 4L : 2L) + 3) / 4 * 4;
+            // Indices are padded to a multiple of four bytes; bone counts come last.
+            var weights = indices + (IndexCount * (Use32BitIndices ? 4L : 2L) + 3) / 4 * 4;
             var numbers = weights + (long)VertexCount * Each * sizeof(BoneWeight1);
-            memory = new MemoryHandle(whole ? numbers + VertexCount : bytes);
+            memory = new MemoryHandle(complete ? numbers + VertexCount : bytes);
             try
             {
                 Vertices = (float*)memory.Pointer;
-                if (whole)
+                if (complete)
                 {
                     Uvs = memory.Pointer + uvs;
                     Indices = memory.Pointer + indices;
                     Weights = (BoneWeight1*)(memory.Pointer + weights);
-                    Numbers = memory.Pointer + numbers;
+                    BonesPerVertex = memory.Pointer + numbers;
                 }
                 PackVertices(surface);
-                if (whole)
+                if (complete)
                 {
-                    PackTriangles(surface);
+                    PackUvsAndTriangles(surface);
                     PackWeights(surface);
                 }
             }
@@ -68,25 +68,25 @@ namespace Anthronet
         }
 
         public readonly AnthroPart[] Parts;
-        /// <summary>Around each part.</summary>
+        /// <summary>Bounds of each part.</summary>
         public readonly Bounds[] Bounds;
-        /// <summary>Around all of them.</summary>
-        public Bounds Around;
+        /// <summary>Bounds of all parts.</summary>
+        public Bounds TotalBounds;
         public readonly int VertexCount;
         public readonly int IndexCount;
-        /// <summary>Whether all is packed, or no more than stream 0.</summary>
-        public readonly bool Whole;
-        /// <summary>Whether indices have 32 bits, not 16. They count from their part's first vertex.</summary>
-        public readonly bool Wide;
+        /// <summary>Whether everything is packed, or only stream 0.</summary>
+        public readonly bool Complete;
+        /// <summary>Whether indices have 32 bits instead of 16. They are relative to the part's first vertex.</summary>
+        public readonly bool Use32BitIndices;
         public readonly float* Vertices;
         public readonly byte* Uvs;
         public readonly byte* Indices;
-        /// <summary>Influences, those of a vertex one after the other, falling.</summary>
+        /// <summary>Bone weights, vertex by vertex, largest first.</summary>
         public readonly BoneWeight1* Weights;
-        /// <summary>Number of influences of each vertex.</summary>
-        public readonly byte* Numbers;
+        /// <summary>Number of bone weights of each vertex.</summary>
+        public readonly byte* BonesPerVertex;
 
-        /// <summary>Number of influences altogether.</summary>
+        /// <summary>Total number of bone weights.</summary>
         public int WeightCount { get; private set; }
 
         void PackVertices(AnthroSurface surface)
@@ -101,14 +101,14 @@ namespace Anthronet
                 Bounds[part] = Box(first, count);
                 if (part == 0)
                 {
-                    Around = Bounds[part];
+                    TotalBounds = Bounds[part];
                 }
-                Around.Encapsulate(Bounds[part]);
-                first += Floats * count;
+                TotalBounds.Encapsulate(Bounds[part]);
+                first += FloatsPerVertex * count;
             }
         }
 
-        void PackTriangles(AnthroSurface surface)
+        void PackUvsAndTriangles(AnthroSurface surface)
         {
             byte* uvs = Uvs, indices = Indices;
             for (var part = 0; part < Parts.Length; part++)
@@ -117,7 +117,7 @@ namespace Anthronet
                 surface.Read(part, AnthroAttribute.Uvs, uvs, bytes, 0);
                 uvs += bytes;
                 var count = 3L * Parts[part].triangleCount;
-                if (Wide)
+                if (Use32BitIndices)
                 {
                     surface.Read(part, AnthroAttribute.Triangles, indices, count * sizeof(uint), 0);
                     indices += count * sizeof(uint);
@@ -137,7 +137,7 @@ namespace Anthronet
         {
             const int Each = AnthroSurface.Influences;
             var row = Weights;
-            var number = Numbers;
+            var number = BonesPerVertex;
             var influence = new BoneWeight1();
             for (var part = 0; part < Parts.Length; part++)
             {
@@ -145,7 +145,7 @@ namespace Anthronet
                 var weights = (float*)surface.View(part, AnthroAttribute.Weights);
                 for (var end = joints + Each * Parts[part].vertexCount; joints < end; joints += Each, weights += Each)
                 {
-                    // They come sorted: behind the first zero there is nothing, and the first is none.
+                    // Sorted by weight: the first zero ends the list, and the first weight is never zero.
                     byte there = 0;
                     while (there < Each && weights[there] > 0f)
                     {
@@ -166,9 +166,9 @@ namespace Anthronet
             if (count > 0)
             {
                 Vector3 min = *(Vector3*)vertex, max = min;
-                for (var last = vertex + Floats * count; vertex < last; vertex += Floats)
+                for (var last = vertex + FloatsPerVertex * count; vertex < last; vertex += FloatsPerVertex)
                 {
-                    // By hand: mono calls Vector3.Min for every vertex.
+                    // Written out because Mono does not inline Vector3.Min.
                     var position = (Vector3*)vertex;
                     if (position->x < min.x) min.x = position->x;
                     else if (position->x > max.x) max.x = position->x;
@@ -182,7 +182,7 @@ namespace Anthronet
             return bounds;
         }
 
-        /// <summary>Frees the memory; meshes filled from it stay whole.</summary>
+        /// <summary>Frees the memory; meshes filled from it stay valid.</summary>
         public void Dispose()
         {
             memory.Dispose();

@@ -4,21 +4,20 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// Characters that are not needed now, to become others later: objects, skeletons and meshes are used again. All of one
-    /// pool should have the same levels of detail. On the main thread alone.
+    /// Inactive characters for reuse: GameObjects, skeletons and meshes are kept. All characters of a pool should have
+    /// the same levels of detail. Main thread only.
     /// </summary>
     public sealed class AnthroPool
     {
         readonly Stack<AnthroCharacter> free = new Stack<AnthroCharacter>();
 
-        /// <summary>Number of characters in it.</summary>
+        /// <summary>Number of inactive characters in the pool.</summary>
         public int Count
         {
             get { return free.Count; }
         }
 
-        /// <summary>Puts a character to sleep, to be used again: its clip ends and nobody hears of its reports any longer.
-        /// </summary>
+        /// <summary>Returns a character to the pool: deactivates it, stops its clip and removes event handlers.</summary>
         public void Release(AnthroCharacter character)
         {
             if (character == null || free.Contains(character))
@@ -31,18 +30,18 @@ namespace Anthronet
                 animator.Play((AnthroClip)null);
             }
             character.gameObject.SetActive(false);
-            character.Forget();
+            character.ClearListeners();
             free.Push(character);
         }
 
-        /// <summary>A character, asleep and still who it was: let it become another before you wake it. Null where there is
-        /// none.</summary>
-        public AnthroCharacter Take()
+        /// <summary>Takes a character from the pool; null if the pool is empty. It is inactive and still has its previous
+        /// body: give it a new one before you activate it.</summary>
+        public AnthroCharacter Get()
         {
             while (free.Count > 0)
             {
                 var character = free.Pop();
-                // Destroyed with its scene meanwhile.
+                // It may have been destroyed with its scene.
                 if (character != null)
                 {
                     return character;
@@ -51,7 +50,7 @@ namespace Anthronet
             return null;
         }
 
-        /// <summary>Destroys all that are in it.</summary>
+        /// <summary>Destroys all characters in the pool.</summary>
         public void Clear()
         {
             while (free.Count > 0)
@@ -59,7 +58,7 @@ namespace Anthronet
                 var character = free.Pop();
                 if (character != null)
                 {
-                    AnthroObjects.Discard(character.gameObject);
+                    AnthroObjects.DestroySafely(character.gameObject);
                 }
             }
         }

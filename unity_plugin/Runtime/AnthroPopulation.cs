@@ -3,17 +3,14 @@ using System.Collections.Generic;
 
 namespace Anthronet
 {
-    /// <summary>Many requests in one text, a line each, such as a TextAsset holds.</summary>
+    /// <summary>Many requests in one text, one per line, such as in a TextAsset.</summary>
     public static class AnthroPopulation
     {
-        /// <summary>Reads requests: one as `AnthroRequest.FromJson` takes it in every line; empty lines are none.</summary>
-        /// <exception cref="AnthroException">A line is no request; the message names it, counted from 1.</exception>
+        /// <summary>Reads one request per line, as `AnthroRequest.FromJson` does; skips empty lines.</summary>
+        /// <exception cref="AnthroException">A line is not valid; the message has its number, from 1.</exception>
         public static AnthroRequest[] Read(string lines)
         {
-            if (lines == null)
-            {
-                throw new ArgumentNullException("lines");
-            }
+            Native.Library.NotNull(lines, "lines");
             var requests = new List<AnthroRequest>();
             var number = 0;
             foreach (var line in lines.Split('\n'))

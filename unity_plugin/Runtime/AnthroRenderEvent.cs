@@ -3,21 +3,22 @@ using System.Runtime.InteropServices;
 
 namespace Anthronet
 {
-    /// <summary>What the render thread is to pose. It and all that it points to stay until that was done.</summary>
+    /// <summary>What the render thread has to skin. It and everything it points to must stay valid until that is
+    /// done.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct AnthroSkinBatch
     {
-        /// <summary>The first of the surfaces.</summary>
+        /// <summary>The first job.</summary>
         public AnthroSkinJob* jobs;
-        /// <summary>How many.</summary>
+        /// <summary>Number of jobs.</summary>
         public uint count;
-        /// <summary>Becomes what `AnthroSkin.Run` returns.</summary>
+        /// <summary>Receives the result of `AnthroSkin.Run`.</summary>
         public int status;
     }
 
     /// <summary>
-    /// Skinning on Unity's render thread: the library as a native rendering plugin. Give `Callback`, `Skin` and a pointer to
-    /// an `AnthroSkinBatch` to `CommandBuffer.IssuePluginEventAndData`.
+    /// Skinning on Unity's render thread, with the library as a native rendering plugin. Pass `Callback`, `Skin` and a
+    /// pointer to an `AnthroSkinBatch` to `CommandBuffer.IssuePluginEventAndData`.
     /// </summary>
     public static class AnthroRenderEvent
     {
@@ -27,18 +28,18 @@ namespace Anthronet
         const string Dll = "anthronet";
 #endif
 
-        /// <summary>The event that poses a batch.</summary>
+        /// <summary>The event that skins a batch.</summary>
         public const int Skin = 1;
 
-        /// <summary>The function that the render thread calls; zero where the library was built without
+        /// <summary>The function that the render thread calls; zero if the library was built without
         /// `Plugins~/UnityPlugin.c`.</summary>
         public static IntPtr Callback
         {
             get { return Ask(anthronet_unity_render_event); }
         }
 
-        /// <summary>Unity's native interfaces, which Unity handed to the library as it loaded it; zero where it did not.
-        /// </summary>
+        /// <summary>Unity's `IUnityInterfaces`, passed to the library when Unity loaded it; zero if Unity did
+        /// not.</summary>
         public static IntPtr Interfaces
         {
             get { return Ask(anthronet_unity_interfaces); }

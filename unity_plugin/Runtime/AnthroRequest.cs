@@ -5,63 +5,71 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// A person to be made: any of the 36 measures in metres, sex, seed. Unity serialises it with whatever holds it.
-    /// One thread at a time may change it.
+    /// Describes a person to generate: any of the 36 measures in metres, sex, seed. Serialisable by Unity. One thread at
+    /// a time may change it.
     /// </summary>
     [Serializable]
     public sealed class AnthroRequest
     {
+        [Tooltip("Sex of the person; Any infers it from the measures.")]
         [SerializeField] AnthroSex sex;
+        [Tooltip("Values of the measures, metres.")]
         [SerializeField] double[] metres = new double[AnthroMeasures.Count];
+        [Tooltip("Which measures are set; the others are filled in.")]
         [SerializeField] bool[] given = new bool[AnthroMeasures.Count];
+        [Tooltip("0 for the most likely person with these measures; every other seed is another person with them.")]
         [SerializeField] long seed;
+        [Tooltip("How measures that are not set are filled in: most likely values, or random plausible ones chosen by the seed.")]
         [SerializeField] AnthroFill fill;
+        [Tooltip("Replaces impossible measures by the nearest possible ones instead of refusing them.")]
         [SerializeField] bool nearest;
+        [Tooltip("Explicit latent values; empty derives them from the seed.")]
         [SerializeField] double[] latent = new double[0];
 
-        /// <summary>The sex; `Any` leaves it to the measures.</summary>
+        /// <summary>The sex; `Any` infers it from the measures.</summary>
         public AnthroSex Sex
         {
             get { return sex; }
             set { sex = value; }
         }
 
-        /// <summary>0 for the likeliest person with these measures, any other for one of them.</summary>
+        /// <summary>0 for the most likely person with these measures; every other seed is another person with
+        /// them.</summary>
         public ulong Seed
         {
             get { return unchecked((ulong)seed); }
             set { seed = unchecked((long)value); }
         }
 
-        /// <summary>How open measures are filled.</summary>
+        /// <summary>How measures that are not set are filled in.</summary>
         public AnthroFill Fill
         {
             get { return fill; }
             set { fill = value; }
         }
 
-        /// <summary>Whether the nearest person is taken where nobody has these measures.</summary>
+        /// <summary>Whether impossible measures are replaced by the nearest possible ones instead of refused.</summary>
         public bool Nearest
         {
             get { return nearest; }
             set { nearest = value; }
         }
 
-        /// <summary>The latent numbers by hand, `AnthroModel.LatentSize` of them; null leaves them to the seed. A copy.
-        /// </summary>
+        /// <summary>Explicit latent values, `AnthroModel.LatentSize` of them; null derives them from the seed. A
+        /// copy.</summary>
         public double[] Latent
         {
             get { return latent == null || latent.Length == 0 ? null : (double[])latent.Clone(); }
             set { latent = value == null ? new double[0] : (double[])value.Clone(); }
         }
 
-        /// <summary>Gives a measure, metres; a name without its side gives both sides.</summary>
+        /// <summary>Sets a measure, metres; a name without a side sets both sides.</summary>
         /// <returns>This request.</returns>
-        /// <exception cref="AnthroException">There is no such measure, or the number is not finite.</exception>
+        /// <exception cref="AnthroException">There is no measure of this name, or the value is not finite.</exception>
         public AnthroRequest Set(string name, double value)
         {
             int first, second;
-            AnthroMeasures.Sides(name, out first, out second);
+            AnthroMeasures.IndicesOf(name, out first, out second);
             if (double.IsNaN(value) || double.IsInfinity(value))
             {
                 throw new AnthroException(AnthroError.Request, name + ": expected metres, got " + value);
@@ -71,41 +79,41 @@ namespace Anthronet
             return this;
         }
 
-        /// <summary>Leaves a measure open; a name without its side opens both sides.</summary>
+        /// <summary>Unsets a measure, so that it is filled in; a name without a side unsets both sides.</summary>
         /// <returns>This request.</returns>
-        /// <exception cref="AnthroException">There is no such measure.</exception>
-        public AnthroRequest Open(string name)
+        /// <exception cref="AnthroException">There is no measure of this name.</exception>
+        public AnthroRequest Unset(string name)
         {
             int first, second;
-            AnthroMeasures.Sides(name, out first, out second);
+            AnthroMeasures.IndicesOf(name, out first, out second);
             given[first] = given[second] = false;
             return this;
         }
 
-        /// <summary>Whether a measure is given, by its place in `AnthroMeasures.Names`.</summary>
+        /// <summary>Whether a measure is set, by its index in `AnthroMeasures.Names`.</summary>
         public bool IsGiven(int measure)
         {
             return given[measure];
         }
 
-        /// <summary>What a measure is or was given as, metres, by its place.</summary>
+        /// <summary>The value of a measure that is or was set, metres, by its index.</summary>
         public double this[int measure]
         {
             get { return metres[measure]; }
         }
 
-        /// <summary>Another request that asks for the same.</summary>
+        /// <summary>A copy of the request.</summary>
         public AnthroRequest Copy()
         {
             var copy = new AnthroRequest();
-            copy.Take(this);
+            copy.CopyFrom(this);
             return copy;
         }
 
-        /// <summary>Makes this request ask for what another does.</summary>
-        public void Take(AnthroRequest other)
+        /// <summary>Copies all values from another request.</summary>
+        public void CopyFrom(AnthroRequest other)
         {
-            Library.Given(other, "other");
+            Library.NotNull(other, "other");
             sex = other.sex;
             metres = (double[])other.metres.Clone();
             given = (bool[])other.given.Clone();
@@ -116,9 +124,10 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// A request from JSON, as all parts of AnthroNet read it: `{"sex": "female", "measures": {"height": 1.7}}`.
+        /// Reads a request from JSON, the same as everywhere in AnthroNet: `{"sex": "female", "measures": {"height":
+        /// 1.7}}`.
         /// </summary>
-        /// <exception cref="AnthroException">The text is not such JSON, or names what there is not.</exception>
+        /// <exception cref="AnthroException">The JSON is not valid, or has unknown keys.</exception>
         public static unsafe AnthroRequest FromJson(string json)
         {
             Library.Ensure();
@@ -150,8 +159,8 @@ namespace Anthronet
             }
         }
 
-        /// <summary>The request as JSON in the form that `FromJson` reads.</summary>
-        /// <exception cref="AnthroException">It holds what no request may.</exception>
+        /// <summary>The request as JSON, as `FromJson` reads it.</summary>
+        /// <exception cref="AnthroException">A value of the request is not valid.</exception>
         public unsafe string ToJson()
         {
             using (var handle = Make())
@@ -164,7 +173,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>The library's request. Refused where a field holds what no request may.</summary>
+        /// <summary>Makes the native request. Throws if a value is not valid.</summary>
         internal unsafe RequestHandle Make()
         {
             Library.Ensure();
@@ -211,7 +220,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Reads what only the library's own JSON tells: it is canonical, with these keys at its top.</summary>
+        /// <summary>Reads the values that have no native getter from the library's own canonical JSON.</summary>
         void ReadRest(string json)
         {
             var reader = new AnthroJson(json);

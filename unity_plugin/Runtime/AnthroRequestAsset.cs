@@ -2,7 +2,7 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A request as an asset of the project, for any number of characters.</summary>
+    /// <summary>A request as a project asset, which any number of characters can share.</summary>
     [CreateAssetMenu(fileName = "Person", menuName = "AnthroNet/Request", order = 300)]
     public sealed class AnthroRequestAsset : ScriptableObject
     {

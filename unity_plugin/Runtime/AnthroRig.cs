@@ -3,7 +3,7 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>The joints of a character as transforms, called as in the rig. On the main thread alone.</summary>
+    /// <summary>The skeleton of a character: its joints as transforms, named as in the rig. Main thread only.</summary>
     public sealed class AnthroRig
     {
         readonly Transform[] bones;
@@ -15,19 +15,19 @@ namespace Anthronet
             this.joints = joints;
         }
 
-        /// <summary>The transforms, parents first; the first is the root.</summary>
+        /// <summary>The transforms, parents first; the first one is the root.</summary>
         public Transform[] Bones
         {
             get { return bones; }
         }
 
-        /// <summary>The joints of the body in the bind pose.</summary>
+        /// <summary>The body's joints in the bind pose.</summary>
         public AnthroJoint[] Joints
         {
             get { return joints; }
         }
 
-        /// <summary>Makes the transforms of a body's joints below a transform, in the bind pose.</summary>
+        /// <summary>Creates transforms for a body's joints, in the bind pose, as children of `parent`.</summary>
         public static AnthroRig Create(AnthroBody body, Transform parent)
         {
             var joints = body.Joints();
@@ -38,14 +38,14 @@ namespace Anthronet
                 bones[i].SetParent(joints[i].parent < 0 ? parent : bones[joints[i].parent], false);
             }
             var rig = new AnthroRig(bones, joints);
-            rig.ToBindPose();
+            rig.ApplyBindPose();
             return rig;
         }
 
-        /// <summary>Takes transforms that are there already, in the bind pose of a body.</summary>
+        /// <summary>Reuses existing transforms for a body's joints and sets them to its bind pose.</summary>
         /// <param name="body">The body.</param>
-        /// <param name="root">The transform of its first joint; the others are below it.</param>
-        /// <returns>Null where not all joints are there; nothing is changed then.</returns>
+        /// <param name="root">The transform of the first joint; the others are below it.</param>
+        /// <returns>Null if any joint is missing; nothing is changed then.</returns>
         internal static AnthroRig Adopt(AnthroBody body, Transform root)
         {
             var joints = body.Joints();
@@ -60,11 +60,12 @@ namespace Anthronet
                 }
             }
             var rig = new AnthroRig(bones, joints);
-            rig.ToBindPose();
+            rig.ApplyBindPose();
             return rig;
         }
 
-        /// <summary>Where a joint is below the character, as animation curves name it: `Root/pelvis/…`.</summary>
+        /// <summary>The transform path of a joint below the character, as animation curves use it:
+        /// `Root/pelvis/…`.</summary>
         public string Path(int joint)
         {
             var path = bones[joint].name;
@@ -75,15 +76,15 @@ namespace Anthronet
             return path;
         }
 
-        /// <summary>Gives the transforms the proportions of another body, in its bind pose.</summary>
+        /// <summary>Sets the transforms to another body's bind pose.</summary>
         public void Update(AnthroBody body)
         {
             body.Joints(joints);
-            ToBindPose();
+            ApplyBindPose();
         }
 
-        /// <summary>Puts the transforms into the bind pose.</summary>
-        public void ToBindPose()
+        /// <summary>Sets the transforms to the bind pose.</summary>
+        public void ApplyBindPose()
         {
             for (var i = 0; i < bones.Length; i++)
             {
@@ -92,8 +93,8 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Puts the transforms into a pose relative to the parents. Makes no garbage.</summary>
-        public void ToPose(AnthroTransform[] pose)
+        /// <summary>Sets the transforms to a pose relative to the parents. Allocates no managed memory.</summary>
+        public void ApplyPose(AnthroTransform[] pose)
         {
             if (pose.Length != bones.Length)
             {
@@ -106,7 +107,13 @@ namespace Anthronet
             }
         }
 
-        /// <summary>The transform of a joint by its name in the rig; null where there is none.</summary>
+        /// <summary>The index of a joint by its name in the rig; −1 where the rig has no such joint.</summary>
+        public int IndexOf(string joint)
+        {
+            return Array.FindIndex(bones, bone => bone.name == joint);
+        }
+
+        /// <summary>The transform of a joint by its name in the rig; null where the rig has no such joint.</summary>
         public Transform Find(string joint)
         {
             return Array.Find(bones, bone => bone.name == joint);

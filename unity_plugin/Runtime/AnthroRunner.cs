@@ -5,8 +5,7 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// Advances spawns each frame within a budget of time, and in the editor's edit mode each time that the editor looks
-    /// for work. Ends with the play mode.
+    /// Advances spawns every frame within a time budget; in edit mode, at every editor update. Spawns end with play mode.
     /// </summary>
     [AddComponentMenu("")]
     public sealed class AnthroRunner : MonoBehaviour
@@ -16,30 +15,27 @@ namespace Anthronet
         static readonly List<AnthroSpawn> spawns = new List<AnthroSpawn>();
         static AnthroRunner runner;
 
-        /// <summary>Milliseconds of each frame for all spawns together.</summary>
+        /// <summary>Time budget per frame of all spawns together, milliseconds.</summary>
         public static double Budget = DefaultBudget;
 
-        /// <summary>Number of spawns that are not done.</summary>
+        /// <summary>Number of unfinished spawns.</summary>
         public static int Count
         {
             get { return spawns.Count; }
         }
 
-        /// <summary>Advances a spawn each frame until it is done, then frees it.</summary>
+        /// <summary>Advances a spawn every frame until it is done, then disposes it.</summary>
         /// <returns>The spawn.</returns>
         public static AnthroSpawn Run(AnthroSpawn spawn)
         {
-            if (spawn == null)
-            {
-                throw new ArgumentNullException("spawn");
-            }
+            Native.Library.NotNull(spawn, "spawn");
             spawns.Add(spawn);
             if (Application.isPlaying)
             {
                 if (runner == null)
                 {
                     var home = new GameObject("AnthroNet Runner");
-                    // Not `DontSave`: with that it would outlive the play mode.
+                    // Not `DontSave`: such an object would survive the end of play mode.
                     home.hideFlags = HideFlags.HideInHierarchy;
                     DontDestroyOnLoad(home);
                     runner = home.AddComponent<AnthroRunner>();
@@ -58,7 +54,7 @@ namespace Anthronet
             Tick();
         }
 
-        /// <summary>Goes on with all spawns. One that throws is told and given up; the others go on.</summary>
+        /// <summary>Advances all spawns. A spawn that throws is logged and abandoned; the others continue.</summary>
         static void Tick()
         {
             for (var i = spawns.Count - 1; i >= 0; i--)
@@ -92,7 +88,7 @@ namespace Anthronet
             ReleaseAll();
         }
 
-        /// <summary>Frees all spawns.</summary>
+        /// <summary>Disposes all spawns.</summary>
         internal static void ReleaseAll()
         {
             foreach (var spawn in spawns)
@@ -102,7 +98,7 @@ namespace Anthronet
             spawns.Clear();
         }
 
-        // Without a reload of the domain, statics of the last play are still there.
+        // With domain reload disabled, static fields survive from the previous play session.
         [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
         static void Restart()
         {

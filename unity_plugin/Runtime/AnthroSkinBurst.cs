@@ -7,18 +7,18 @@ using Unity.Jobs;
 namespace Anthronet
 {
     /// <summary>
-    /// `AnthroSkin.Run` as a job of Unity's, compiled by Burst; there where the package com.unity.burst is. What the
-    /// pointers of the jobs point to has to stay until it is complete.
+    /// `AnthroSkin.Run` as a job of Unity's job system, compiled by Burst; available if the package com.unity.burst is
+    /// installed. Everything that the jobs point to must stay valid until the job is complete.
     /// </summary>
     [BurstCompile]
     public unsafe struct AnthroSkinBurst : IJob
     {
-        /// <summary>The surfaces.</summary>
+        /// <summary>The surfaces to skin.</summary>
         [ReadOnly] public NativeArray<AnthroSkinJob> jobs;
-        /// <summary>One number, which becomes what `AnthroSkin.Run` says.</summary>
+        /// <summary>One element, which receives the result of `AnthroSkin.Run`.</summary>
         [WriteOnly] public NativeArray<int> status;
 
-        /// <summary>Poses them.</summary>
+        /// <summary>Skins the surfaces.</summary>
         public void Execute()
         {
             status[0] = AnthroSkin.Run(

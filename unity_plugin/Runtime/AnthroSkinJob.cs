@@ -6,41 +6,40 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// One surface to pose on the processor: pointers and numbers alone, so that Burst's code may hold it. Laid out as the
-    /// library's. Positions and normals are packed vectors, or lie in one vertex buffer.
+    /// One surface to skin on the CPU: only pointers and numbers, so Burst code may hold it. Has the memory layout of the
+    /// native structure. Positions and normals are separate arrays or interleaved in one vertex buffer.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct AnthroSkinJob
     {
-        /// <summary>Bytes of this structure.</summary>
+        /// <summary>Size of this structure in bytes.</summary>
         public uint size;
-        /// <summary>How.</summary>
+        /// <summary>The skinning method.</summary>
         public AnthroSkinning method;
         /// <summary>`AnthroSkinner.Pointer`.</summary>
         public IntPtr skinner;
-        /// <summary>The pose, every joint relative to the character: as `AnthroClip.Sample` gives it with `toModel`.
-        /// </summary>
+        /// <summary>The pose, every joint relative to the character: `AnthroClip.Sample` with `toModel`.</summary>
         public AnthroTransform* joints;
         /// <summary>Number of joints.</summary>
         public uint jointCount;
-        /// <summary>Number of offsets: 0, or one per vertex.</summary>
+        /// <summary>Number of offsets: 0, or the number of vertices.</summary>
         public uint offsetCount;
-        /// <summary>Metres that are added to the bind positions before they are posed; null for none.</summary>
+        /// <summary>Added to the bind-pose positions before skinning, metres; null for none.</summary>
         public Vector3* offsets;
-        /// <summary>Where the first position is written, metres.</summary>
+        /// <summary>Receives the positions, metres.</summary>
         public void* positions;
-        /// <summary>Bytes of that buffer.</summary>
+        /// <summary>Size of the position buffer in bytes.</summary>
         public ulong positionBytes;
-        /// <summary>Bytes from position to position; 0 for packed.</summary>
+        /// <summary>Bytes between consecutive positions; 0 if tightly packed.</summary>
         public ulong positionStride;
-        /// <summary>Where the first unit normal is written; null for nowhere.</summary>
+        /// <summary>Receives the unit normals; null to skip them.</summary>
         public void* normals;
-        /// <summary>Bytes of that buffer.</summary>
+        /// <summary>Size of the normal buffer in bytes.</summary>
         public ulong normalBytes;
-        /// <summary>Bytes from normal to normal; 0 for packed.</summary>
+        /// <summary>Bytes between consecutive normals; 0 if tightly packed.</summary>
         public ulong normalStride;
 
-        /// <summary>Into packed vectors.</summary>
+        /// <summary>A job that writes tightly packed arrays.</summary>
         public AnthroSkinJob(IntPtr skinner, AnthroSkinning method, AnthroTransform* joints, int jointCount,
             Vector3* positions, Vector3* normals, int vertexCount)
         {
@@ -57,14 +56,14 @@ namespace Anthronet
         }
     }
 
-    /// <summary>Skinning without objects of the collector: what Burst's code can call.</summary>
+    /// <summary>Skinning without managed objects, callable from Burst.</summary>
     public static unsafe class AnthroSkin
     {
-        /// <summary>Poses the surfaces of jobs, on all cores, from whatever thread. Makes no garbage and throws nothing.
-        /// </summary>
-        /// <param name="jobs">The first of them. Buffers of different jobs do not overlap.</param>
-        /// <param name="count">How many.</param>
-        /// <returns>0 where it was done; else one of `AnthroError`, and nothing is written.</returns>
+        /// <summary>Skins the surfaces of jobs on all cores; callable from any thread. Allocates no managed memory, never
+        /// throws.</summary>
+        /// <param name="jobs">The first job. Buffers of different jobs must not overlap.</param>
+        /// <param name="count">Number of jobs.</param>
+        /// <returns>0 on success; otherwise an `AnthroError`, and nothing is written.</returns>
         public static int Run(AnthroSkinJob* jobs, int count)
         {
             return NativeMethods.anthronet_skin((anthronet_skin_job*)jobs, (uint)count, null);

@@ -3,15 +3,16 @@ using Anthronet.Native;
 
 namespace Anthronet
 {
-    /// <summary>A part of a surface ready to be posed on the processor. Immutable; may be used by many threads.</summary>
+    /// <summary>A part of a surface prepared for skinning on the CPU. Immutable; any number of threads may use
+    /// it.</summary>
     public sealed unsafe class AnthroSkinner : IDisposable
     {
         readonly SkinnerHandle handle;
 
-        /// <summary>Makes a part of a surface ready; the surface is not needed afterwards.</summary>
+        /// <summary>Prepares a part of a surface, which may be disposed afterwards.</summary>
         public AnthroSkinner(AnthroSurface surface, int part = 0)
         {
-            using (var held = new Held(Library.Given(surface, "surface").Handle))
+            using (var held = new Held(Library.NotNull(surface, "surface").Handle))
             {
                 anthronet_skinner* made;
                 anthronet_error error;
@@ -24,7 +25,8 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Where it is, for `AnthroSkinJob.skinner`. Valid as long as this is not disposed of: keep it.</summary>
+        /// <summary>The native pointer, for `AnthroSkinJob.skinner`. Valid until this object is disposed: keep a
+        /// reference.</summary>
         public IntPtr Pointer
         {
             get { return handle.IsClosed ? IntPtr.Zero : handle.DangerousGetHandle(); }
@@ -38,7 +40,7 @@ namespace Anthronet
         /// <summary>Number of vertices.</summary>
         public int VertexCount { get; private set; }
 
-        /// <summary>Frees it.</summary>
+        /// <summary>Frees the native memory.</summary>
         public void Dispose()
         {
             handle.Dispose();

@@ -8,8 +8,8 @@ using Anthronet.Native;
 namespace Anthronet
 {
     /// <summary>
-    /// Characters that are being made. Jobs of the library make the bodies, one thread beside each of them packs what the
-    /// meshes will hold, and `Advance` makes the objects on the main thread.
+    /// Characters being made asynchronously. Jobs of the library generate bodies, one thread per job packs mesh data, and
+    /// `Advance` makes the GameObjects on the main thread.
     /// </summary>
     public sealed class AnthroSpawn : IDisposable
     {
@@ -21,8 +21,8 @@ namespace Anthronet
         readonly AnthroException[] errors;
         readonly AnthroCharacter[] characters;
         readonly Stopwatch watch = new Stopwatch();
-        // Guards `builds`, `errors`, `next` and `stopped` between the main thread and those that pack.
-        readonly object gate = new object();
+        // Guards `builds`, `errors`, `next` and `stopped` between the main thread and the packing threads.
+        readonly object sync = new object();
         int next;
         IEnumerator steps;
         volatile bool stopped;
@@ -34,15 +34,15 @@ namespace Anthronet
             builds = new AnthroBuild[requests.Length];
             errors = new AnthroException[requests.Length];
             characters = new AnthroCharacter[requests.Length];
-            // A job makes one body after the other: as many as there are cores, taken from in turns, keep all of them busy.
-            jobs = new AnthroJob[Math.Max(1, Math.Min(requests.Length, Math.Min(Environment.ProcessorCount, MostJobs)))];
+            // A job generates one body at a time: one job per core keeps all cores busy, with requests dealt out in turn.
+            jobs = new AnthroJob[Math.Max(1, Math.Min(requests.Length, Math.Min(Environment.ProcessorCount, MaxJobs)))];
             packers = new Thread[jobs.Length];
             var model = settings.model ?? AnthroModel.Default;
             try
             {
                 for (var i = 0; i < jobs.Length; i++)
                 {
-                    jobs[i] = model.Start(requests.Where((request, place) => place % jobs.Length == i).ToArray());
+                    jobs[i] = model.StartJob(requests.Where((request, place) => place % jobs.Length == i).ToArray());
                 }
                 for (var i = 0; i < jobs.Length; i++)
                 {
@@ -61,13 +61,12 @@ namespace Anthronet
             AnthroAlive.Add(this);
         }
 
-        const int MostJobs = 16;
+        const int MaxJobs = 16;
 
-        /// <summary>How many are packed ahead of the main thread, by each thread: a packed character is some megabytes.
-        /// </summary>
-        const int Ahead = 4;
+        /// <summary>How many characters each thread packs ahead of the main thread; one takes a few megabytes.</summary>
+        const int MaxPackedAhead = 4;
 
-        /// <summary>Called for every character that is whole and awake, with its place.</summary>
+        /// <summary>Raised for every complete and active character, with the index of its request.</summary>
         public event Action<int, AnthroCharacter> OnSpawned;
 
         /// <summary>Number of requests.</summary>
@@ -76,41 +75,41 @@ namespace Anthronet
             get { return requests.Length; }
         }
 
-        /// <summary>How many have their character or error.</summary>
-        public int Done
+        /// <summary>Number of requests that have a character or an error.</summary>
+        public int DoneCount
         {
             get { return next; }
         }
 
-        /// <summary>Whether all have, or it was disposed of.</summary>
+        /// <summary>Whether every request has a character or an error, or the spawn was disposed.</summary>
         public bool IsDone
         {
             get { return stopped || next == requests.Length; }
         }
 
-        /// <summary>A character, null before it is whole or where it failed.</summary>
+        /// <summary>The character of a request; null before it is complete, and if it failed.</summary>
         public AnthroCharacter Character(int index)
         {
             return index < next ? characters[index] : null;
         }
 
-        /// <summary>Why there is no character; null where there is one or will be.</summary>
+        /// <summary>Why a request has no character; null if it has one, and before it is finished.</summary>
         public AnthroException Error(int index)
         {
             return index < next ? errors[index] : null;
         }
 
         /// <summary>
-        /// Goes on for about so many milliseconds, on the main thread: a step that has begun is ended, and at least one is
-        /// done where there is something to do.
+        /// Works for about the given time, on the main thread. Finishes a step once begun, and takes at least one step if
+        /// there is anything to do.
         /// </summary>
-        /// <returns>Whether all is done.</returns>
+        /// <returns>Whether the spawn is done.</returns>
         public bool Advance(double milliseconds)
         {
             watch.Restart();
             while (!IsDone)
             {
-                if (!(steps == null ? Begin() : Step()))
+                if (!(steps == null ? BeginNext() : Step()))
                 {
                     return false;
                 }
@@ -122,12 +121,12 @@ namespace Anthronet
             return IsDone;
         }
 
-        /// <summary>Begins with the next that is packed.</summary>
-        /// <returns>Whether it was.</returns>
-        bool Begin()
+        /// <summary>Starts on the next request if it is packed.</summary>
+        /// <returns>Whether it was packed.</returns>
+        bool BeginNext()
         {
             AnthroBuild build;
-            lock (gate)
+            lock (sync)
             {
                 build = builds[next];
                 builds[next] = null;
@@ -137,16 +136,17 @@ namespace Anthronet
                     {
                         return false;
                     }
-                    Pass();
+                    FinishCurrent();
                     return true;
                 }
             }
-            characters[next] = AnthroFactory.Asleep(requests[next], settings);
-            steps = characters[next].Steps(build);
+            characters[next] = AnthroFactory.CreateInactive(requests[next], settings);
+            steps = characters[next].SetBodySteps(build);
             return true;
         }
 
-        /// <summary>Takes a step of the character that is begun. What fails is the error of that one alone.</summary>
+        /// <summary>Takes a step of the current character. An exception becomes the error of that character
+        /// alone.</summary>
         bool Step()
         {
             try
@@ -164,14 +164,14 @@ namespace Anthronet
             {
                 UnityEngine.Debug.LogException(error);
                 errors[next] = error as AnthroException ?? new AnthroException(AnthroError.Other, error.Message);
-                Abandon();
-                Pass();
+                DestroyCurrent();
+                FinishCurrent();
                 return true;
             }
             steps = null;
             var place = next;
             characters[place].gameObject.SetActive(true);
-            Pass();
+            FinishCurrent();
             try
             {
                 if (OnSpawned != null)
@@ -186,39 +186,39 @@ namespace Anthronet
             return true;
         }
 
-        void Pass()
+        void FinishCurrent()
         {
-            lock (gate)
+            lock (sync)
             {
                 next++;
-                Monitor.PulseAll(gate);
+                Monitor.PulseAll(sync);
             }
         }
 
-        /// <summary>Destroys the character that is begun.</summary>
-        void Abandon()
+        /// <summary>Destroys the current, unfinished character.</summary>
+        void DestroyCurrent()
         {
             ((IDisposable)steps).Dispose();
             steps = null;
-            // One that others destroyed meanwhile is null to Unity, and what it owns is still there.
+            // If it was destroyed by others it compares equal to null, but still owns meshes and a body.
             characters[next].Release();
             if (characters[next] != null)
             {
-                AnthroObjects.Discard(characters[next].gameObject);
+                AnthroObjects.DestroySafely(characters[next].gameObject);
             }
             characters[next] = null;
         }
 
-        /// <summary>What a thread does: takes the bodies of a job as they are made and packs them.</summary>
+        /// <summary>Body of a packing thread: takes the bodies of a job as they are finished and packs them.</summary>
         void Pack(int job)
         {
             for (var i = job; i < requests.Length; i += jobs.Length)
             {
-                lock (gate)
+                lock (sync)
                 {
-                    while (!stopped && i >= next + Ahead * jobs.Length)
+                    while (!stopped && i >= next + MaxPackedAhead * jobs.Length)
                     {
-                        Monitor.Wait(gate);
+                        Monitor.Wait(sync);
                     }
                     if (stopped)
                     {
@@ -235,7 +235,7 @@ namespace Anthronet
                 {
                     error = other as AnthroException ?? new AnthroException(AnthroError.Other, other.Message);
                 }
-                lock (gate)
+                lock (sync)
                 {
                     builds[i] = build;
                     errors[i] = error;
@@ -257,10 +257,13 @@ namespace Anthronet
             var build = new AnthroBuild(body, settings.skinTone, settings.bodyOnly);
             try
             {
-                var last = Math.Max(settings.finestLod, settings.coarsestLod);
-                for (var lod = Math.Min(settings.finestLod, settings.coarsestLod); lod <= last && !stopped; lod++)
+                foreach (var lod in AnthroFigure.LodRange(settings.finestLod, settings.coarsestLod))
                 {
-                    // One of a pool needs less, but whether there will be one in it nobody knows yet.
+                    if (stopped)
+                    {
+                        break;
+                    }
+                    // A pooled character needs less, but whether the pool will have one is not known yet.
                     build.Pack(lod, true);
                 }
                 return build;
@@ -273,8 +276,8 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Asks for no more characters: those that are whole stay, the others get the error `Cancelled`, unless
-        /// their body is made already.</summary>
+        /// <summary>Cancels what is not generated yet: those requests get the error `Cancelled`, finished characters
+        /// stay.</summary>
         public void Cancel()
         {
             foreach (var job in jobs)
@@ -283,14 +286,14 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Cancels it, waits for what its threads are at, and frees all. Characters that are whole stay, one that is
-        /// not is destroyed.</summary>
+        /// <summary>Cancels, waits for the worker threads, and frees everything. Finished characters stay; an unfinished
+        /// one is destroyed.</summary>
         public void Dispose()
         {
-            lock (gate)
+            lock (sync)
             {
                 stopped = true;
-                Monitor.PulseAll(gate);
+                Monitor.PulseAll(sync);
             }
             foreach (var packer in packers)
             {
@@ -317,7 +320,7 @@ namespace Anthronet
             }
             if (steps != null)
             {
-                Abandon();
+                DestroyCurrent();
             }
         }
     }

@@ -4,24 +4,24 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A part of a surface: one material.</summary>
+    /// <summary>A part of a surface, with one material.</summary>
     public struct AnthroPart
     {
-        /// <summary>Its name, such as `Body`.</summary>
+        /// <summary>Name, such as `Body`.</summary>
         public string name;
         /// <summary>Number of vertices.</summary>
         public int vertexCount;
         /// <summary>Number of triangles.</summary>
         public int triangleCount;
-        /// <summary>Whether back faces are drawn too.</summary>
+        /// <summary>Whether the material is double-sided.</summary>
         public bool doubleSided;
-        /// <summary>Perceptual roughness, 0 to 1.</summary>
+        /// <summary>Perceptual roughness of the material, 0 to 1.</summary>
         public float roughness;
-        /// <summary>Linear red, green, blue and alpha.</summary>
+        /// <summary>Base colour of the material, linear, with alpha.</summary>
         public Color baseColor;
     }
 
-    /// <summary>What of a body's surface is read.</summary>
+    /// <summary>Vertex attributes and indices of a surface.</summary>
     internal enum AnthroAttribute : uint
     {
         Positions = NativeMethods.ANTHRONET_ATTRIBUTE_POSITIONS,
@@ -33,25 +33,21 @@ namespace Anthronet
     }
 
     /// <summary>
-    /// The surfaces of a body at one level of detail in Unity's space, in native memory: the body first, then eyes,
-    /// teeth, tongue and lashes. `AnthroMeshes` puts them into Unity's meshes. One thread at a time may change it.
+    /// The surface of a body at one level of detail, in Unity's space and in native memory: the body part first, then
+    /// eyes, teeth, tongue and eyelashes. `AnthroMeshes` makes Unity meshes of it. One thread at a time may change it.
     /// </summary>
     public sealed unsafe class AnthroSurface : IDisposable
     {
         readonly MeshHandle handle;
         readonly AnthroPart[] parts;
 
-        /// <summary>Makes the surfaces of a body.</summary>
-        /// <param name="body">The body; not needed afterwards.</param>
+        /// <summary>Makes the surface of a body.</summary>
+        /// <param name="body">The body; may be disposed afterwards.</param>
         /// <param name="lod">Level of detail, 0 (finest) to 3.</param>
-        /// <param name="skinTone">Step of the Monk scale, 1 to 10; 0 for the default.</param>
-        /// <param name="bodyOnly">Leaves out eyes, teeth, tongue and lashes.</param>
+        /// <param name="skinTone">Skin tone on the Monk scale, 1 to 10; 0 for the default.</param>
+        /// <param name="bodyOnly">Leaves out eyes, teeth, tongue and eyelashes.</param>
         public AnthroSurface(AnthroBody body, int lod, int skinTone = 0, bool bodyOnly = false)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
             var options = new anthronet_mesh_options();
             options.struct_size = (uint)sizeof(anthronet_mesh_options);
             options.lod = checked((uint)lod);
@@ -61,7 +57,7 @@ namespace Anthronet
             options.body_only = bodyOnly ? 1u : 0u;
             options.skin_tone = checked((uint)skinTone);
             anthronet_error error;
-            using (var held = new Held(body.Handle))
+            using (var held = new Held(Library.NotNull(body, "body").Handle))
             {
                 anthronet_mesh* made;
                 Library.Check(NativeMethods.anthronet_mesh_new(
@@ -89,7 +85,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Joints per vertex, at most.</summary>
+        /// <summary>Largest number of bone weights per vertex.</summary>
         internal const int Influences = 4;
 
         internal MeshHandle Handle
@@ -103,7 +99,7 @@ namespace Anthronet
             get { return parts.Length; }
         }
 
-        /// <summary>What a part is.</summary>
+        /// <summary>Description of a part.</summary>
         public AnthroPart Part(int part)
         {
             return parts[part];
@@ -115,14 +111,10 @@ namespace Anthronet
         /// <summary>Number of triangles of all parts.</summary>
         public int TriangleCount { get; private set; }
 
-        /// <summary>Makes it the surface of another body, without blend shapes.</summary>
+        /// <summary>Changes it to another body's surface; removes blend shapes.</summary>
         public void Update(AnthroBody body)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
-            using (var other = new Held(body.Handle))
+            using (var other = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             {
                 anthronet_error error;
@@ -131,16 +123,13 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Adds a blend shape that leads to the surface of another body of about the same stature.</summary>
-        /// <exception cref="AnthroException">The name is empty or taken.</exception>
+        /// <summary>Adds a blend shape that leads to the surface of another body, which should have about the same
+        /// stature.</summary>
+        /// <exception cref="AnthroException">The name is empty or already used.</exception>
         public void AddBlendShape(string name, AnthroBody body)
         {
-            if (body == null)
-            {
-                throw new ArgumentNullException("body");
-            }
             ulong length;
-            using (var other = new Held(body.Handle))
+            using (var other = new Held(Library.NotNull(body, "body").Handle))
             using (var held = new Held(handle))
             fixed (byte* data = Utf8.Bytes(name, "name", out length))
             {
@@ -155,31 +144,20 @@ namespace Anthronet
         {
             get
             {
-                using (var held = new Held(handle))
-                {
-                    uint count;
-                    anthronet_error error;
-                    Library.Check(NativeMethods.anthronet_mesh_blend_shape_count(
-                        (anthronet_mesh*)held.Pointer, &count, &error), &error);
-                    return (int)count;
-                }
+                return Library.Number(handle, (pointer, count, error) =>
+                    NativeMethods.anthronet_mesh_blend_shape_count((anthronet_mesh*)pointer, count, error));
             }
         }
 
         /// <summary>The name of a blend shape.</summary>
         public string BlendShapeName(int shape)
         {
-            using (var held = new Held(handle))
-            {
-                anthronet_text name;
-                anthronet_error error;
-                Library.Check(NativeMethods.anthronet_mesh_blend_shape_name(
-                    (anthronet_mesh*)held.Pointer, checked((uint)shape), &name, &error), &error);
-                return Utf8.Text(name);
-            }
+            var index = checked((uint)shape);
+            return Library.Text(handle, (pointer, name, error) =>
+                NativeMethods.anthronet_mesh_blend_shape_name((anthronet_mesh*)pointer, index, name, error));
         }
 
-        /// <summary>Writes rows of one part to memory, `stride` bytes apart.</summary>
+        /// <summary>Copies an attribute of a part to memory, `stride` bytes per row.</summary>
         internal void Read(int part, AnthroAttribute attribute, void* rows, long bytes, int stride)
         {
             using (var held = new Held(handle))
@@ -190,7 +168,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Writes rows of one part's blend shape to memory, `stride` bytes apart.</summary>
+        /// <summary>Copies an attribute of a part's blend shape to memory, `stride` bytes per row.</summary>
         internal void ReadBlendShape(int shape, int part, AnthroAttribute attribute, void* rows, long bytes, int stride)
         {
             using (var held = new Held(handle))
@@ -201,7 +179,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Where rows of one part are; as long as the surface is neither changed nor freed.</summary>
+        /// <summary>Pointer to an attribute of a part; valid until the surface is changed or disposed.</summary>
         internal void* View(int part, AnthroAttribute attribute)
         {
             using (var held = new Held(handle))
@@ -214,7 +192,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees it. Unity's meshes made of it stay whole.</summary>
+        /// <summary>Frees the native memory. Meshes made from it stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

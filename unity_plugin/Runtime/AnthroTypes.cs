@@ -4,10 +4,10 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>The sex of a request.</summary>
+    /// <summary>Sex of a person.</summary>
     public enum AnthroSex
     {
-        /// <summary>Left to the measures.</summary>
+        /// <summary>Inferred from the measures.</summary>
         Any = 0,
         /// <summary>Female.</summary>
         Female = 1,
@@ -15,101 +15,102 @@ namespace Anthronet
         Male = 2,
     }
 
-    /// <summary>How open measures are filled.</summary>
+    /// <summary>How measures that a request does not set are filled in.</summary>
     public enum AnthroFill
     {
-        /// <summary>With their likeliest values beside the given ones.</summary>
+        /// <summary>With the most likely values, given the measures that are set.</summary>
         Mean = 0,
-        /// <summary>With a draw from what is plausible; the seed chooses.</summary>
+        /// <summary>With random plausible values, chosen by the seed.</summary>
         Sample = 1,
     }
 
-    /// <summary>What a clip is outside its duration.</summary>
+    /// <summary>What a clip does outside its duration.</summary>
     public enum AnthroWrap
     {
-        /// <summary>It holds its first or last frame.</summary>
+        /// <summary>Plays once: holds the first or last frame.</summary>
         Once = 0,
-        /// <summary>It starts anew.</summary>
+        /// <summary>Loops; root motion starts over with every cycle.</summary>
         Loop = 1,
-        /// <summary>It starts anew and goes on from where the last round ended.</summary>
+        /// <summary>Loops; root motion accumulates from cycle to cycle.</summary>
         Travel = 2,
     }
 
-    /// <summary>What the fingers of a retargeted motion do.</summary>
+    /// <summary>Finger motion of a retargeted clip.</summary>
     public enum AnthroFingers
     {
-        /// <summary>As in the file where it has any, else at ease.</summary>
+        /// <summary>From the file if it has finger motion, otherwise relaxed.</summary>
         Source = 0,
-        /// <summary>At ease.</summary>
+        /// <summary>Relaxed hands.</summary>
         Relaxed = 1,
         /// <summary>As in the bind pose.</summary>
         Rest = 2,
     }
 
-    /// <summary>How surfaces are posed on the processor.</summary>
+    /// <summary>Methods of skinning on the CPU.</summary>
     public enum AnthroSkinning
     {
-        /// <summary>Linear blend skinning, as Unity does it.</summary>
+        /// <summary>Linear blend skinning, Unity's method.</summary>
         Linear = 0,
-        /// <summary>Dual quaternions.</summary>
+        /// <summary>Dual quaternion skinning.</summary>
         DualQuaternion = 1,
-        /// <summary>Joints move vertices but do not turn them.</summary>
+        /// <summary>Joints translate vertices but do not rotate them.</summary>
         JointTranslation = 2,
     }
 
-    /// <summary>A rotation, then a translation in metres, in Unity's space. Laid out as the library's.</summary>
+    /// <summary>A rotation followed by a translation, in Unity's space. Has the memory layout of the native
+    /// structure.</summary>
     [Serializable]
     [StructLayout(LayoutKind.Sequential)]
     public struct AnthroTransform
     {
         /// <summary>The rotation.</summary>
         public Quaternion rotation;
-        /// <summary>Metres.</summary>
+        /// <summary>The translation, metres.</summary>
         public Vector3 translation;
     }
 
-    /// <summary>A joint in the bind pose, in Unity's space. Laid out as the library's.</summary>
+    /// <summary>A joint in the bind pose, in Unity's space. Has the memory layout of the native structure.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct AnthroJoint
     {
-        /// <summary>Place of the parent, before this joint's own; −1 of the root.</summary>
+        /// <summary>Index of the parent, which precedes this joint; −1 for the root.</summary>
         public int parent;
-        /// <summary>From the joint along its +Y axis to where its bone ends, metres.</summary>
+        /// <summary>Length of the bone, from the joint along its +Y axis, metres.</summary>
         public float length;
-        /// <summary>Relative to the parent.</summary>
+        /// <summary>Transform relative to the parent.</summary>
         public AnthroTransform local;
-        /// <summary>From the joint's space to the character's.</summary>
+        /// <summary>Matrix from the joint's space to the character's.</summary>
         public Matrix4x4 modelFromJoint;
-        /// <summary>What Unity calls the bind pose: from the character's space to the joint's.</summary>
+        /// <summary>Unity's bind pose: matrix from the character's space to the joint's.</summary>
         public Matrix4x4 jointFromModel;
     }
 
-    /// <summary>One measure of a body, metres. Laid out as the library's.</summary>
+    /// <summary>Report of one measure of a body, metres. Has the memory layout of the native structure.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct AnthroMeasureReport
     {
-        /// <summary>What the request gives; 0 of an open measure.</summary>
+        /// <summary>The requested value; 0 if the request does not set the measure.</summary>
         public double asked;
-        /// <summary>What the body has.</summary>
+        /// <summary>The value of the body.</summary>
         public double obtained;
-        /// <summary>Obtained − asked; 0 of an open measure.</summary>
+        /// <summary>Obtained minus asked; 0 if the request does not set the measure.</summary>
         public double residual;
-        /// <summary>Lower end of what 90 % of people with the given measures have.</summary>
+        /// <summary>Lower bound of the interval that contains 90 % of the people with the requested measures.</summary>
         public double low90;
-        /// <summary>Upper end of it.</summary>
+        /// <summary>Upper bound of that interval.</summary>
         public double high90;
-        /// <summary>Share of people of this sex, 0 to 100, who have at most the obtained value.</summary>
+        /// <summary>Percentage of people of this sex whose value is not above the obtained one, 0 to 100.</summary>
         public double percentile;
         uint given;
         uint filled;
 
-        /// <summary>Whether the request gives it.</summary>
+        /// <summary>Whether the request sets the measure.</summary>
         public bool Given
         {
             get { return given != 0; }
         }
 
-        /// <summary>How it was filled where it is open.</summary>
+        /// <summary>How the measure was filled in if the request does not set it.</summary>
         public AnthroFill Filled
         {
             get { return (AnthroFill)filled; }

@@ -1,5 +1,6 @@
 //! The C header and the bindings of C# and Python, all of them from the sources of `ffi`.
 
+mod declared;
 mod python;
 
 use crate::tools::{self, Outcome};
@@ -37,9 +38,8 @@ const SOURCES: [&str; 18] = [
 
 /// All of them, with their paths in the source tree.
 fn all() -> Outcome<[(&'static str, String); 3]> {
-    let header = header()?;
-    let python = python::declarations(&header)?;
-    Ok([(HEADER, header), (CSHARP, csharp()?), (PYTHON, python)])
+    let python = python::declarations(&declared::Declared::read(sources())?)?;
+    Ok([(HEADER, header()?), (CSHARP, csharp()?), (PYTHON, python)])
 }
 
 /// Writes them into the source tree.
@@ -92,4 +92,31 @@ fn csharp() -> Outcome<String> {
         .generate_csharp_file(&scratch)
         .map_err(|e| format!("{CSHARP}: {e}"))?;
     tools::read(&scratch)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_python_does_not_know_is_an_error_that_says_where() {
+        let made = |source: &str| {
+            let file = tempfile::NamedTempFile::new().unwrap();
+            std::fs::write(file.path(), source).unwrap();
+            let declared = declared::Declared::read(std::iter::once(file.path().to_path_buf()))?;
+            let text = python::declarations(&declared)?;
+            Ok(text.split_once("FUNCTIONS = {\n").unwrap().1.to_owned())
+        };
+        let good = made("pub extern \"C\" fn f(a: *const c_char, b: *mut c_char, c: u8) -> f32 { 0.0 }");
+        assert_eq!(good.unwrap(), "    \"f\": (c_float, [c_char_p, c_void_p, c_uint8]),\n}\n");
+        for (source, why) in [
+            ("\npub const A: u32 = 1 + 1;", ":2: a whole number is expected, written out"),
+            ("pub extern \"C\" fn f(a: &str) {}", ":1: a type that is not known in C"),
+            ("pub extern \"C\" fn f(a: u16) {}", "f: do not know the type `u16` in Python"),
+            ("pub extern \"C\" fn f() { ", ":1: "),
+        ] {
+            let error: String = made(source).unwrap_err();
+            assert!(error.contains(why), "`{error}` lacks `{why}`");
+        }
+    }
 }

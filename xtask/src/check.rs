@@ -50,7 +50,9 @@ fn layers() -> Outcome {
 
 #[cfg(test)]
 mod tests {
-    use crate::tools::{read, root};
+    use crate::tools::{self, read, root};
+    use std::collections::BTreeSet;
+    use std::process::Command;
 
     #[test]
     fn continuous_integration_calls_what_the_readme_says() {
@@ -74,6 +76,31 @@ mod tests {
             let quoted = format!("`{name}`");
             assert!(reasons.contains(&quoted), "CHANGELOG.md does not say what {quoted} is for");
             assert!(licences.contains(&format!("| {quoted} |")), "THIRD_PARTY.md does not list {quoted}");
+        }
+    }
+
+    /// What cargo builds below the library for a package, each with its features.
+    fn below_the_library(package: &str) -> BTreeSet<String> {
+        let mut tree = Command::new(std::env::var_os("CARGO").unwrap());
+        tree.current_dir(root()).args(["tree", "--locked", "--edges", "normal,build", "--no-dedupe"]);
+        tree.args(["--prefix", "depth", "--format", " {p} {f}", "--package", package]);
+        let text = tools::output(&mut tree).unwrap();
+        let lines = text.lines().map(|line| line.split_once(' ').unwrap());
+        // The depth of the library's own line is less than that of all that is below it.
+        let mut rest = lines.skip_while(|(_, shown)| !shown.starts_with("anthronet v"));
+        let (top, _) = rest.next().unwrap();
+        let deeper = |depth: &str| depth.parse::<u32>().unwrap() > top.parse().unwrap();
+        rest.take_while(|(depth, _)| deeper(depth)).map(|(_, shown)| shown.to_owned()).collect()
+    }
+
+    #[test]
+    fn command_c_abi_and_cpp_package_are_built_over_one_library() {
+        let of_the_command = below_the_library("anthronet-cli");
+        assert!(of_the_command.len() > 50, "{of_the_command:?}");
+        for package in ["anthronet-ffi", "anthronet-cxx"] {
+            let others = below_the_library(package);
+            let differ: Vec<_> = of_the_command.symmetric_difference(&others).collect();
+            assert!(differ.is_empty(), "{package}: name in workspace-hack/Cargo.toml: {differ:#?}");
         }
     }
 }

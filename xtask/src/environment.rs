@@ -4,7 +4,7 @@
 //!   CMake and Ninja)
 //! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
 //! - `bench`: likewise for `cargo xtask bench` alone, with `tests/requirements-bench.txt`
-//! - `python3.…`: for every Python that there is, the Python package's wheel and numpy alone
+//! - `python3.…`: for every Python that there is, the Python package's wheel, numpy and pytest alone
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
 //! Godot, mono and the compilers of C and C++ with valgrind come from the system's packages.
@@ -200,7 +200,7 @@ pub(crate) fn python() -> Outcome<PathBuf> {
     Ok(find_python()?.0)
 }
 
-/// Python of a version in an environment with a wheel of ours and numpy, and nothing else. The outer error is a failure,
+/// Python of a version in an environment with a wheel of ours, numpy and pytest, and nothing else. The outer error is a failure,
 /// the inner a reason to skip.
 pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf, String>> {
     let Some(base) = python_of(version) else {
@@ -217,7 +217,7 @@ pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf
     let made_from = format!("{}\n{}", base.display(), tools::read(&requirements)?);
     installed_once(&venv, &made_from, || {
         tools::run(Command::new(&base).args(["-m", "venv", "--clear"]).arg(&venv))?;
-        tools::run(pip(&["numpy", "--constraint"]).arg(&requirements))
+        tools::run(pip(&["numpy", "pytest", "--constraint"]).arg(&requirements))
     })?;
     // The wheel is another one each time, its number is not.
     tools::run(pip(&["--force-reinstall", "--no-deps"]).arg(wheel))?;

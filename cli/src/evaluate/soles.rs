@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use anthronet::Body;
 use anthronet::clip::Clip;
 use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
-use anthronet::skeleton::{Influences, Pose, RestPose};
+use anthronet::skeleton::{Influences, Pose, SidedJoint, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
+use anthronet::{Body, Side};
 use glam::Vec3;
 
 use crate::failure::{Failure, Result};
@@ -48,14 +48,15 @@ pub(super) struct SkinMeasure {
 }
 
 impl Soles {
-    pub(super) fn of(body: &Body, rest: &RestPose) -> Result<Self> {
+    pub(super) fn of(body: &Body, skeleton: &Skeleton) -> Result<Self> {
         let scene = Scene::from_body(body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() })?;
         let mesh = scene.meshes.first().ok_or_else(|| Failure::failed("the scene has no body"))?;
-        let model = rest.model_from_joints();
+        let model = skeleton.model_from_joints();
         let mut feet = Vec::new();
         let mut kept: Vec<usize> = Vec::new();
-        for side in ["l", "r"] {
-            let joints = [rest.require(&format!("foot_{side}"))?, rest.require(&format!("ball_{side}"))?];
+        for side in Side::ALL {
+            let joint = |joint: SidedJoint| skeleton.require_rig_joint(joint.on(side));
+            let joints = [joint(SidedJoint::Foot)?, joint(SidedJoint::Ball)?];
             let follows = |v: &usize| {
                 mesh.influences(*v).any(|(joint, w)| w > 0.0 && joints.contains(&usize::from(joint)))
             };
@@ -86,7 +87,7 @@ impl Soles {
         for frame in 0..clip.frame_count() {
             std::mem::swap(&mut now, &mut before);
             clip.pose_into(frame, &mut pose);
-            let model = pose.model_from_joints(clip.rest().parents());
+            let model = pose.model_from_joints(clip.skeleton().parents());
             self.skinner.skin(SkinMethod::Linear, &model, SurfaceMut::packed(&mut now, &mut normals))?;
             out.not_finite += now.iter().filter(|p| !p.iter().all(|x| x.is_finite())).count();
             let lowest = now.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);

@@ -8,7 +8,7 @@ use super::Clip;
 use super::edit::clip_of_poses;
 use super::sample::{Sampler, Wrap, mix};
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 /// How much each joint takes part: 0 not at all, 1 fully.
@@ -19,7 +19,7 @@ pub struct JointMask {
 
 impl JointMask {
     /// Every joint.
-    pub fn all(rest: &RestPose) -> Self {
+    pub fn all(rest: &Skeleton) -> Self {
         Self { weights: vec![1.0; rest.len()] }
     }
 
@@ -27,7 +27,7 @@ impl JointMask {
     ///
     /// # Errors
     /// [`Error::Invalid`] when there is not one per joint, or one is not in 0..=1.
-    pub fn of_weights(rest: &RestPose, weights: &[f32]) -> Result<Self> {
+    pub fn of_weights(rest: &Skeleton, weights: &[f32]) -> Result<Self> {
         if weights.len() != rest.len() {
             let message = format!("expected {} joints, got {}", rest.len(), weights.len());
             return Err(Error::invalid("joint mask", message));
@@ -43,7 +43,7 @@ impl JointMask {
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing.
-    pub fn below(rest: &RestPose, names: &[&str]) -> Result<Self> {
+    pub fn below(rest: &Skeleton, names: &[&str]) -> Result<Self> {
         let mut weights = vec![0.0; rest.len()];
         for name in names {
             weights[rest.require(name)?] = 1.0;
@@ -93,7 +93,7 @@ pub fn add_pose(base: &mut Pose, layer: &Pose, reference: &Pose, weight: f32, ma
 pub fn blend(a: &Clip, b: &Clip, weight: f32, mask: Option<&JointMask>) -> Result<Clip> {
     same_skeleton(a, b)?;
     in_unit("weight", weight)?;
-    let mask = mask.cloned().unwrap_or_else(|| JointMask::all(a.rest()));
+    let mask = mask.cloned().unwrap_or_else(|| JointMask::all(a.skeleton()));
     over(a, |seconds, pose, scratch| {
         Sampler::new(b, Wrap::Once).sample_into(seconds, scratch);
         blend_pose(pose, scratch, weight, &mask);
@@ -120,7 +120,7 @@ pub fn crossfade(a: &Clip, b: &Clip, seconds: f64) -> Result<Clip> {
         .map(|t| (t.joint, (meeting.locals[t.joint as usize].translation - t.values[0]).with_y(0.0)))
         .collect();
     let mut mixed = Pose::default();
-    let mask = JointMask::all(a.rest());
+    let mask = JointMask::all(a.skeleton());
     let poses = (0..frames).map(|frame| {
         let at = frame as f64 / rate;
         let mut pose = Sampler::new(a, Wrap::Once).sample(at);
@@ -134,7 +134,7 @@ pub fn crossfade(a: &Clip, b: &Clip, seconds: f64) -> Result<Clip> {
         }
         pose
     });
-    clip_of_poses(a.name(), a.rest(), rate, poses)
+    clip_of_poses(a.name(), a.skeleton(), rate, poses)
 }
 
 /// A clip with a layer on it: what `layer` differs from `reference` by is added to `base`, at the rate and of the
@@ -152,14 +152,14 @@ pub fn additive(
 ) -> Result<Clip> {
     same_skeleton(base, layer)?;
     in_unit("weight", weight)?;
-    if reference.locals.len() != base.rest().len() {
+    if reference.locals.len() != base.skeleton().len() {
         let got = reference.locals.len();
         return Err(Error::invalid(
             "reference pose",
-            format!("expected {} joints, got {got}", base.rest().len()),
+            format!("expected {} joints, got {got}", base.skeleton().len()),
         ));
     }
-    let mask = mask.cloned().unwrap_or_else(|| JointMask::all(base.rest()));
+    let mask = mask.cloned().unwrap_or_else(|| JointMask::all(base.skeleton()));
     over(base, |seconds, pose, scratch| {
         Sampler::new(layer, Wrap::Loop).sample_into(seconds, scratch);
         add_pose(pose, scratch, reference, weight, &mask);
@@ -174,11 +174,11 @@ fn over(clip: &Clip, mut change: impl FnMut(f64, &mut Pose, &mut Pose)) -> Resul
         change(frame as f64 / clip.frames_per_second(), &mut pose, &mut scratch);
         pose
     });
-    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+    clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
 fn same_skeleton(a: &Clip, b: &Clip) -> Result<()> {
-    if Arc::ptr_eq(a.rest(), b.rest()) || a.rest() == b.rest() {
+    if Arc::ptr_eq(a.skeleton(), b.skeleton()) || a.skeleton() == b.skeleton() {
         return Ok(());
     }
     let message = format!("`{}` and `{}` are clips of different skeletons", a.name(), b.name());
@@ -212,11 +212,11 @@ mod tests {
     #[test]
     fn a_mask_keeps_what_it_does_not_cover() {
         let (a, b) = (swing("a", 0.0, 11), swing("b", 1.0, 11));
-        let mask = JointMask::below(a.rest(), &["child"]).unwrap();
+        let mask = JointMask::below(a.skeleton(), &["child"]).unwrap();
         let mixed = blend(&a, &b, 1.0, Some(&mask)).unwrap();
         assert_eq!(mixed.rotations(10)[0], a.rotations(10)[0]);
         assert_eq!(mixed.rotations(10)[1], b.rotations(10)[1]);
-        let half = JointMask::of_weights(a.rest(), &[0.0, 0.5]).unwrap();
+        let half = JointMask::of_weights(a.skeleton(), &[0.0, 0.5]).unwrap();
         let mixed = blend(&a, &b, 1.0, Some(&half)).unwrap();
         let wanted = a.rotations(10)[1].slerp(b.rotations(10)[1], 0.5);
         assert!(
@@ -225,9 +225,9 @@ mod tests {
         for (weights, said) in
             [(&[1.0][..], "expected 2 joints, got 1"), (&[0.0, 1.5], "`child`"), (&[f32::NAN, 0.0], "NaN")]
         {
-            assert!(JointMask::of_weights(a.rest(), weights).unwrap_err().to_string().contains(said));
+            assert!(JointMask::of_weights(a.skeleton(), weights).unwrap_err().to_string().contains(said));
         }
-        assert!(JointMask::below(a.rest(), &["tail"]).unwrap_err().to_string().contains("`tail`"));
+        assert!(JointMask::below(a.skeleton(), &["tail"]).unwrap_err().to_string().contains("`tail`"));
     }
 
     #[test]

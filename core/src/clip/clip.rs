@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 
 use crate::math::{RigidTransform, unit};
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 /// The most frames that a clip may have.
@@ -26,7 +26,7 @@ pub struct TranslationTrack {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     name: String,
-    rest: Arc<RestPose>,
+    rest: Arc<Skeleton>,
     frames_per_second: f64,
     frame_count: usize,
     rotations: Vec<Quat>,
@@ -43,7 +43,7 @@ impl Clip {
     /// Rotations are normalised, and of two signs each takes the one nearer to the frame before.
     pub fn new(
         name: String,
-        rest: Arc<RestPose>,
+        rest: Arc<Skeleton>,
         frames_per_second: f64,
         mut rotations: Vec<Quat>,
         mut translations: Vec<TranslationTrack>,
@@ -96,13 +96,13 @@ impl Clip {
     /// As [`new`](Self::new).
     pub fn of_poses(
         name: String,
-        rest: Arc<RestPose>,
+        rest: Arc<Skeleton>,
         frames_per_second: f64,
         locals: &[RigidTransform],
     ) -> Result<Self> {
         let joints = rest.len();
         let moving = |joint: &usize| {
-            let at_rest = rest.pose().locals[*joint].translation;
+            let at_rest = rest.rest_pose().locals[*joint].translation;
             locals.iter().skip(*joint).step_by(joints).any(|local| local.translation != at_rest)
         };
         let track = |joint: usize| TranslationTrack {
@@ -126,7 +126,7 @@ impl Clip {
     }
 
     /// The skeleton at rest.
-    pub fn rest(&self) -> &Arc<RestPose> {
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
         &self.rest
     }
 
@@ -160,7 +160,7 @@ impl Clip {
     pub fn pose_into(&self, frame: usize, pose: &mut Pose) {
         let frame = frame.min(self.frame_count - 1);
         pose.locals.clear();
-        let rest = &self.rest.pose().locals;
+        let rest = &self.rest.rest_pose().locals;
         let rotations = self.rotations(frame);
         pose.locals.extend(
             rest.iter()
@@ -184,10 +184,10 @@ impl Clip {
 mod tests {
     use super::*;
 
-    fn rest() -> Arc<RestPose> {
+    fn rest() -> Arc<Skeleton> {
         let names = ["hips", "leg"].map(String::from).to_vec();
         let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y };
-        Arc::new(RestPose::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap())
+        Arc::new(Skeleton::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap())
     }
 
     #[test]

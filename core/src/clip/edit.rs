@@ -6,19 +6,19 @@ use glam::Vec3;
 
 use super::sample::{Sampler, Wrap, mix};
 use super::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 impl Clip {
     /// The tracks that move a joint with no other moving joint above it.
     pub(super) fn top_tracks(&self) -> impl Iterator<Item = &TranslationTrack> {
         self.translations().iter().filter(|track| {
-            let mut above = self.rest().parents()[track.joint as usize];
+            let mut above = self.skeleton().parents()[track.joint as usize];
             while let Some(joint) = above {
                 if self.translations().iter().any(|t| t.joint == joint) {
                     return false;
                 }
-                above = self.rest().parents()[joint as usize];
+                above = self.skeleton().parents()[joint as usize];
             }
             true
         })
@@ -31,11 +31,11 @@ impl Clip {
 /// As [`Clip::new`].
 pub(super) fn clip_of_poses(
     name: &str,
-    rest: &Arc<RestPose>,
+    rest: &Arc<Skeleton>,
     frames_per_second: f64,
     poses: impl IntoIterator<Item = Pose>,
 ) -> Result<Clip> {
-    let home: Vec<Vec3> = rest.pose().locals.iter().map(|l| l.translation).collect();
+    let home: Vec<Vec3> = rest.rest_pose().locals.iter().map(|l| l.translation).collect();
     let mut rotations = Vec::new();
     let mut tracks: Vec<Option<Vec<Vec3>>> = vec![None; rest.len()];
     for (frame, pose) in poses.into_iter().enumerate() {
@@ -75,7 +75,7 @@ pub fn resample(clip: &Clip, frames_per_second: f64) -> Result<Clip> {
     }
     let sampler = Sampler::new(clip, Wrap::Once);
     let poses = (0..frames).map(|frame| sampler.sample(frame as f64 / frames_per_second));
-    clip_of_poses(clip.name(), clip.rest(), frames_per_second, poses)
+    clip_of_poses(clip.name(), clip.skeleton(), frames_per_second, poses)
 }
 
 /// The clip closed to a loop: its last `seconds` turn into the frames that stand before its beginning, so that the last
@@ -110,7 +110,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
         }
         pose
     });
-    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+    clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
 /// A clip whose last frame is its first but for its travel, `times` times one after the other.
@@ -128,7 +128,7 @@ pub(crate) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
         }
         pose
     });
-    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+    clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
 /// `count` frames of a clip, from `start` on, above the place where the whole clip starts.
@@ -144,7 +144,7 @@ pub(crate) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
         }
         pose
     });
-    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+    clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
 /// The clip with its first pose for its last, where that stands.
@@ -163,7 +163,7 @@ pub(crate) fn closed(clip: &Clip) -> Result<Clip> {
         }
         pose
     });
-    clip_of_poses(clip.name(), clip.rest(), clip.frames_per_second(), poses)
+    clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
 /// How far a clip goes along the floor between two frames: the joints that do, metres.
@@ -184,7 +184,7 @@ pub fn in_place(clip: &Clip) -> Result<Clip> {
         track.values.iter_mut().for_each(|v| *v = Vec3::new(first.x, v.y, first.z));
     }
     let rotations = (0..clip.frame_count()).flat_map(|f| clip.rotations(f).iter().copied()).collect();
-    Clip::new(clip.name().to_owned(), clip.rest().clone(), clip.frames_per_second(), rotations, tracks)
+    Clip::new(clip.name().to_owned(), clip.skeleton().clone(), clip.frames_per_second(), rotations, tracks)
 }
 
 #[cfg(test)]

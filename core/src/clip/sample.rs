@@ -106,11 +106,11 @@ mod tests {
 
     use super::*;
     use crate::clip::TranslationTrack;
-    use crate::skeleton::RestPose;
+    use crate::skeleton::Skeleton;
 
     /// One joint that turns from 0 to 1 radian about X and moves a metre ahead and up, in two frames at 10 a second.
     fn clip() -> Clip {
-        let rest = RestPose::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
+        let rest = Skeleton::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
             .unwrap();
         let turn = |angle| Quat::from_rotation_x(angle);
         let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];

@@ -159,7 +159,7 @@ struct Search<'a> {
     limits: &'a Limits,
     /// Indices of measures, one entry per name: both sides together where both are given.
     names: Vec<Vec<usize>>,
-    /// Refusing distance per number of measures, 0..=36.
+    /// Refusing distance per number of measures, 0 to all.
     refuse: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What is known about a person before anything is measured: per sex, a Gaussian over the 36 measures and their
+//! What is known about a person before anything is measured: per sex, a Gaussian over the measures and their
 //! quantiles.
 //!
 //! Three uses: measures that were not given are filled from the Gaussian conditioned on those that were; a full vector
@@ -34,7 +34,8 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// From flat arrays, female first: `mean` 2 × 36 (m), `covariance` 2 × 36 × 36 (m²), `quantiles` 2 × 36 × 101 (m).
+    /// From flat arrays, female first: `mean` 2 × M (m), `covariance` 2 × M × M (m²), `quantiles` 2 × M × 101 (m), where M is
+    /// [`MEASURE_COUNT`].
     ///
     /// # Errors
     /// [`Error::Invalid`] for a wrong size and for whatever [`SexPrior::new`] refuses.
@@ -87,14 +88,15 @@ impl Prior {
 #[derive(Clone, Debug)]
 pub struct SexPrior {
     mean: Measurements,
-    /// 36 × 36, symmetric.
+    /// M × M, symmetric.
     covariance: Vec<f64>,
-    /// 36 × 101, non-decreasing along each row.
+    /// M × 101, non-decreasing along each row.
     quantiles: Vec<f64>,
 }
 
 impl SexPrior {
-    /// From flat row-major arrays: `mean` 36 (m), `covariance` 36 × 36 (m²), `quantiles` 36 × 101 (m).
+    /// From flat row-major arrays: `mean` M (m), `covariance` M × M (m²), `quantiles` M × 101 (m), where M is
+    /// [`MEASURE_COUNT`].
     ///
     /// # Errors
     /// [`Error::Invalid`] for wrong sizes, numbers that are not finite, a covariance that is not symmetric or not
@@ -149,7 +151,7 @@ impl SexPrior {
         &self.mean
     }
 
-    /// Covariance, 36 × 36 row-major, m².
+    /// Covariance, [`MEASURE_COUNT`] squared, row-major, m².
     pub fn covariance(&self) -> &[f64] {
         &self.covariance
     }
@@ -263,7 +265,7 @@ impl SexPrior {
     }
 }
 
-/// Cholesky factor of the rows and columns `rows` of a 36 × 36 matrix, with e² added to the diagonal.
+/// Cholesky factor of the rows and columns `rows` of a covariance of all measures, with e² added to the diagonal.
 fn noisy_factor(covariance: &[f64], rows: &[usize], error: f64) -> Option<Cholesky> {
     let size = rows.len();
     let mut part = Vec::with_capacity(size * size);
@@ -281,7 +283,7 @@ fn noisy_factor(covariance: &[f64], rows: &[usize], error: f64) -> Option<Choles
 pub struct Conditional {
     given: [bool; MEASURE_COUNT],
     mean: Measurements,
-    /// 36 × 36; the rows and columns of the given measures are zero.
+    /// M × M; the rows and columns of the given measures are zero.
     covariance: Vec<f64>,
 }
 

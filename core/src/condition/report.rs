@@ -59,7 +59,7 @@ pub struct MeasureReport {
 /// The account of one body. Serialises to the JSON of `--report`; prints as a table for people.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// All 36 measures, in order.
+    /// All measures, in order.
     pub measures: Vec<MeasureReport>,
     /// Sentences about what is unusual.
     pub warnings: Vec<String>,

@@ -12,7 +12,7 @@ use super::prior::GivenMeasures;
 use super::text::{list, metres};
 use crate::measure::{MEASURE_COUNT, MeasureId, Sex, expand_name};
 use crate::random::Random;
-use crate::{Error, Result};
+use crate::{Error, Result, Side};
 
 /// The stream of [`Random`] that a latent vector is drawn from.
 const LATENT_STREAM: u64 = 1;
@@ -298,15 +298,10 @@ pub(crate) fn group_by(measures: &GivenMeasures, same: impl Fn(f64, f64) -> bool
         if !paired {
             result.push(Group { name: id.name().to_owned(), ids: vec![id] });
         } else if id < other {
-            result.push(Group { name: unsided(id).to_owned(), ids: vec![id, other] });
+            result.push(Group { name: id.base_name().to_owned(), ids: vec![id, other] });
         }
     }
     result
-}
-
-/// The name without its side.
-fn unsided(id: MeasureId) -> &'static str {
-    id.name().trim_end_matches("_left").trim_end_matches("_right")
 }
 
 /// The measures of a name, or the error that names the likeliest ones.
@@ -330,7 +325,7 @@ fn nearest_names(name: &str) -> Vec<&'static str> {
         "bust" | "bust_girth" => return vec!["chest_circumference"],
         _ => {}
     }
-    let mut names: Vec<_> = MeasureId::all().flat_map(|id| [unsided(id), id.name()]).collect();
+    let mut names: Vec<_> = MeasureId::all().flat_map(|id| [id.base_name(), id.name()]).collect();
     names.sort_unstable();
     names.dedup();
     // A name that holds every word of the wanted one (`waist`, `left_arm_length`) beats one that is merely similar.
@@ -385,56 +380,65 @@ fn plain(value: f64) -> String {
 
 /// Contradictions that no body of any shape can resolve; subtler ones are the prior's to find.
 fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
-    let value = |name: &str| MeasureId::from_name(name).and_then(|id| measures[id.index()]);
-    let larger = |field: &str, value: f64, than: &str, limit: f64, why: &str| {
+    let value = |id: MeasureId| measures[id.index()];
+    let larger = |field: MeasureId, value: f64, than: MeasureId, limit: f64, why: &str| {
         Err(Error::request(
-            field,
+            field.name(),
             format!("{} m contradicts {than} {} m: {why}", metres(value), metres(limit)),
         ))
     };
-    if let Some(height) = value("height") {
+    if let Some(height) = value(MeasureId::HEIGHT) {
         for (id, measure) in MeasureId::all().zip(measures) {
             let Some(measure) = *measure else { continue };
             // The largest chests of short people come near their stature.
             let limit = if id.name() == "chest_circumference" { 1.15 * height } else { height };
-            if id.name() != "height" && measure >= limit {
-                return larger(id.name(), measure, "height", height, "it cannot be larger than the stature");
+            if id != MeasureId::HEIGHT && measure >= limit {
+                let why = "it cannot be larger than the stature";
+                return larger(id, measure, MeasureId::HEIGHT, height, why);
             }
         }
-        for side in ["left", "right"] {
-            let parts =
-                [format!("thigh_length_{side}"), format!("calf_length_{side}"), "head_height".to_owned()];
-            let given: Vec<_> = parts.iter().filter_map(|name| Some((name, value(name)?))).collect();
+        for side in Side::ALL {
+            let parts = ["thigh_length", "calf_length", "head_height"];
+            let given: Vec<_> = parts
+                .into_iter()
+                .filter_map(|name| named(name, side))
+                .filter_map(|id| Some((id, value(id)?)))
+                .collect();
             let sum: f64 = given.iter().map(|(_, v)| v).sum();
             if let (Some((field, first)), true) = (given.first(), sum >= height) {
-                let names: Vec<_> = given.iter().map(|(name, _)| name.as_str()).collect();
+                let names: Vec<_> = given.iter().map(|(id, _)| id.name()).collect();
                 let why = format!("{} are {} m together", list(&names, "and"), metres(sum));
-                return larger(field, *first, "height", height, &why);
+                return larger(*field, *first, MeasureId::HEIGHT, height, &why);
             }
         }
     }
-    let mut ordered: Vec<(String, String)> = ["left", "right"]
-        .iter()
-        .flat_map(|side| {
-            [("heel_to_ball_length", "heel_to_toe_length"), ("foot_width", "heel_to_toe_length")]
-                .map(|(small, large)| (format!("{small}_{side}"), format!("{large}_{side}")))
-                .into_iter()
-                .chain([
-                    (format!("thigh_circumference_{side}"), "hip_circumference".to_owned()),
-                    (format!("arm_circumference_{side}"), "chest_circumference".to_owned()),
-                    (format!("forearm_circumference_{side}"), "chest_circumference".to_owned()),
-                ])
-        })
-        .collect();
-    ordered.push(("neck_circumference".to_owned(), "chest_circumference".to_owned()));
-    for (small, large) in ordered {
-        if let (Some(a), Some(b)) = (value(&small), value(&large))
+    for (small, large, side) in Side::ALL
+        .into_iter()
+        .flat_map(|side| SMALLER_OF_SIDES.map(|(small, large)| (small, large, side)))
+        .chain([("neck_circumference", "chest_circumference", Side::Left)])
+    {
+        if let (Some(small), Some(large)) = (named(small, side), named(large, side))
+            && let (Some(a), Some(b)) = (value(small), value(large))
             && a >= b
         {
-            return larger(&small, a, &large, b, "it must be the smaller of the two");
+            return larger(small, a, large, b, "it must be the smaller of the two");
         }
     }
     Ok(())
+}
+
+/// Of each side: a measure and one that it is smaller than on every body, the latter of that side or of the middle.
+const SMALLER_OF_SIDES: [(&str, &str); 5] = [
+    ("heel_to_ball_length", "heel_to_toe_length"),
+    ("foot_width", "heel_to_toe_length"),
+    ("thigh_circumference", "hip_circumference"),
+    ("arm_circumference", "chest_circumference"),
+    ("forearm_circumference", "chest_circumference"),
+];
+
+/// The measure of this name: of the middle, or on this side.
+fn named(base: &str, side: Side) -> Option<MeasureId> {
+    MeasureId::from_name(base).or_else(|| MeasureId::on_side(base, side))
 }
 
 #[cfg(test)]

@@ -26,8 +26,8 @@ pub trait MeasuredShape {
     /// Number of coefficients K.
     fn dim(&self) -> usize;
 
-    /// The 36 measures, metres, of the body with the coefficients `c` (K of them). Where `jacobian` is given it has
-    /// 36 × K entries, row-major, of any content, and is filled with the derivatives.
+    /// The measures, metres, of the body with the coefficients `c` (K of them). Where `jacobian` is given it has
+    /// [`MEASURE_COUNT`] × K entries, row-major, of any content, and is filled with the derivatives.
     fn measure(&self, c: &[f64], jacobian: Option<&mut [f64]>) -> Measurements;
 }
 
@@ -166,7 +166,7 @@ struct Problem<'a, S: ?Sized> {
     variances: &'a [f64],
     /// Index and asked value of each given measure.
     rows: Vec<(usize, f64)>,
-    /// 36 × K, of the last point that was evaluated with it.
+    /// [`MEASURE_COUNT`] × K, of the last point that was evaluated with it.
     jacobian: Vec<f64>,
 }
 

@@ -4,8 +4,8 @@ use super::prior::{Prior, QUANTILE_COUNT, SexPrior};
 use super::request::MeasureRange;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements};
 
-/// Mean of a woman's measures, and the standard deviations that size, girth and all else give them, by unsided name.
-const TABLE: [(&str, f64, f64, f64, f64); 24] = [
+/// Mean of a woman's measures, and the standard deviations that size, girth and all else give them, by name without side.
+const TABLE: &[(&str, f64, f64, f64, f64)] = &[
     ("waist_circumference", 0.80, 0.02, 0.13, 0.020),
     ("chest_circumference", 1.00, 0.03, 0.10, 0.025),
     ("hip_circumference", 0.98, 0.03, 0.09, 0.020),
@@ -33,7 +33,7 @@ const TABLE: [(&str, f64, f64, f64, f64); 24] = [
 ];
 
 fn entry(id: MeasureId) -> (usize, (&'static str, f64, f64, f64, f64)) {
-    TABLE.into_iter().enumerate().find(|(_, row)| id.name().starts_with(row.0)).unwrap()
+    TABLE.iter().copied().enumerate().find(|(_, row)| row.0 == id.base_name()).unwrap()
 }
 
 /// The prior of one sex; `size` and `girth` shift the two factors.

@@ -1,4 +1,4 @@
-//! A small dense Cholesky factorisation in f64, for the matrices of up to 36 × 36 that measures make, and the few
+//! A small dense Cholesky factorisation in f64, for the matrices of a few dozen rows that measures make, and the few
 //! hundred unknowns of a fitted body.
 //!
 //! Plain loops in a fixed order: the same bits on every host.

@@ -4,8 +4,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::names::{MEASURE_COUNT, MeasureId};
-use super::standard::standard;
+use super::catalogue::CATALOGUE;
+use super::names::MeasureId;
 use crate::{Error, Result};
 
 /// How a measure is read.
@@ -48,7 +48,7 @@ pub struct Definition {
 impl Definition {
     /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
     pub fn standard(&self) -> Option<&'static str> {
-        standard(&self.name)
+        MeasureId::from_name(&self.name)?.standard()
     }
 
     /// Every vertex that the measure depends on.
@@ -89,7 +89,7 @@ impl Definition {
     }
 }
 
-/// All 36 definitions, in the order of [`MeasureId`].
+/// The definitions of all measures, in the order of [`MeasureId`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definitions {
     list: Vec<Definition>,
@@ -113,17 +113,7 @@ impl Definitions {
     /// # Errors
     /// [`Error::Invalid`] naming the measure that is missing, out of order or inconsistent.
     pub fn from_json(json: &str, vertex_count: usize) -> Result<Self> {
-        let fail = |message: String| Error::invalid("measure definitions", message);
-        let list: Vec<Definition> = serde_json::from_str(json).map_err(|e| fail(e.to_string()))?;
-        if list.len() != MEASURE_COUNT {
-            return Err(fail(format!("expected {MEASURE_COUNT} measures, got {}", list.len())));
-        }
-        for (id, definition) in MeasureId::all().zip(&list) {
-            if definition.name != id.name() {
-                return Err(fail(format!("expected {id}, got {}", definition.name)));
-            }
-            definition.validate(vertex_count).map_err(|e| fail(format!("{id}: {e}")))?;
-        }
+        let list = read_list(json, CATALOGUE.names(), vertex_count)?;
         let hash = Sha256::digest(json.as_bytes()).iter().map(|b| format!("{b:02x}")).collect();
         Ok(Self { list, hash })
     }
@@ -142,4 +132,24 @@ impl Definitions {
     pub fn hash(&self) -> &str {
         &self.hash
     }
+}
+
+/// Reads the definitions of these measures, in this order, over a surface of so many vertices.
+pub(super) fn read_list<'a>(
+    json: &str,
+    names: impl ExactSizeIterator<Item = &'a str>,
+    vertex_count: usize,
+) -> Result<Vec<Definition>> {
+    let fail = |message: String| Error::invalid("measure definitions", message);
+    let list: Vec<Definition> = serde_json::from_str(json).map_err(|e| fail(e.to_string()))?;
+    if list.len() != names.len() {
+        return Err(fail(format!("expected {} measures, got {}", names.len(), list.len())));
+    }
+    for (name, definition) in names.zip(&list) {
+        if definition.name != name {
+            return Err(fail(format!("expected {name}, got {}", definition.name)));
+        }
+        definition.validate(vertex_count).map_err(|e| fail(format!("{name}: {e}")))?;
+    }
+    Ok(list)
 }

@@ -5,14 +5,15 @@
 //! spans hollows; the raw edge loop reads 50 mm more at the hip. Every measure has an analytic gradient, which
 //! the exact solve needs.
 
+mod catalogue;
 mod definition;
 mod hull;
 mod mass;
 mod names;
 mod read;
-mod standard;
 
+pub use catalogue::{BodyPart, MEASURE_COUNT};
 pub use definition::{Definition, Definitions, Kind, Point};
 pub use mass::{BODY_DENSITY, Mass, enclosed_volume};
-pub use names::{MEASURE_COUNT, MeasureId, Measurements, Sex, expand_name};
+pub use names::{MeasureId, Measurements, Sex, expand_name};
 pub use read::Gradient;

@@ -1,66 +1,24 @@
-//! The identifiers of the 36 measures and of the two sexes, in the order that every array of the library uses.
-//!
-//! Twelve measures are central, twelve more exist on the left and on the right: the 24 rows of the paper's
-//! table "statistics-anthro".
+//! The identifiers of the measures and of the two sexes.
 
 use serde::{Deserialize, Serialize};
 
-/// Number of measures.
-pub const MEASURE_COUNT: usize = 36;
+use super::catalogue::{BodyPart, CATALOGUE, Entry, MEASURE_COUNT};
+use crate::Side;
 
 /// One value per measure, in metres, in the order of [`MeasureId::all`].
 pub type Measurements = [f64; MEASURE_COUNT];
 
-const NAMES: [&str; MEASURE_COUNT] = [
-    "waist_circumference",
-    "chest_circumference",
-    "hip_circumference",
-    "height",
-    "shoulder_width",
-    "torso_height_back",
-    "torso_height_front",
-    "head_circumference",
-    "neck_circumference",
-    "head_height",
-    "neck_length_midline",
-    "neck_length_lateral",
-    "hand_size_left",
-    "arm_circumference_left",
-    "arm_length_left",
-    "forearm_circumference_left",
-    "forearm_length_left",
-    "thigh_circumference_left",
-    "thigh_length_left",
-    "calf_circumference_left",
-    "calf_length_left",
-    "foot_width_left",
-    "heel_to_ball_length_left",
-    "heel_to_toe_length_left",
-    "hand_size_right",
-    "arm_circumference_right",
-    "arm_length_right",
-    "forearm_circumference_right",
-    "forearm_length_right",
-    "thigh_circumference_right",
-    "thigh_length_right",
-    "calf_circumference_right",
-    "calf_length_right",
-    "foot_width_right",
-    "heel_to_ball_length_right",
-    "heel_to_toe_length_right",
-];
-
-/// One of the 36 measures.
+/// One of the measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MeasureId(u8);
 
 impl MeasureId {
     /// The stature, `height`.
-    pub const HEIGHT: Self = Self(3);
+    pub const HEIGHT: Self = Self(CATALOGUE.place("height") as u8);
     /// `waist_circumference`.
-    pub const WAIST: Self = Self(0);
+    pub const WAIST: Self = Self(CATALOGUE.place("waist_circumference") as u8);
 
-    /// All measures, in order.
+    /// All measures, in order: those of the middle, of the left, of the right.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
         (0..MEASURE_COUNT as u8).map(Self)
     }
@@ -72,26 +30,56 @@ impl MeasureId {
 
     /// The measure with exactly this identifier, sides spelt out.
     pub fn from_name(name: &str) -> Option<Self> {
-        NAMES.iter().position(|n| *n == name).map(|i| Self(i as u8))
+        CATALOGUE.find(name).map(Self::at)
     }
 
-    /// Place in the order, `0..36`.
+    /// The measure of this name without its side, on this side.
+    pub fn on_side(base: &str, side: Side) -> Option<Self> {
+        Self::all().find(|id| id.base_name() == base && id.side() == Some(side))
+    }
+
+    /// Place in the order, `0..MEASURE_COUNT`.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
     /// The identifier, such as `arm_length_left`.
     pub fn name(self) -> &'static str {
-        NAMES[self.index()]
+        self.entry().name
+    }
+
+    /// The identifier without its side, such as `arm_length`: what [`expand_name`] takes for both sides.
+    pub fn base_name(self) -> &'static str {
+        self.entry().base
+    }
+
+    /// The side of the body that it is taken on; `None` for a measure of the middle.
+    pub fn side(self) -> Option<Side> {
+        self.entry().side
+    }
+
+    /// The part of the body that it is taken on.
+    pub fn part(self) -> BodyPart {
+        self.entry().part
+    }
+
+    /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
+    pub fn standard(self) -> Option<&'static str> {
+        self.entry().standard
     }
 
     /// The same measure on the other side of the body; a central measure is its own mirror image.
     pub fn mirrored(self) -> Self {
-        match self.0 {
-            0..12 => self,
-            12..24 => Self(self.0 + 12),
-            _ => Self(self.0 - 12),
-        }
+        Self::at(self.entry().mirrored)
+    }
+
+    /// The measure at a place of the catalogue.
+    fn at(place: usize) -> Self {
+        Self(place as u8)
+    }
+
+    fn entry(self) -> &'static Entry {
+        &CATALOGUE.0[self.index()]
     }
 }
 
@@ -103,12 +91,7 @@ impl std::fmt::Display for MeasureId {
 
 /// The measures that a user's name stands for: one, or both sides when the side is left out.
 pub fn expand_name(name: &str) -> Option<Vec<MeasureId>> {
-    if let Some(id) = MeasureId::from_name(name) {
-        return Some(vec![id]);
-    }
-    let sides: Vec<_> =
-        ["left", "right"].iter().filter_map(|side| MeasureId::from_name(&format!("{name}_{side}"))).collect();
-    (sides.len() == 2).then_some(sides)
+    Some(CATALOGUE.expand(name)?.into_iter().map(MeasureId::at).collect())
 }
 
 /// The sex that a body is conditioned on; the paper's binary identifier.
@@ -179,6 +162,8 @@ mod tests {
             assert_eq!(MeasureId::from_name(id.name()), Some(id));
             assert_eq!(MeasureId::from_index(i), Some(id));
             assert_eq!(id.mirrored().mirrored(), id);
+            assert_eq!(id.side().map(Side::mirrored), id.mirrored().side());
+            assert_eq!(Side::part_measure_name(id.name()), (id.base_name(), id.side()));
         }
         assert_eq!(MeasureId::from_index(MEASURE_COUNT), None);
         assert_eq!(MeasureId::HEIGHT.name(), "height");

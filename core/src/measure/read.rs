@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
+use super::catalogue::MEASURE_COUNT;
 use super::definition::{Definition, Definitions, Kind, Point};
 use super::hull::hull_perimeter;
-use super::names::{MEASURE_COUNT, MeasureId, Measurements};
+use super::names::{MeasureId, Measurements};
 
 /// Derivative of a measure by the places of the vertices it depends on, metre per metre; a vertex may appear more than
 /// once, and its derivatives then add.
@@ -22,7 +23,7 @@ impl Point {
 }
 
 impl Definitions {
-    /// Reads all 36 measures of a body, metres, in the order of [`MeasureId`]. `at` gives the place, metres, of a vertex
+    /// Reads all measures of a body, metres, in the order of [`MeasureId`]. `at` gives the place, metres, of a vertex
     /// of level 0.
     pub fn read_all(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Measurements {
         let mut out = [0.0; MEASURE_COUNT];

@@ -1,11 +1,11 @@
 //! What is the same for everybody: topology, levels of detail, accessories, skeleton and skin weights.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
 use crate::mesh::{Lod, Subdivision, Topology, VertexFaces};
-use crate::skeleton::{Skeleton, SkinWeights};
+use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
 
 /// A submesh that moves with the body: eyes, teeth, tongue or lashes.
@@ -38,7 +38,7 @@ pub struct Character {
     faces_around: VertexFaces,
     reduced: [ReducedMesh; 2],
     accessories: Vec<Accessory>,
-    skeleton: Skeleton,
+    joint_tree: Arc<JointTree>,
     // Of the mean body: cage, then accessories.
     mean: Vec<Vec3>,
     // Of the cage, then of the accessories.
@@ -55,7 +55,7 @@ impl Character {
         cage: Topology,
         reduced: [ReducedMesh; 2],
         accessories: Vec<Accessory>,
-        skeleton: Skeleton,
+        joint_tree: Arc<JointTree>,
         weights: SkinWeights,
         mean: Vec<Vec3>,
     ) -> Result<Self> {
@@ -97,7 +97,7 @@ impl Character {
             faces_around,
             reduced,
             accessories,
-            skeleton,
+            joint_tree,
             mean,
             weights,
             refined_weights,
@@ -142,9 +142,9 @@ impl Character {
         &self.accessories
     }
 
-    /// Joints.
-    pub fn skeleton(&self) -> &Skeleton {
-        &self.skeleton
+    /// Names and parents of the joints; the first is the only root.
+    pub fn joint_tree(&self) -> &Arc<JointTree> {
+        &self.joint_tree
     }
 
     /// Number of points that the shape space must have.

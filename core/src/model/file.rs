@@ -19,7 +19,7 @@ use crate::measure::MEASURE_COUNT;
 use crate::mesh::Topology;
 use crate::network::config::GeneratorConfig;
 use crate::network::{Tensor, Tensors};
-use crate::skeleton::{Skeleton, SkinWeights};
+use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
 
 /// Version of the file's layout; a file of another version is refused.
@@ -70,11 +70,12 @@ pub struct ModelParts {
     /// Skin weights of cage and accessories as [`crate::skeleton::SkinWeights::new`] takes them: offsets of the rows, joints,
     /// weights.
     pub skin: (Vec<u32>, Vec<u16>, Vec<f32>),
-    /// Per sex, female first: means `(2, 36)` in m, covariances `(2, 36, 36)` in m², quantiles `(2, 36, 101)` in m.
+    /// Per sex, female first: means `(2, M)` in m, covariances `(2, M, M)` in m², quantiles `(2, M, 101)` in m;
+    /// M is [`MEASURE_COUNT`].
     pub prior: [Vec<f64>; 3],
-    /// Per measure the smallest and largest value that a request may give, `(36, 2)`, metres.
+    /// Per measure the smallest and largest value that a request may give, `(M, 2)`, metres.
     pub ranges: Vec<f64>,
-    /// Mean and deviation that measures are standardised with, 36 each, metres.
+    /// Mean and deviation that measures are standardised with, one per measure, metres.
     pub standardisation: [Vec<f64>; 2],
     /// Decoder and encoder.
     pub networks: Tensors,
@@ -286,15 +287,18 @@ impl ModelParts {
     /// # Errors
     /// [`Error::Invalid`] when the parts do not fit together.
     pub fn character(&self) -> Result<Character> {
-        let skeleton = Skeleton::new(self.joint_names.clone(), self.joint_parents.clone())?;
+        let joint_tree = JointTree::new(self.joint_names.clone(), self.joint_parents.clone())?;
+        if !joint_tree.has_one_root() {
+            return Err(Error::invalid("skeleton", "expected every joint but the first to have a parent"));
+        }
         let (offsets, joints, weights) = self.skin.clone();
-        let weights = SkinWeights::new(offsets, joints, weights, skeleton.len())?;
+        let weights = SkinWeights::new(offsets, joints, weights, joint_tree.len())?;
         let mean = self.mean.chunks_exact(3).map(Vec3::from_slice).collect();
         Character::new(
             self.cage.clone(),
             self.reduced.clone(),
             self.accessories.clone(),
-            skeleton,
+            std::sync::Arc::new(joint_tree),
             weights,
             mean,
         )
@@ -326,9 +330,9 @@ impl ModelParts {
     /// Accepted values per measure.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when there are not 36 pairs that ascend.
+    /// [`Error::Invalid`] when there are not [`MEASURE_COUNT`] pairs that ascend.
     pub fn measure_ranges(&self) -> Result<[MeasureRange; MEASURE_COUNT]> {
-        let bad = || Error::invalid("measure ranges", "expected 36 ascending pairs");
+        let bad = || Error::invalid("measure ranges", format!("expected {MEASURE_COUNT} ascending pairs"));
         if self.ranges.len() != 2 * MEASURE_COUNT || !self.ranges.chunks_exact(2).all(|r| r[0] < r[1]) {
             return Err(bad());
         }

@@ -14,7 +14,7 @@ use crate::condition::{
 };
 use crate::measure::{Definitions, MEASURE_COUNT, Measurements, Sex};
 use crate::network::{Decoder, Encoder};
-use crate::skeleton::SkeletonShape;
+use crate::skeleton::BonePositions;
 use crate::{Error, Result};
 
 /// Environment variable that names a model file to use instead of the embedded one.
@@ -145,7 +145,7 @@ impl Model {
             return Err(fail(format!("measures read vertex {v} of {surface}")));
         }
         let k = space.components();
-        let joints = character.skeleton().len();
+        let joints = character.joint_tree().len();
         if parts.joint_mean.len() != 6 * joints || parts.joint_rows.len() != 6 * joints * k {
             return Err(fail(format!("joint arrays do not fit {joints} joints and {k} components")));
         }
@@ -164,7 +164,7 @@ impl Model {
             Measurements::try_from(data.as_slice())
                 .ok()
                 .filter(|_| usable)
-                .ok_or_else(|| fail("standardisation: expected 36 usable numbers".into()))
+                .ok_or_else(|| fail(format!("standardisation: expected {MEASURE_COUNT} usable numbers")))
         };
         let decoder = Decoder::from_tensors(&parts.config, &parts.networks).map_err(named)?;
         // A model may come without its encoder, but not with a broken one.
@@ -279,13 +279,13 @@ impl Model {
         solve(&shared.measured, coefficients, &shared.variances, given, &SolveOptions::default())
     }
 
-    /// The 36 measures of the body with these coefficients, metres.
+    /// The measures of the body with these coefficients, metres.
     pub fn measures_of(&self, coefficients: &[f64]) -> Measurements {
         self.shared.measured.measure(coefficients, None)
     }
 
     /// Where the joints of the body with these coefficients begin and end, pelvis at the origin, metres.
-    pub fn joints_of(&self, coefficients: &[f64]) -> SkeletonShape {
+    pub fn joints_of(&self, coefficients: &[f64]) -> BonePositions {
         let k = self.shared.space.components();
         let at = |i: usize| {
             let row = &self.shared.joint_rows[i * k..(i + 1) * k];
@@ -293,8 +293,8 @@ impl Model {
             (f64::from(self.shared.joint_mean[i]) + sum) as f32
         };
         let place = |j: usize| Vec3::new(at(3 * j), at(3 * j + 1), at(3 * j + 2));
-        let joints = self.shared.character.skeleton().len();
-        SkeletonShape {
+        let joints = self.shared.character.joint_tree().len();
+        BonePositions {
             heads: (0..joints).map(place).collect(),
             tails: (joints..2 * joints).map(place).collect(),
         }

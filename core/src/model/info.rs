@@ -26,7 +26,7 @@ impl Model {
             }
             measure
         });
-        let skeleton = character.skeleton();
+        let skeleton = character.joint_tree();
         let joints = skeleton.names().iter().zip(skeleton.parents()).map(|(name, parent)| {
             let parent = parent.and_then(|p| skeleton.names().get(p as usize));
             json!({"name": name, "parent": parent})

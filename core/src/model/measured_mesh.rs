@@ -18,7 +18,7 @@ use crate::{Error, Result};
 pub struct MeasuredMesh {
     /// The level of detail that the mesh was recognised as, by its number of vertices.
     pub lod: Lod,
-    /// The 36 measures, metres.
+    /// All measures, metres.
     pub measurements: Measurements,
     /// Volume, mass and body mass index.
     pub mass: Mass,

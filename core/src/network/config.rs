@@ -6,7 +6,7 @@ use crate::measure::MEASURE_COUNT;
 use crate::network::fourier::FourierConfig;
 use crate::{Error, Result};
 
-/// What the condition encoder is given: the 36 measures, standardised, and the sex.
+/// What the condition encoder is given: the measures, standardised, and the sex.
 pub const CONDITION_COUNT: usize = MEASURE_COUNT + 1;
 
 /// The most shape coefficients that a configuration may ask for.

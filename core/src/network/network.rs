@@ -303,7 +303,7 @@ impl Decoder {
     }
 
     /// The coefficients and their derivative with respect to each standardised measure: row i of the
-    /// `36 × K` matrix is d c / d measure i, metres per standard deviation.
+    /// [`MEASURE_COUNT`] `× K` matrix is d c / d measure i, metres per standard deviation.
     pub fn decode_with_jacobian(
         &self,
         measures_standardised: &Measurements,

@@ -7,7 +7,7 @@
 use glam::{Quat, Vec3};
 
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, RigJoint, Skeleton};
 use crate::{Error, Result};
 
 /// Which way the middle joint of a limb points when the limb bends.
@@ -47,12 +47,12 @@ impl Limb {
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
-    pub fn named(rest: &RestPose, names: [&str; 3], bend: Bend) -> Result<Self> {
+    pub fn of(rest: &Skeleton, chain: [RigJoint; 3], bend: Bend) -> Result<Self> {
         let mut joints = [0; 3];
-        for (i, name) in names.iter().enumerate() {
-            joints[i] = rest.require(name)?;
+        for (i, joint) in chain.iter().enumerate() {
+            joints[i] = rest.require_rig_joint(*joint)?;
             if i > 0 && rest.parents()[joints[i]] != Some(joints[i - 1] as u32) {
-                let message = format!("expected joint `{name}` to be a child of `{}`", names[i - 1]);
+                let message = format!("expected joint `{joint}` to be a child of `{}`", chain[i - 1]);
                 return Err(Error::invalid("skeleton", message));
             }
         }
@@ -148,9 +148,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::Side;
+    use crate::skeleton::SidedJoint;
+
+    const LEG: [RigJoint; 3] =
+        [SidedJoint::Thigh.on(Side::Left), SidedJoint::Calf.on(Side::Left), SidedJoint::Foot.on(Side::Left)];
 
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
-    fn leg() -> (RestPose, Limb) {
+    fn leg() -> (Skeleton, Limb) {
         let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
         let local = |rotation, translation| RigidTransform { rotation, translation };
         let locals = vec![
@@ -158,16 +163,16 @@ mod tests {
             local(Quat::IDENTITY, Vec3::Y * 0.5),
             local(Quat::IDENTITY, Vec3::Y * 0.4),
         ];
-        let names = ["thigh_l", "calf_l", "foot_l"];
         let parents = vec![None, Some(0), Some(1)];
-        let rest = RestPose::new(names.map(String::from).to_vec(), parents, locals, vec![None; 3]).unwrap();
-        let limb = Limb::named(&rest, names, Bend::Forwards).unwrap();
+        let names = LEG.map(|joint| joint.name().to_owned()).to_vec();
+        let rest = Skeleton::new(names, parents, locals, vec![None; 3]).unwrap();
+        let limb = Limb::of(&rest, LEG, Bend::Forwards).unwrap();
         (rest, limb)
     }
 
     fn reached(target: Vec3, softness: f32) -> [RigidTransform; 3] {
         let (rest, limb) = leg();
-        let mut pose = rest.pose().clone();
+        let mut pose = rest.rest_pose().clone();
         let target = RigidTransform { rotation: Quat::from_rotation_y(0.3), translation: target };
         limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
         limb.model_from_joints(&pose, RigidTransform::IDENTITY)
@@ -196,11 +201,11 @@ mod tests {
     #[test]
     fn a_missing_joint_is_named() {
         let (rest, _) = leg();
-        let error =
-            Limb::named(&rest, ["thigh_l", "knee", "foot_l"], Bend::Forwards).unwrap_err().to_string();
-        assert!(error.contains("`knee`"), "{error}");
-        let error =
-            Limb::named(&rest, ["thigh_l", "foot_l", "calf_l"], Bend::Forwards).unwrap_err().to_string();
+        let [hip, knee, ankle] = LEG;
+        let refused = |chain| Limb::of(&rest, chain, Bend::Forwards).unwrap_err().to_string();
+        let error = refused([hip, SidedJoint::Calf.on(Side::Right), ankle]);
+        assert!(error.contains("`calf_r`"), "{error}");
+        let error = refused([hip, ankle, knee]);
         assert!(error.contains("`foot_l` to be a child of `thigh_l`"), "{error}");
     }
 
@@ -210,7 +215,7 @@ mod tests {
             x in -1.2f32..1.2, y in -1.2f32..1.2, z in -1.2f32..1.2, bend in -2.0f32..0.2, turn in -1.5f32..1.5,
         ) {
             let (rest, limb) = leg();
-            let mut pose = rest.pose().clone();
+            let mut pose = rest.rest_pose().clone();
             pose.locals[0].rotation *= Quat::from_rotation_z(turn);
             pose.locals[1].rotation *= Quat::from_rotation_x(bend);
             let parent = RigidTransform { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };

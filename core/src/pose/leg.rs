@@ -3,9 +3,9 @@
 use glam::{Quat, Vec3};
 
 use super::ik::{Bend, Limb};
-use crate::Result;
 use crate::math::RigidTransform;
-use crate::skeleton::RestPose;
+use crate::skeleton::{SidedJoint, Skeleton};
+use crate::{Result, Side};
 
 /// How far the heel reaches behind the ankle, in distances from the ankle to the ball: bodies of the model have a
 /// quarter to a third.
@@ -64,14 +64,14 @@ impl Leg {
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) naming a joint that is missing.
-    pub(crate) fn both(rest: &RestPose) -> Result<[Self; 2]> {
-        Ok([Self::named(rest, "l")?, Self::named(rest, "r")?])
+    pub(crate) fn both(rest: &Skeleton) -> Result<[Self; 2]> {
+        Ok([Self::on(rest, Side::Left)?, Self::on(rest, Side::Right)?])
     }
 
-    fn named(rest: &RestPose, side: &str) -> Result<Self> {
-        let names = ["thigh", "calf", "foot"].map(|n| format!("{n}_{side}"));
-        let limb = Limb::named(rest, [&names[0], &names[1], &names[2]], Bend::Forwards)?;
-        let ball = rest.require(&format!("ball_{side}"))?;
+    fn on(rest: &Skeleton, side: Side) -> Result<Self> {
+        let chain = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot].map(|joint| joint.on(side));
+        let limb = Limb::of(rest, chain, Bend::Forwards)?;
+        let ball = rest.require_rig_joint(SidedJoint::Ball.on(side))?;
         let model = rest.model_from_joints();
         let (ankle, joint) = (model[limb.end], model[ball]);
         let forward = (joint.translation - ankle.translation).with_y(0.0);

@@ -17,8 +17,8 @@ use std::f32::consts::{PI, TAU};
 use glam::{Quat, Vec2, Vec3};
 
 use super::SwingTwist;
-use crate::skeleton::humanoid::finger;
-use crate::skeleton::{Pose, RestPose};
+use crate::Side;
+use crate::skeleton::{Pose, RigJoint, SidedJoint, Skeleton};
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
 /// clamping once.
@@ -29,9 +29,8 @@ const PAST_HALF: f32 = 1.05;
 /// How fast a twist goes over to the other end of its range when it must, radians a second (600°): as fast as wrists do.
 const GOING_OVER: f32 = 10.5;
 
-/// A row of the table, degrees, for a joint in the middle or on the left.
-struct Row {
-    name: &'static str,
+/// How far a joint in the middle or on the left may turn, degrees.
+struct Ranges {
     /// About X: least, most.
     x: [f32; 2],
     /// About Z: least, most.
@@ -40,8 +39,8 @@ struct Row {
     twist: [f32; 2],
 }
 
-const fn row(name: &'static str, x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> Row {
-    Row { name, x, z, twist }
+const fn ranges(x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> Option<Ranges> {
+    Some(Ranges { x, z, twist })
 }
 
 /// From the clinical ranges of active motion of the American Academy of Orthopaedic Surgeons (*Joint Motion: Method of
@@ -49,35 +48,49 @@ const fn row(name: &'static str, x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> R
 /// Impairment*), widened to passive range and to what one joint of a motion file does for several of a body; jaw, eyes and
 /// clavicles, of which those say nothing, by eye.
 ///
-/// Joints that are not here (the root, the pelvis, twist joints) turn freely.
-const TABLE: [Row; 24] = [
-    row("spine_01", [-40., 60.], [-40., 40.], [-45., 45.]),
-    row("spine_02", [-40., 60.], [-40., 40.], [-45., 45.]),
-    row("spine_03", [-40., 60.], [-40., 40.], [-45., 45.]),
-    row("neck_01", [-55., 60.], [-45., 45.], [-65., 65.]),
-    row("head", [-55., 60.], [-45., 45.], [-80., 80.]),
-    row("jaw", [-45., 5.], [-15., 15.], [-10., 10.]),
-    row("eye", [-50., 50.], [-55., 55.], [-15., 15.]),
-    row("clavicle", [-35., 45.], [-25., 50.], [-50., 50.]),
-    // From SHOULDER_CENTRE: to across the chest and behind, to overhead and hanging.
-    row("upperarm", [-125., 120.], [-125., 125.], [-125., 125.]),
-    // The palm rests downwards, which is nearly full pronation; it may turn until it faces up and behind.
-    row("lowerarm", [-15., 160.], [-15., 15.], [-170., 60.]),
-    row("hand", [-55., 45.], [-95., 95.], [-170., 60.]),
-    row("thumb_01", [-60., 60.], [-60., 60.], [-60., 60.]),
-    row("thumb_02", [-60., 60.], [-75., 60.], [-30., 30.]),
-    row("thumb_03", [-50., 50.], [-95., 60.], [-30., 30.]),
-    row("index_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
-    row("middle_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
-    row("ring_01", FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
-    row("pinky_01", [-45., 30.], KNUCKLE, FINGER_TWIST),
-    row("finger", [-20., 20.], [-115., 35.], FINGER_TWIST),
-    row("thigh", [-40., 145.], [-50., 90.], [-70., 70.]),
-    row("calf", [-160., 12.], [-15., 15.], [-45., 45.]),
-    row("foot", [-70., 50.], [-45., 45.], [-45., 45.]),
-    row("ball", [-50., 90.], [-25., 25.], [-25., 25.]),
-    row("twist", [-180., 180.], [-180., 180.], [-180., 180.]),
-];
+/// `None` for joints that turn freely: the root, the pelvis, twist joints.
+fn ranges_of(joint: RigJoint) -> Option<Ranges> {
+    match joint {
+        RigJoint::Root | RigJoint::Pelvis => None,
+        RigJoint::Spine01 | RigJoint::Spine02 | RigJoint::Spine03 => {
+            ranges([-40., 60.], [-40., 40.], [-45., 45.])
+        }
+        RigJoint::Neck01 => ranges([-55., 60.], [-45., 45.], [-65., 65.]),
+        RigJoint::Head => ranges([-55., 60.], [-45., 45.], [-80., 80.]),
+        RigJoint::Jaw => ranges([-45., 5.], [-15., 15.], [-10., 10.]),
+        RigJoint::Sided(joint, _) => ranges_of_sided(joint),
+    }
+}
+
+fn ranges_of_sided(joint: SidedJoint) -> Option<Ranges> {
+    use SidedJoint as J;
+    match joint {
+        J::Eye => ranges([-50., 50.], [-55., 55.], [-15., 15.]),
+        J::Clavicle => ranges([-35., 45.], [-25., 50.], [-50., 50.]),
+        // From SHOULDER_CENTRE: to across the chest and behind, to overhead and hanging.
+        J::Upperarm => ranges([-125., 120.], [-125., 125.], [-125., 125.]),
+        // The palm rests downwards, which is nearly full pronation; it may turn until it faces up and behind.
+        J::Lowerarm => ranges([-15., 160.], [-15., 15.], [-170., 60.]),
+        J::Hand => ranges([-55., 45.], [-95., 95.], [-170., 60.]),
+        J::Thumb01 => ranges([-60., 60.], [-60., 60.], [-60., 60.]),
+        J::Thumb02 => ranges([-60., 60.], [-75., 60.], [-30., 30.]),
+        J::Thumb03 => ranges([-50., 50.], [-95., 60.], [-30., 30.]),
+        J::Index01 | J::Middle01 | J::Ring01 => ranges(FINGER_SPREAD, KNUCKLE, FINGER_TWIST),
+        J::Pinky01 => ranges([-45., 30.], KNUCKLE, FINGER_TWIST),
+        J::Index02 | J::Index03 | J::Middle02 | J::Middle03 => {
+            ranges(FINGER_SIDEWAYS, FINGER_CURL, FINGER_TWIST)
+        }
+        J::Ring02 | J::Ring03 | J::Pinky02 | J::Pinky03 => ranges(FINGER_SIDEWAYS, FINGER_CURL, FINGER_TWIST),
+        J::Thigh => ranges([-40., 145.], [-50., 90.], [-70., 70.]),
+        J::Calf => ranges([-160., 12.], [-15., 15.], [-45., 45.]),
+        J::Foot => ranges([-70., 50.], [-45., 45.], [-45., 45.]),
+        J::Ball => ranges([-50., 90.], [-25., 25.], [-25., 25.]),
+        J::UpperarmTwist01 | J::UpperarmTwist02 | J::LowerarmTwist01 | J::LowerarmTwist02 => None,
+        J::ThighTwist01 | J::CalfTwist01 => None,
+    }
+}
+const FINGER_SIDEWAYS: [f32; 2] = [-20., 20.];
+const FINGER_CURL: [f32; 2] = [-115., 35.];
 const FINGER_SPREAD: [f32; 2] = [-30., 30.];
 const KNUCKLE: [f32; 2] = [-100., 60.];
 const FINGER_TWIST: [f32; 2] = [-30., 30.];
@@ -137,23 +150,19 @@ impl JointLimit {
         }
     }
 
-    /// The limit of a joint by its name in our rig; `None` when it turns freely.
-    fn named(name: &str) -> Option<Self> {
-        let (base, right) = match name.strip_suffix("_r") {
-            Some(base) => (base, true),
-            None => (name.strip_suffix("_l").unwrap_or(name), false),
-        };
-        let key = if let Some((1.., 2..)) = finger(name) { "finger" } else { base };
-        let row = TABLE.iter().find(|row| row.name == key)?;
+    /// The limit of a joint of our rig; `None` when it turns freely.
+    fn of(joint: RigJoint) -> Option<Self> {
+        let Ranges { x, z, twist } = ranges_of(joint)?;
         let range = |r: [f32; 2]| r.map(f32::to_radians);
-        let (centre, cone) = match key {
-            "upperarm" => (Vec2::from(SHOULDER_CENTRE.map(f32::to_radians)), SHOULDER_CONE.to_radians()),
-            "thigh" => (Vec2::ZERO, HIP_CONE.to_radians()),
+        let (centre, cone) = match joint.sided() {
+            Some(SidedJoint::Upperarm) => {
+                (Vec2::from(SHOULDER_CENTRE.map(f32::to_radians)), SHOULDER_CONE.to_radians())
+            }
+            Some(SidedJoint::Thigh) => (Vec2::ZERO, HIP_CONE.to_radians()),
             _ => (Vec2::ZERO, PI),
         };
-        let limit =
-            Self { centre, swing_x: range(row.x), swing_z: range(row.z), cone, twist: range(row.twist) };
-        Some(if right { limit.mirrored() } else { limit })
+        let limit = Self { centre, swing_x: range(x), swing_z: range(z), cone, twist: range(twist) };
+        Some(if joint.side() == Some(Side::Right) { limit.mirrored() } else { limit })
     }
 }
 
@@ -205,8 +214,8 @@ pub struct JointLimits {
 
 impl JointLimits {
     /// Those of the joints that bear our rig's names; joints of other names turn freely.
-    pub fn of_rig(rest: &RestPose) -> Self {
-        Self { limits: rest.names().iter().map(|name| JointLimit::named(name)).collect() }
+    pub fn of_rig(rest: &Skeleton) -> Self {
+        Self { limits: rest.rig_joints().map(|joint| JointLimit::of(joint?)).collect() }
     }
 
     /// The same limits, each `by` radians wider in every direction.
@@ -227,7 +236,7 @@ impl JointLimits {
 
     /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
     /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
-    pub fn clamp(&self, rest: &RestPose, pose: &mut Pose) {
+    pub fn clamp(&self, rest: &Skeleton, pose: &mut Pose) {
         for joint in 0..self.limits.len() {
             self.clamp_joint(rest, pose, joint);
         }
@@ -235,20 +244,20 @@ impl JointLimits {
 
     /// As [`clamp`](Self::clamp), frame after frame of a clip: a joint that twists on past half a turn from the middle
     /// of its range stays at the end that it left by, and goes over to the other in time, instead of jumping to and fro.
-    pub fn clamp_after(&self, rest: &RestPose, pose: &mut Pose, before: &mut TwistsBefore) {
+    pub fn clamp_after(&self, rest: &Skeleton, pose: &mut Pose, before: &mut TwistsBefore) {
         for (joint, before) in before.0.iter_mut().enumerate() {
             self.clamp_one(rest, pose, joint, before);
         }
     }
 
     /// Brings one joint within its limits; whether it had to be moved.
-    pub fn clamp_joint(&self, rest: &RestPose, pose: &mut Pose, joint: usize) -> bool {
+    pub fn clamp_joint(&self, rest: &Skeleton, pose: &mut Pose, joint: usize) -> bool {
         self.clamp_one(rest, pose, joint, &mut TwistBefore::default())
     }
 
-    fn clamp_one(&self, rest: &RestPose, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
+    fn clamp_one(&self, rest: &Skeleton, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
-            (self.get(joint), rest.pose().locals.get(joint), pose.locals.get_mut(joint))
+            (self.get(joint), rest.rest_pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
             return false;
         };
@@ -260,8 +269,8 @@ impl JointLimits {
     }
 
     /// Radians beyond the limit, a joint each: 0 within.
-    pub fn excess(&self, rest: &RestPose, pose: &Pose) -> Vec<f32> {
-        let from_rest = rest.pose().locals.iter().zip(&pose.locals);
+    pub fn excess(&self, rest: &Skeleton, pose: &Pose) -> Vec<f32> {
+        let from_rest = rest.rest_pose().locals.iter().zip(&pose.locals);
         self.limits
             .iter()
             .zip(from_rest)

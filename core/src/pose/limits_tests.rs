@@ -14,17 +14,17 @@ const NAMES: [&str; 8] = [
     "index_02_r",
 ];
 
-fn rest() -> RestPose {
+fn rest() -> Skeleton {
     let turned = RigidTransform { rotation: Quat::from_rotation_x(0.4), translation: Vec3::Y };
     let names = NAMES.map(String::from).to_vec();
     let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
-    RestPose::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
+    Skeleton::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
 }
 
 /// Degrees beyond the limit when one joint is turned from rest about its own axes.
 fn beyond(joint: &str, x: f32, y: f32, z: f32) -> f32 {
     let rest = rest();
-    let mut pose = rest.pose().clone();
+    let mut pose = rest.rest_pose().clone();
     let turn = Vec3::new(x, y, z).map(f32::to_radians);
     pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_scaled_axis(turn);
     JointLimits::of_rig(&rest).excess(&rest, &pose).into_iter().sum::<f32>().to_degrees()
@@ -66,11 +66,11 @@ fn kept(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
     let mut before = TwistsBefore::first(&limits, 30.0);
     let joint = rest.find("lowerarm_l").unwrap();
     let frame = |twist: f32| {
-        let mut pose = rest.pose().clone();
+        let mut pose = rest.rest_pose().clone();
         pose.locals[joint].rotation *= Quat::from_rotation_y(twist.to_radians());
         limits.clamp_after(&rest, &mut pose, &mut before);
         assert!(limits.excess(&rest, &pose).iter().all(|e| *e == 0.0));
-        let kept = rest.pose().locals[joint].rotation.conjugate() * pose.locals[joint].rotation;
+        let kept = rest.rest_pose().locals[joint].rotation.conjugate() * pose.locals[joint].rotation;
         SwingTwist::of(kept).twist.to_degrees()
     };
     twists.into_iter().map(frame).collect()
@@ -101,7 +101,7 @@ proptest! {
     ) {
         let rest = rest();
         let limits = JointLimits::of_rig(&rest);
-        let mut pose = rest.pose().clone();
+        let mut pose = rest.rest_pose().clone();
         for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(turns) {
             let turn = Quat::from_xyzw(x, y, z, w);
             prop_assume!(turn.length_squared() > 1e-3);
@@ -129,7 +129,7 @@ proptest! {
         let rest = rest();
         let limits = JointLimits::of_rig(&rest);
         let clamped = |v: Vec2, twist: f32, joint: usize| {
-            let mut pose = rest.pose().clone();
+            let mut pose = rest.rest_pose().clone();
             pose.locals[joint].rotation *= SwingTwist { swing: v, twist }.rotation();
             limits.clamp(&rest, &mut pose);
             pose.locals[joint].rotation

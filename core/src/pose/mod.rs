@@ -1,5 +1,5 @@
 //! What joints do: inverse kinematics, joint limits, swing and twist, the leg and its sole; on poses of a
-//! [`RestPose`](crate::skeleton::RestPose).
+//! [`Skeleton`](crate::skeleton::Skeleton).
 
 pub mod ik;
 mod leg;

@@ -51,14 +51,13 @@ impl Scene {
     /// # Errors
     /// [`Error::Request`] when the number of influences is neither 4 nor 8.
     pub fn from_body(body: &Body, options: &SceneOptions) -> Result<Self> {
-        let joints = body
-            .joints()
-            .iter()
-            .map(|joint| SceneJoint {
-                name: renamed(&joint.name, options.joint_names).into_owned(),
-                parent: joint.parent,
-                model_from_joint: joint.model_from_joint,
-                bone_length: Some(joint.length),
+        let skeleton = body.skeleton();
+        let joints = (skeleton.names().iter().zip(skeleton.parents()).zip(skeleton.bind()).enumerate())
+            .map(|(j, ((name, parent), bind))| SceneJoint {
+                name: renamed(name, options.joint_names).into_owned(),
+                parent: *parent,
+                model_from_joint: *bind,
+                bone_length: skeleton.bone_length(j),
             })
             .collect();
         let mut meshes = vec![body_mesh(body, options)?];

@@ -5,14 +5,14 @@
 //! grows downwards; writers of formats with v upwards convert with [`flip_v`].
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
 use super::titles::Titles;
 use crate::clip::Clip;
 use crate::scene::SkinTone;
-use crate::skeleton::Joint;
-use crate::skeleton::RestPose;
+use crate::skeleton::{JointTree, Skeleton};
 use crate::{Error, Result};
 
 /// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
@@ -242,40 +242,33 @@ impl Scene {
         unique("joint", self.joints.iter().map(|j| j.name.as_str()))
     }
 
-    /// The joints at rest, under the names that `name` makes of theirs: what clips for this scene rest in.
+    /// The joints as a skeleton, under the names that `name` makes of theirs: what clips for this scene rest in.
+    ///
+    /// Characters of others do not say where a bone ends: it is taken to be at the farthest of the joints that stand on its
+    /// axis, if there are any.
     ///
     /// # Errors
-    /// As [`RestPose::new`].
-    pub fn rest_pose(&self, name: impl Fn(&str) -> String) -> Result<RestPose> {
-        let joints: Vec<Joint> = self
-            .joints
-            .iter()
-            .map(|joint| Joint {
-                name: name(&joint.name),
-                parent: joint.parent,
-                model_from_joint: joint.model_from_joint,
-                length: joint.bone_length.unwrap_or(0.0),
-            })
-            .collect();
-        let rest = RestPose::of_joints(&joints)?;
-        if self.joints.iter().all(|joint| joint.bone_length.is_some()) {
-            return Ok(rest);
+    /// As [`Skeleton::new`].
+    pub fn skeleton(&self, name: impl Fn(&str) -> String) -> Result<Skeleton> {
+        let names = self.joints.iter().map(|joint| name(&joint.name)).collect();
+        let tree = JointTree::new(names, self.joints.iter().map(|joint| joint.parent).collect())?;
+        let bind = self.joints.iter().map(|joint| joint.model_from_joint).collect();
+        let mut lengths: Vec<Option<f32>> = self.joints.iter().map(|joint| joint.bone_length).collect();
+        let skeleton = Skeleton::from_bind(Arc::new(tree), bind, lengths.clone())?;
+        if lengths.iter().all(Option::is_some) {
+            return Ok(skeleton);
         }
-        // Characters of others do not say where a bone ends: at the farthest of the joints that stand on its axis, if there
-        // are any.
-        let mut ends: Vec<Option<Vec3>> =
-            self.joints.iter().map(|joint| joint.bone_length.map(|length| Vec3::Y * length)).collect();
-        for (parent, local) in rest.parents().iter().zip(&rest.pose().locals) {
+        for (parent, local) in skeleton.parents().iter().zip(&skeleton.rest_pose().locals) {
             let at = local.translation;
             let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
             if let (Some(parent), true) = (*parent, on_axis)
                 && self.joints[parent as usize].bone_length.is_none()
             {
-                let end = &mut ends[parent as usize];
-                *end = Some(Vec3::Y * end.map_or(at.y, |e| e.y.max(at.y)));
+                let length = &mut lengths[parent as usize];
+                *length = Some(length.map_or(at.y, |l| l.max(at.y)));
             }
         }
-        RestPose::new(rest.names().to_vec(), rest.parents().to_vec(), rest.pose().locals.clone(), ends)
+        Skeleton::from_bind(skeleton.tree().clone(), skeleton.bind().to_vec(), lengths)
     }
 
     /// Adds a motion. Its name loses control characters, and gets a number behind it where another has it already.
@@ -288,7 +281,7 @@ impl Scene {
         for clip in &self.clips {
             let fault =
                 |message: String| Err(Error::invalid("clip", format!("`{}`: {message}", clip.name())));
-            let rest = clip.rest();
+            let rest = clip.skeleton();
             if !rest.parents().iter().eq(self.joints.iter().map(|j| &j.parent)) {
                 let (got, expected) = (rest.len(), self.joints.len());
                 return fault(format!("its {got} joints are not the {expected} of the scene"));
@@ -531,7 +524,7 @@ mod tests {
         for joint in &mut scene.joints {
             joint.bone_length = None;
         }
-        let ends = |scene: &Scene| scene.rest_pose(str::to_owned).unwrap().ends().to_vec();
+        let ends = |scene: &Scene| scene.skeleton(str::to_owned).unwrap().ends().to_vec();
         assert_eq!(ends(&scene), [Some(Vec3::Y * 0.3), None, None]);
         scene.joints[0].bone_length = Some(0.25);
         scene.joints[2].bone_length = Some(0.1);

@@ -1,7 +1,6 @@
 //! What other programs call the joints of the rig.
 //!
-//! The native rig is MakeHuman's `game_engine` rig (Unreal-like names) with eyes, jaw and twist joints. The other
-//! vocabularies are:
+//! The rows are those of [`RigJoint`]'s table. The vocabularies besides the rig's own are:
 //! - **Unity**: `HumanBodyBones` of the Unity scripting reference; with spaces they are `HumanTrait.BoneName`.
 //! - **VRM**: `humanoid.humanBones` of VRMC_vrm 1.0, whose thumbs are metacarpal, proximal, distal.
 //! - **Mixamo**: the names in files from mixamo.com, `mixamorig:` included.
@@ -11,7 +10,8 @@
 
 use std::{borrow::Cow, collections::BTreeMap, str::FromStr, sync::LazyLock};
 
-use crate::{Error, Result};
+use super::rig_joint::{Bone, CENTRAL, Names, RigJoint, SIDED};
+use crate::{Error, Result, Side};
 
 /// The vocabulary that a file's joints are named in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +59,8 @@ impl FromStr for JointNames {
 /// A joint of the rig that is a bone of the standard humanoid, with its name in every vocabulary.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HumanoidBone {
+    /// The joint of the rig.
+    pub joint: RigJoint,
     /// Name in the rig.
     pub native: String,
     /// Member of Unity's `HumanBodyBones`.
@@ -75,68 +77,13 @@ pub struct HumanoidBone {
     pub required: bool,
 }
 
-/// A row of a table: native, Unity, Mixamo, VRM, Blender. In the tables of sides each name is completed by its side.
-type Row = [&'static str; 5];
-
-/// Bones in the middle that Unity and VRM require.
-const CENTRAL_REQUIRED: [Row; 3] = [
-    ["pelvis", "Hips", "Hips", "hips", "hips"],
-    ["spine_01", "Spine", "Spine", "spine", "spine"],
-    ["head", "Head", "Head", "head", "head"],
-];
-
-const CENTRAL_OPTIONAL: [Row; 4] = [
-    ["spine_02", "Chest", "Spine1", "chest", "chest"],
-    ["spine_03", "UpperChest", "Spine2", "upperChest", "upper_chest"],
-    ["neck_01", "Neck", "Neck", "neck", "neck"],
-    ["jaw", "Jaw", "Jaw", "jaw", "jaw"],
-];
-
-const SIDED_REQUIRED: [Row; 6] = [
-    ["upperarm", "UpperArm", "Arm", "UpperArm", "upper_arm"],
-    ["lowerarm", "LowerArm", "ForeArm", "LowerArm", "forearm"],
-    ["hand", "Hand", "Hand", "Hand", "hand"],
-    ["thigh", "UpperLeg", "UpLeg", "UpperLeg", "thigh"],
-    ["calf", "LowerLeg", "Leg", "LowerLeg", "shin"],
-    ["foot", "Foot", "Foot", "Foot", "foot"],
-];
-
-const SIDED_OPTIONAL: [Row; 18] = [
-    ["clavicle", "Shoulder", "Shoulder", "Shoulder", "shoulder"],
-    ["ball", "Toes", "ToeBase", "Toes", "toe"],
-    ["eye", "Eye", "Eye", "Eye", "eye"],
-    ["thumb_01", "ThumbProximal", "HandThumb1", "ThumbMetacarpal", "thumb.01"],
-    ["thumb_02", "ThumbIntermediate", "HandThumb2", "ThumbProximal", "thumb.02"],
-    ["thumb_03", "ThumbDistal", "HandThumb3", "ThumbDistal", "thumb.03"],
-    ["index_01", "IndexProximal", "HandIndex1", "IndexProximal", "f_index.01"],
-    ["index_02", "IndexIntermediate", "HandIndex2", "IndexIntermediate", "f_index.02"],
-    ["index_03", "IndexDistal", "HandIndex3", "IndexDistal", "f_index.03"],
-    ["middle_01", "MiddleProximal", "HandMiddle1", "MiddleProximal", "f_middle.01"],
-    ["middle_02", "MiddleIntermediate", "HandMiddle2", "MiddleIntermediate", "f_middle.02"],
-    ["middle_03", "MiddleDistal", "HandMiddle3", "MiddleDistal", "f_middle.03"],
-    ["ring_01", "RingProximal", "HandRing1", "RingProximal", "f_ring.01"],
-    ["ring_02", "RingIntermediate", "HandRing2", "RingIntermediate", "f_ring.02"],
-    ["ring_03", "RingDistal", "HandRing3", "RingDistal", "f_ring.03"],
-    ["pinky_01", "LittleProximal", "HandPinky1", "LittleProximal", "f_pinky.01"],
-    ["pinky_02", "LittleIntermediate", "HandPinky2", "LittleIntermediate", "f_pinky.02"],
-    ["pinky_03", "LittleDistal", "HandPinky3", "LittleDistal", "f_pinky.03"],
-];
-
-/// Not humanoid bones, sided.
-const SIDED_HELPERS: [Row; 6] = [
-    ["upperarm_twist_01", "UpperArmTwist1", "ArmTwist1", "UpperArmTwist1", "upper_arm_twist.01"],
-    ["upperarm_twist_02", "UpperArmTwist2", "ArmTwist2", "UpperArmTwist2", "upper_arm_twist.02"],
-    ["lowerarm_twist_01", "LowerArmTwist1", "ForeArmTwist1", "LowerArmTwist1", "forearm_twist.01"],
-    ["lowerarm_twist_02", "LowerArmTwist2", "ForeArmTwist2", "LowerArmTwist2", "forearm_twist.02"],
-    ["thigh_twist_01", "UpperLegTwist1", "UpLegTwist1", "UpperLegTwist1", "thigh_twist.01"],
-    ["calf_twist_01", "LowerLegTwist1", "LegTwist1", "LowerLegTwist1", "shin_twist.01"],
-];
-
-/// The rig's root, on the ground, above which no vocabulary has a bone.
-const ROOT: Row = ["Root", "Root", "Root", "root", "root"];
-
 /// Endings and beginnings of a side: native, Unity, Mixamo, VRM, Blender.
-const SIDES: [Row; 2] = [["_l", "Left", "Left", "left", ".L"], ["_r", "Right", "Right", "right", ".R"]];
+fn affixes(side: Side) -> Names {
+    match side {
+        Side::Left => [side.joint_suffix(), "Left", "Left", "left", ".L"],
+        Side::Right => [side.joint_suffix(), "Right", "Right", "right", ".R"],
+    }
+}
 
 const UNITY_FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
 
@@ -149,31 +96,30 @@ struct Table {
 
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let mut table = Table { bones: Vec::new(), names: BTreeMap::new() };
-    for (rows, required) in [(&CENTRAL_REQUIRED[..], true), (&CENTRAL_OPTIONAL, false)] {
-        table.bones.extend(rows.iter().map(|row| bone(central(row), required)));
-    }
-    for side in &SIDES {
-        for (rows, required) in [(&SIDED_REQUIRED[..], true), (&SIDED_OPTIONAL, false)] {
-            table.bones.extend(rows.iter().map(|row| bone(sided(row, side), required)));
+    let mut add = |rows: Vec<(RigJoint, [String; 5], Bone)>| {
+        for wanted in [Bone::Required, Bone::Optional] {
+            let rows = rows.iter().filter(|row| row.2 == wanted);
+            table
+                .bones
+                .extend(rows.map(|(joint, names, _)| bone(*joint, names.clone(), wanted == Bone::Required)));
         }
+        table.names.extend(rows.into_iter().map(|(joint, names, _)| (joint.name().to_owned(), names)));
+    };
+    add(CENTRAL.iter().map(|(joint, row, bone)| (*joint, central(row), *bone)).collect());
+    for side in Side::ALL {
+        add(SIDED.iter().map(|(joint, row, bone)| (joint.on(side), sided(row, side), *bone)).collect());
     }
-    let helpers = SIDES.iter().flat_map(|side| SIDED_HELPERS.iter().map(move |row| sided(row, side)));
-    let bones = table.bones.iter().map(|bone| {
-        let HumanoidBone { native, unity, mixamo, vrm, blender, .. } = bone.clone();
-        [native, unity, mixamo, vrm, blender]
-    });
-    table.names =
-        bones.chain(helpers).chain([central(&ROOT)]).map(|names| (names[0].clone(), names)).collect();
     table
 });
 
-fn central(row: &Row) -> [String; 5] {
+fn central(row: &Names) -> [String; 5] {
     let [native, unity, mixamo, vrm, blender] = row.map(str::to_owned);
     [native, unity, format!("mixamorig:{mixamo}"), vrm, blender]
 }
 
-fn sided(row: &Row, side: &Row) -> [String; 5] {
+fn sided(row: &Names, side: Side) -> [String; 5] {
     let [native, unity, mixamo, vrm, blender] = row;
+    let side = affixes(side);
     [
         format!("{native}{}", side[0]),
         format!("{}{unity}", side[1]),
@@ -183,21 +129,10 @@ fn sided(row: &Row, side: &Row) -> [String; 5] {
     ]
 }
 
-fn bone([native, unity, mixamo, vrm, blender]: [String; 5], required: bool) -> HumanoidBone {
+fn bone(joint: RigJoint, [native, unity, mixamo, vrm, blender]: [String; 5], required: bool) -> HumanoidBone {
     let finger = UNITY_FINGERS.iter().find(|finger| unity.contains(*finger));
     let unity_trait = finger.map_or(unity.clone(), |finger| unity.replace(finger, &format!(" {finger} ")));
-    HumanoidBone { native, unity, unity_trait, mixamo, vrm, blender, required }
-}
-
-/// The fingers of the rig. Each has three joints a side, numbered from the palm outwards: `index_02_l`.
-pub const FINGERS: [&str; 5] = ["thumb", "index", "middle", "ring", "pinky"];
-
-/// Finger, its place in [`FINGERS`], and number, 1 to 3, of a joint of the rig such as `index_02_l`.
-pub fn finger(native: &str) -> Option<(usize, usize)> {
-    let stem = native.strip_suffix("_l").or_else(|| native.strip_suffix("_r"))?;
-    let (finger, number) = stem.rsplit_once("_0")?;
-    let finger = FINGERS.iter().position(|name| *name == finger)?;
-    Some((finger, number.parse().ok().filter(|n| (1..=3).contains(n))?))
+    HumanoidBone { joint, native, unity, unity_trait, mixamo, vrm, blender, required }
 }
 
 /// The humanoid bones of the rig: the seven in the middle, then 24 a side, the left first.

@@ -1,227 +1,239 @@
-//! Joints: hierarchy, which is the same for everybody, and bind pose, which is a body's own.
-//!
-//! A joint's +Y axis runs along its bone, from the joint to its far end, as Blender's bones do. Its +Z axis leans
-//! towards the front of the body (upwards for feet, eyes and jaw, which point forwards), so that left and right
-//! are mirror images and a limb bends on one axis.
+//! A skeleton: a joint hierarchy, and the pose it rests in.
 
-use glam::{Affine3A, Mat3, Vec3};
+use std::sync::Arc;
 
-use super::written::settle;
+use glam::{Affine3A, Quat, Vec3};
+
+use super::{JointTree, Pose, model_from_joints};
+use crate::math::{RigidTransform, unit};
 use crate::{Error, Result};
 
-/// The hierarchy.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A joint hierarchy in the pose it rests in: of a body, of a character file, or of a motion file.
+///
+/// | What | Per joint | Space |
+/// |---|---|---|
+/// | [`rest_pose`](Self::rest_pose) | rotation and translation, `parent_from_joint` | parent; metres |
+/// | [`bind`](Self::bind) | matrix `model_from_joint` without scale, whose inverse files hold | model; metres |
+/// | [`ends`](Self::ends) | where the bone ends, if anything says so | joint; metres |
+#[derive(Clone, Debug)]
 pub struct Skeleton {
-    names: Vec<String>,
-    parents: Vec<Option<u32>>,
+    tree: Arc<JointTree>,
+    rest_pose: Pose,
+    bind: Vec<Affine3A>,
+    ends: Vec<Option<Vec3>>,
 }
 
-/// One joint of a body in its bind pose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
-    /// Name, UE-like: `upperarm_l`.
-    pub name: String,
-    /// Parent; parents come first.
-    pub parent: Option<u32>,
-    /// Bind pose: joint space to model space, rotation and translation, metres.
-    pub model_from_joint: Affine3A,
-    /// Length of the bone, metres.
-    pub length: f32,
-}
-
-/// Where a body's joints begin and end, metres.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SkeletonShape {
-    /// One place per joint.
-    pub heads: Vec<Vec3>,
-    /// The far ends of the bones.
-    pub tails: Vec<Vec3>,
-}
-
-impl SkeletonShape {
-    /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
-    /// micrometres off it: the T-pose is exact.
-    pub fn straighten(&mut self, skeleton: &Skeleton) {
-        for side in ["l", "r"] {
-            let Some(shoulder) = skeleton.find(&format!("upperarm_{side}")) else { continue };
-            let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
-            let own = format!("_{side}");
-            for (j, name) in skeleton.names().iter().enumerate() {
-                let of_arm = name.ends_with(&own)
-                    && ["upperarm", "lowerarm", "hand"].iter().any(|part| name.starts_with(part));
-                if !of_arm {
-                    continue;
-                }
-                self.heads[j] = self.heads[j].with_y(y).with_z(z);
-                if !name.starts_with("hand") {
-                    self.tails[j] = self.tails[j].with_y(y).with_z(z);
-                }
-            }
-        }
+/// The bind matrices are left out: they are the rest pose once more, and one that was read of a file differs from one that
+/// was multiplied out in its last bits.
+impl PartialEq for Skeleton {
+    fn eq(&self, other: &Self) -> bool {
+        self.tree == other.tree && self.rest_pose == other.rest_pose && self.ends == other.ends
     }
 }
 
 impl Skeleton {
-    /// A hierarchy from names and parents.
+    /// From parts, one entry per joint. `ends` are the far ends of bones in joint space, metres, where something says
+    /// so: end sites of BVH, bone lengths of our rig. Several joints may have no parent.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when a parent does not come first, a name is empty or appears twice, or there is not
-    /// exactly one root.
-    pub fn new(names: Vec<String>, parents: Vec<Option<u32>>) -> Result<Self> {
-        let fail = |message: String| Err(Error::invalid("skeleton", message));
-        if names.len() != parents.len() || names.is_empty() {
-            return fail(format!("{} names for {} parents", names.len(), parents.len()));
-        }
-        for (j, (name, parent)) in names.iter().zip(&parents).enumerate() {
-            if name.is_empty() || names[..j].contains(name) {
-                return fail(format!("joint {j}: name `{name}` is empty or taken"));
-            }
-            if parent.map_or(j != 0, |p| p as usize >= j) {
-                return fail(format!("joint {name}: parent {parent:?} does not come before {j}"));
-            }
-        }
-        Ok(Self { names, parents })
+    /// As [`JointTree::new`]; [`Error::Invalid`] when the lengths differ or a number is not finite. Rotations are
+    /// normalised.
+    pub fn new(
+        names: Vec<String>,
+        parents: Vec<Option<u32>>,
+        locals: Vec<RigidTransform>,
+        ends: Vec<Option<Vec3>>,
+    ) -> Result<Self> {
+        Self::from_rest_pose(Arc::new(JointTree::new(names, parents)?), locals, ends)
+    }
+
+    /// As [`new`](Self::new), for a hierarchy that is there already.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_rest_pose(
+        tree: Arc<JointTree>,
+        locals: Vec<RigidTransform>,
+        ends: Vec<Option<Vec3>>,
+    ) -> Result<Self> {
+        let (locals, ends) = checked(&tree, locals, ends)?;
+        let mut model = Vec::new();
+        model_from_joints(tree.parents(), &locals, &mut model);
+        let bind = model.into_iter().map(RigidTransform::to_affine).collect();
+        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
+    }
+
+    /// From the bind pose, `model_from_joint` without scale, metres, which is the pose it rests in; `bone_lengths` are how
+    /// far bones reach along their joints' +Y axes, metres, where that is known.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_bind(
+        tree: Arc<JointTree>,
+        bind: Vec<Affine3A>,
+        bone_lengths: Vec<Option<f32>>,
+    ) -> Result<Self> {
+        let model: Vec<RigidTransform> = bind
+            .iter()
+            .map(|model_from_joint| {
+                let (_, rotation, translation) = model_from_joint.to_scale_rotation_translation();
+                RigidTransform { rotation, translation }
+            })
+            .collect();
+        let local = |(&joint, parent): (&RigidTransform, &Option<u32>)| match parent
+            .and_then(|p| model.get(p as usize))
+        {
+            Some(parent) => parent.inverse().then(joint),
+            None => joint,
+        };
+        let locals = model.iter().zip(tree.parents()).map(local).collect();
+        let ends = bone_lengths.into_iter().map(|length| length.map(|length| Vec3::Y * length)).collect();
+        let (locals, ends) = checked(&tree, locals, ends)?;
+        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
+    }
+
+    /// Names and parents.
+    pub fn tree(&self) -> &Arc<JointTree> {
+        &self.tree
     }
 
     /// Number of joints.
     pub fn len(&self) -> usize {
-        self.names.len()
+        self.tree.len()
     }
 
     /// A skeleton is never empty.
     pub fn is_empty(&self) -> bool {
-        self.names.is_empty()
+        self.tree.is_empty()
     }
 
-    /// Names, parents first.
+    /// Names, unique.
     pub fn names(&self) -> &[String] {
-        &self.names
+        self.tree.names()
     }
 
-    /// Parents; only the first joint has none.
+    /// Parents, which stand before their joints.
     pub fn parents(&self) -> &[Option<u32>] {
-        &self.parents
+        self.tree.parents()
     }
 
     /// The joint with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|n| n == name)
+        self.tree.find(name)
     }
 
-    /// The bind pose of a body, rounded to what a file gives back of it.
+    /// The joint with this name, which has to be there.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the shape has another number of joints.
-    pub fn bind(&self, shape: &SkeletonShape) -> Result<Vec<Joint>> {
-        if shape.heads.len() != self.len() || shape.tails.len() != self.len() {
-            return Err(Error::invalid(
-                "skeleton shape",
-                format!(
-                    "expected {} joints, got {} and {}",
-                    self.len(),
-                    shape.heads.len(),
-                    shape.tails.len()
-                ),
-            ));
-        }
-        let mut joints: Vec<Joint> = (0..self.len())
-            .map(|j| {
-                let bone = shape.tails[j] - shape.heads[j];
-                let rotation = if self.parents[j].is_none() {
-                    Mat3::IDENTITY
-                } else {
-                    orientation(bone, leaning(&self.names[j]))
-                };
-                Joint {
-                    name: self.names[j].clone(),
-                    parent: self.parents[j],
-                    model_from_joint: Affine3A::from_mat3_translation(rotation, shape.heads[j]),
-                    length: bone.length(),
-                }
-            })
-            .collect();
-        settle(&mut joints);
-        Ok(joints)
+    /// [`Error::Invalid`] naming the joint that is missing.
+    pub fn require(&self, name: &str) -> Result<usize> {
+        self.tree.require(name)
+    }
+
+    /// The pose at rest: `parent_from_joint` of each joint, metres.
+    pub fn rest_pose(&self) -> &Pose {
+        &self.rest_pose
+    }
+
+    /// The rotations at rest, `parent_from_joint`.
+    pub fn rest_rotations(&self) -> impl Iterator<Item = Quat> + '_ {
+        self.rest_pose.locals.iter().map(|l| l.rotation)
+    }
+
+    /// Far ends of bones in joint space, metres, where they are known.
+    pub fn ends(&self) -> &[Option<Vec3>] {
+        &self.ends
+    }
+
+    /// How far a joint's bone reaches, metres, where that is known.
+    pub fn bone_length(&self, joint: usize) -> Option<f32> {
+        self.ends.get(joint)?.map(|end| if end.x == 0.0 && end.z == 0.0 { end.y } else { end.length() })
+    }
+
+    /// The bind pose: the matrix `model_from_joint` of each joint, without scale, metres. It is the rest pose, as exact as
+    /// a file has it, where [`model_from_joints`](Self::model_from_joints) rounds at every joint of a chain.
+    pub fn bind(&self) -> &[Affine3A] {
+        &self.bind
+    }
+
+    /// Where the joints rest, by forward kinematics: `model_from_joint`.
+    pub fn model_from_joints(&self) -> Vec<RigidTransform> {
+        self.rest_pose.model_from_joints(self.parents())
     }
 }
 
-/// Where a joint's +Z axis leans to.
-fn leaning(name: &str) -> Vec3 {
-    let forward_pointing = ["foot", "ball", "eye", "jaw"];
-    if forward_pointing.iter().any(|part| name.starts_with(part)) { Vec3::Y } else { Vec3::Z }
-}
-
-fn orientation(bone: Vec3, lean: Vec3) -> Mat3 {
-    let y = bone.try_normalize().unwrap_or(Vec3::Y);
-    let off_axis = |v: Vec3| (v - y * v.dot(y)).try_normalize();
-    // A bone along its own leaning direction takes the next axis.
-    let z =
-        if y.dot(lean).abs() < 0.99 { off_axis(lean) } else { off_axis(Vec3::new(lean.z, lean.x, lean.y)) }
-            .unwrap_or(Vec3::Z);
-    Mat3::from_cols(y.cross(z), y, z)
+/// Checks what stands beside a hierarchy, and brings rotations to unit length.
+#[expect(clippy::type_complexity, reason = "the two arguments that it was given")]
+fn checked(
+    tree: &JointTree,
+    mut locals: Vec<RigidTransform>,
+    ends: Vec<Option<Vec3>>,
+) -> Result<(Vec<RigidTransform>, Vec<Option<Vec3>>)> {
+    let fail = |message: String| Err(Error::invalid("skeleton", message));
+    let count = tree.len();
+    if [locals.len(), ends.len()] != [count; 2] {
+        let lengths = [locals.len(), ends.len()];
+        return fail(format!("{count} names with {lengths:?} transforms, ends"));
+    }
+    for ((name, local), end) in tree.names().iter().zip(&mut locals).zip(&ends) {
+        let end = end.unwrap_or(Vec3::ZERO);
+        if !(local.translation.is_finite() && end.is_finite() && local.rotation.is_finite()) {
+            return fail(format!("joint `{name}`: rest pose is not finite"));
+        }
+        if local.rotation.length_squared() < 1e-12 {
+            return fail(format!("joint `{name}`: rest rotation is zero"));
+        }
+        local.rotation = unit(local.rotation);
+    }
+    Ok((locals, ends))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn arm() -> (Skeleton, SkeletonShape) {
-        let names = ["Root", "upperarm_l", "upperarm_r", "foot_l"].map(String::from).to_vec();
-        let skeleton = Skeleton::new(names, vec![None, Some(0), Some(0), Some(0)]).unwrap();
-        let shape = SkeletonShape {
-            heads: vec![
-                Vec3::ZERO,
-                Vec3::new(0.2, 1.4, 0.0),
-                Vec3::new(-0.2, 1.4, 0.0),
-                Vec3::new(0.1, 0.1, 0.0),
-            ],
-            tails: vec![
-                Vec3::Y,
-                Vec3::new(0.5, 1.4, 0.0),
-                Vec3::new(-0.5, 1.4, 0.0),
-                Vec3::new(0.1, 0.0, 0.15),
-            ],
-        };
-        (skeleton, shape)
+    type Parts = (Vec<String>, Vec<Option<u32>>, Vec<RigidTransform>, Vec<Option<Vec3>>);
+
+    fn joints() -> Parts {
+        let names = ["hips", "leg"].map(String::from).to_vec();
+        (names, vec![None, Some(0)], vec![RigidTransform::IDENTITY; 2], vec![None; 2])
     }
 
     #[test]
-    fn bones_lie_along_y_and_sides_mirror() {
-        let (skeleton, shape) = arm();
-        let joints = skeleton.bind(&shape).unwrap();
-        for (j, joint) in joints.iter().enumerate() {
-            let m = joint.model_from_joint.matrix3;
-            assert!((m.determinant() - 1.0).abs() < 1e-5);
-            let tip = joint.model_from_joint.transform_point3(Vec3::Y * joint.length);
-            if j > 0 {
-                assert!((tip - shape.tails[j]).length() < 1e-6, "{} {tip}", joint.name);
-            }
+    fn names_what_is_wrong() {
+        type Case = (&'static str, fn(&mut Parts));
+        let cases: &[Case] = &[
+            ("expected 1 to", |j| j.0.clear()),
+            ("2 names with", |j| j.2.truncate(1)),
+            ("`hips` is empty or taken", |j| j.0[1] = "hips".into()),
+            ("`leg`: parent Some(1)", |j| j.1[1] = Some(1)),
+            ("`leg`: rest pose is not finite", |j| j.2[1].translation.y = f32::NAN),
+            ("`hips`: rest rotation is zero", |j| j.2[0].rotation = Quat::from_xyzw(0., 0., 0., 0.)),
+        ];
+        for (expected, spoil) in cases {
+            let mut parts = joints();
+            spoil(&mut parts);
+            let error = Skeleton::new(parts.0, parts.1, parts.2, parts.3).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
         }
-        let (l, r) = (joints[1].model_from_joint.matrix3, joints[2].model_from_joint.matrix3);
-        let mirror = |v: glam::Vec3A| glam::Vec3A::new(-v.x, v.y, v.z);
-        assert!((mirror(l.y_axis) - r.y_axis).length() < 1e-6);
-        assert!((mirror(l.z_axis) - r.z_axis).length() < 1e-6);
-        assert!((mirror(l.x_axis) + r.x_axis).length() < 1e-6);
-        assert!(joints[3].model_from_joint.matrix3.z_axis.y > 0.5, "a foot's z axis points up");
     }
 
     #[test]
-    fn a_bone_without_length_is_still_a_rotation() {
-        let (skeleton, mut shape) = arm();
-        shape.tails = shape.heads.clone();
-        for joint in skeleton.bind(&shape).unwrap() {
-            assert!((joint.model_from_joint.matrix3.determinant() - 1.0).abs() < 1e-5);
+    fn a_bind_pose_comes_back() {
+        let bind = Affine3A::from_rotation_translation(
+            Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.0),
+            Vec3::new(0.1, 1.0, -0.3),
+        );
+        let (names, parents, ..) = joints();
+        let tree = Arc::new(JointTree::new(names, parents).unwrap());
+        let bind = vec![bind, bind * bind];
+        let skeleton = Skeleton::from_bind(tree.clone(), bind.clone(), vec![Some(0.1), None]).unwrap();
+        assert_eq!(skeleton.bind(), bind);
+        assert_eq!([0, 1, 2].map(|j| skeleton.bone_length(j)), [Some(0.1), None, None]);
+        let again =
+            Skeleton::from_rest_pose(tree, skeleton.rest_pose().locals.clone(), vec![None; 2]).unwrap();
+        for (found, bind) in again.bind().iter().zip(&bind) {
+            assert!(found.abs_diff_eq(*bind, 1e-5));
         }
-        shape.heads.pop();
-        assert!(skeleton.bind(&shape).is_err());
-    }
-
-    #[test]
-    fn parents_must_come_first() {
-        let names = ["a", "b"].map(String::from).to_vec();
-        assert!(Skeleton::new(names.clone(), vec![None, Some(1)]).is_err());
-        assert!(Skeleton::new(names.clone(), vec![None, None]).is_err());
-        assert!(Skeleton::new(vec!["a".into(), "a".into()], vec![None, Some(0)]).is_err());
-        assert!(Skeleton::new(names, vec![None]).is_err());
     }
 }

@@ -6,8 +6,6 @@
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A};
 
-use super::Joint;
-
 /// Finest step of metres and of components of quaternions, 2⁻²⁶: a quarter of the rounding of `f32` near 1.
 const GRID: f64 = 1.0 / 67_108_864.0;
 /// Roundings after which a transform stops being rounded further; nearly all settle in two or three.
@@ -64,11 +62,11 @@ pub(crate) fn written_joints(joints: impl Iterator<Item = (Option<u32>, Affine3A
     written
 }
 
-/// Rounds the bind pose to what a file gives back of it.
-pub(super) fn settle(joints: &mut [Joint]) {
-    let written = written_joints(joints.iter().map(|joint| (joint.parent, joint.model_from_joint)));
-    for (joint, written) in joints.iter_mut().zip(&written) {
-        joint.model_from_joint = rounded(&written.model_from_joint);
+/// Rounds a bind pose to what a file gives back of it.
+pub(super) fn round_to_file(parents: &[Option<u32>], bind: &mut [Affine3A]) {
+    let written = written_joints(parents.iter().copied().zip(bind.iter().copied()));
+    for (bind, written) in bind.iter_mut().zip(&written) {
+        *bind = rounded(&written.model_from_joint);
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::skeleton::RestPose;
-use crate::skeleton::{Skeleton, SkeletonShape};
+use crate::Side;
+use crate::skeleton::{BonePositions, JointTree, SidedJoint, Skeleton};
 
 /// A joint of the middle or the left: name, parent, head, tail, in shares of the height.
 type Row = (&'static str, &'static str, [f32; 3], [f32; 3]);
@@ -34,8 +34,10 @@ const LEFT: [Row; 11] = [
     ("calf_twist_01", "calf", [0.115, 0.044, -0.003], [0.12, 0.02, -0.003]),
 ];
 
+const LEG: [SidedJoint; 4] = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball];
+
 /// Short with short legs, tall with long legs, and wide with long arms and feet apart.
-pub(crate) fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
+pub(crate) fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
     [
         ("short", 1.49, Vec3::new(1.0, 0.93, 1.0), 1.0),
         ("tall", 1.99, Vec3::new(0.9, 1.05, 0.95), 0.95),
@@ -46,10 +48,10 @@ pub(crate) fn bodies() -> Vec<(&'static str, Arc<RestPose>)> {
 }
 
 /// Legs stretched by `legs`, and what stands on them lifted; the upper body made as wide as `width`.
-fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
+fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
     let lift = (legs.y - 1.0) * 0.515;
     let place = |name: &str, [x, y, z]: [f32; 3]| {
-        let leg = ["thigh", "calf", "foot", "ball"].iter().any(|part| name.starts_with(part));
+        let leg = LEG.iter().any(|joint| name.starts_with(joint.name()));
         let at = match (name, leg) {
             ("Root", _) => return Vec3::ZERO,
             (_, true) => Vec3::new(x, y, z) * legs,
@@ -57,13 +59,13 @@ fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
         };
         at * height
     };
-    let left = LEFT.map(|(name, parent, head, tail)| (name, parent, head, tail, "_l"));
+    let left = LEFT.map(|(name, parent, head, tail)| (name, parent, head, tail, Side::Left.joint_suffix()));
     let right = LEFT.map(|(name, parent, head, tail)| {
         let mirror = |[x, y, z]: [f32; 3]| [-x, y, z];
-        (name, parent, mirror(head), mirror(tail), "_r")
+        (name, parent, mirror(head), mirror(tail), Side::Right.joint_suffix())
     });
     let middle = MIDDLE.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
-    let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), SkeletonShape::default());
+    let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), BonePositions::default());
     for (name, parent, head, tail, side) in middle.into_iter().chain(left).chain(right) {
         let found = [format!("{parent}{side}"), parent.to_owned()]
             .iter()
@@ -73,6 +75,5 @@ fn body(height: f32, legs: Vec3, width: f32) -> RestPose {
         shape.heads.push(place(name, head));
         shape.tails.push(if name == "Root" { Vec3::Y } else { place(name, tail) });
     }
-    let joints = Skeleton::new(names, parents).unwrap().bind(&shape).unwrap();
-    RestPose::of_joints(&joints).unwrap()
+    shape.skeleton(&Arc::new(JointTree::new(names, parents).unwrap())).unwrap()
 }

@@ -6,13 +6,13 @@ use glam::{Quat, Vec3};
 
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 
 /// A root that walks ahead, 3 m/s and bobbing, and a child that swings; 30 frames a second. `phase` shifts the swing.
 pub(crate) fn swing(name: &str, phase: f32, frames: usize) -> Clip {
     let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
     let names = ["root", "child"].map(String::from).to_vec();
-    let rest = RestPose::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap();
+    let rest = Skeleton::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap();
     let angle = |f: usize| libm::sinf(phase + 0.1 * f as f32);
     let rotations = (0..frames).flat_map(|f| [Quat::IDENTITY, Quat::from_rotation_x(angle(f))]).collect();
     let values =

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
+use crate::Side;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{RestPose, model_from_joints};
-use crate::skeleton::{Skeleton, SkeletonShape};
+use crate::skeleton::{BonePositions, JointTree, RigJoint, SidedJoint, Skeleton, model_from_joints};
 
 /// Name, parent and place of the joints in the middle.
 const CENTRAL: [(&str, &str, [f32; 3]); 8] = [
@@ -57,7 +57,7 @@ const LEFT: [(&str, &str, [f32; 3]); 30] = [
 
 /// Where a bone without a joint at its far end points, and how far.
 fn tail(name: &str, head: Vec3) -> Vec3 {
-    let side = if name.ends_with("_r") { -1.0 } else { 1.0 };
+    let side = Side::of_joint_name(name).map_or(1.0, Side::sign);
     head + match name {
         "pelvis" => Vec3::new(0.0, 0.07, -0.04),
         "head" => Vec3::new(0.0, 0.2, 0.0),
@@ -69,22 +69,28 @@ fn tail(name: &str, head: Vec3) -> Vec3 {
 }
 
 /// The person at rest, all 68 joints.
-pub(crate) fn person() -> Arc<RestPose> {
+pub(crate) fn person() -> Arc<Skeleton> {
     let mut joints: Vec<(String, String, Vec3)> =
         CENTRAL.iter().map(|(n, p, at)| ((*n).to_owned(), (*p).to_owned(), Vec3::from_array(*at))).collect();
-    for (side, sign) in [("l", 1.0), ("r", -1.0)] {
+    for side in Side::ALL {
+        let own = |name: &str| [name, side.joint_suffix()].concat();
         for (name, parent, [x, y, z]) in LEFT {
             let central = CENTRAL.iter().any(|(n, ..)| *n == parent);
-            let parent = if central { parent.to_owned() } else { format!("{parent}_{side}") };
-            joints.push((format!("{name}_{side}"), parent, Vec3::new(sign * x, y, z)));
+            let parent = if central { parent.to_owned() } else { own(parent) };
+            joints.push((own(name), parent, Vec3::new(side.sign() * x, y, z)));
         }
     }
     let index = |name: &str| joints.iter().position(|(n, ..)| n == name);
     let parents: Vec<Option<u32>> = joints.iter().map(|(_, p, _)| index(p).map(|p| p as u32)).collect();
     let next = |name: &str| -> Option<Vec3> {
-        let limb = name.find("_twist").map(|at| format!("{}{}", &name[..at], &name[name.len() - 2..]));
-        let limb = limb.as_deref().unwrap_or(name);
-        let main = |child: &str| !child.contains("twist") && !["jaw", "eye_l", "eye_r"].contains(&child);
+        let limb = match RigJoint::from_name(name).unwrap() {
+            RigJoint::Sided(joint, side) => joint.limb().on(side).name(),
+            joint => joint.name(),
+        };
+        let main = |child: &str| {
+            let child = RigJoint::from_name(child).unwrap();
+            !child.is_twist() && child != RigJoint::Jaw && child.sided() != Some(SidedJoint::Eye)
+        };
         let wanted = |child: &str| !limb.starts_with("hand") || child.starts_with("middle");
         let wanted = |child: &str| wanted(child) && (limb != "spine_03" || child == "neck_01");
         if limb == "pelvis" || limb == "Root" {
@@ -93,14 +99,14 @@ pub(crate) fn person() -> Arc<RestPose> {
         joints.iter().find(|(n, p, _)| p == limb && main(n) && wanted(n)).map(|(.., at)| *at)
     };
     let tails = joints.iter().map(|(name, _, at)| next(name).unwrap_or_else(|| tail(name, *at))).collect();
-    let skeleton = Skeleton::new(joints.iter().map(|j| j.0.clone()).collect(), parents).unwrap();
-    let shape = SkeletonShape { heads: joints.iter().map(|j| j.2).collect(), tails };
-    Arc::new(RestPose::of_joints(&skeleton.bind(&shape).unwrap()).unwrap())
+    let tree = JointTree::new(joints.iter().map(|j| j.0.clone()).collect(), parents).unwrap();
+    let shape = BonePositions { heads: joints.iter().map(|j| j.2).collect(), tails };
+    Arc::new(shape.skeleton(&Arc::new(tree)).unwrap())
 }
 
 /// A pose by turns of joints about their own axes, degrees.
-pub(crate) fn posed(rest: &RestPose, turns: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
-    let mut locals = rest.pose().locals.clone();
+pub(crate) fn posed(rest: &Skeleton, turns: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
+    let mut locals = rest.rest_pose().locals.clone();
     for (name, turn) in turns {
         let turn = Vec3::from_array(*turn).map(f32::to_radians);
         locals[rest.find(name).unwrap()].rotation *= Quat::from_scaled_axis(turn);
@@ -109,7 +115,7 @@ pub(crate) fn posed(rest: &RestPose, turns: &[(&str, [f32; 3])]) -> Vec<RigidTra
 }
 
 /// Somebody who walks about, waves with the left arm and nods; elbows and knees only fold.
-pub(crate) fn motion(rest: &Arc<RestPose>, frames: usize) -> Clip {
+pub(crate) fn motion(rest: &Arc<Skeleton>, frames: usize) -> Clip {
     let mut rotations = Vec::new();
     let mut places = Vec::new();
     for frame in 0..frames {
@@ -142,7 +148,7 @@ pub(crate) fn motion(rest: &Arc<RestPose>, frames: usize) -> Clip {
         rotations.extend(posed(rest, &turns).iter().map(|local| local.rotation));
         places.push(Vec3::new(0.3 * s, 0.9 + 0.03 * c, 0.5 * t));
     }
-    let track = TranslationTrack { joint: rest.find("pelvis").unwrap() as u32, values: places };
+    let track = TranslationTrack { joint: rest.rig_joint(RigJoint::Pelvis).unwrap() as u32, values: places };
     Clip::new("motion".into(), rest.clone(), 30.0, rotations, vec![track]).unwrap()
 }
 
@@ -158,7 +164,7 @@ pub(crate) struct Style<'a> {
 }
 
 pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
-    let ours = clip.rest();
+    let ours = clip.skeleton();
     let kept: Vec<usize> = (0..ours.len()).filter(|&j| (style.rename)(&ours.names()[j]).is_some()).collect();
     let place = |j: u32| kept.iter().position(|&k| k == j as usize).map(|k| k as u32);
     let parents: Vec<Option<u32>> = kept.iter().map(|&j| ours.parents()[j].and_then(place)).collect();
@@ -183,9 +189,9 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let ends =
         kept.iter().map(|&j| ours.ends()[j].map(|end| axes(j).conjugate() * end * style.scale)).collect();
     let facing = Quat::from_rotation_y(style.facing);
-    let rest = RestPose::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
+    let rest = Skeleton::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();
-    let pelvis = place(ours.find("pelvis").unwrap() as u32).unwrap();
+    let pelvis = place(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
     let mut values = Vec::new();
     for frame in 0..clip.frame_count() {
         let locals = locals_of(&clip.pose(frame).locals, Quat::IDENTITY);

@@ -7,8 +7,6 @@ use glam::{Affine3A, Quat, Vec3};
 use crate::clip::{Clip, TranslationTrack};
 use crate::scene::{AlphaMode, SkinTone};
 use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
-use crate::skeleton::Joint;
-use crate::skeleton::RestPose;
 
 /// Sides of the sleeve.
 const SIDES: u32 = 5;
@@ -59,25 +57,15 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
 
 /// Three frames of every joint of a scene turning about an axis of its own, the root wandering.
 pub(crate) fn bent(scene: &Scene) -> Clip {
-    let joints: Vec<Joint> = scene
-        .joints
-        .iter()
-        .map(|j| Joint {
-            name: j.name.clone(),
-            parent: j.parent,
-            model_from_joint: j.model_from_joint,
-            length: 0.1,
-        })
-        .collect();
-    let rest = Arc::new(RestPose::of_joints(&joints).unwrap());
+    let rest = Arc::new(scene.skeleton(str::to_owned).unwrap());
     let turn = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
         Quat::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
     };
     let rotations = (0..3)
-        .flat_map(|f| rest.rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
+        .flat_map(|f| rest.rest_rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
         .collect();
-    let start = rest.pose().locals[0].translation;
+    let start = rest.rest_pose().locals[0].translation;
     let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
     Clip::new("bent".into(), rest, 25.0, rotations, vec![TranslationTrack { joint: 0, values }]).unwrap()
 }

@@ -29,7 +29,7 @@ namespace UnityEngine
         public float normalizedTime { get { return Time; } }
     }
 
-    /// One state a layer; an avatar that is set begins anew, as Unity's does.
+    /// One state per layer; setting an avatar resets it, as in Unity.
     public class Animator : Behaviour
     {
         Avatar worn;
@@ -110,7 +110,7 @@ namespace UnityEngine
 
         public Keyframe[] keys { get { return (Keyframe[])all.Clone(); } }
 
-        /// A cubic between two keys.
+        /// Cubic interpolation between two keys.
         public float Evaluate(float time)
         {
             if (time <= all[0].time)
@@ -201,7 +201,7 @@ namespace UnityEngine
 
     public class HumanTrait
     {
-        // A name, whether it is required, and the bone that it hangs on.
+        // Name, whether it is required, and the parent bone.
         static readonly string[] table =
         {
             "Hips *", "LeftUpperLeg * Hips", "RightUpperLeg * Hips", "LeftLowerLeg * LeftUpperLeg",
@@ -250,11 +250,11 @@ namespace UnityEngine
 
     public class AvatarBuilder
     {
-        /// Why the last avatar is not valid; null where it is.
+        /// Why the last avatar is invalid; null if it is valid.
         internal static string Why;
 
-        /// Valid where Unity's documented demands are met: all names in the hierarchy, none twice, required bones there, a
-        /// bone's human parent above it, no UpperChest without Chest, a T-pose.
+        /// Valid if Unity's documented requirements are met: all names in the hierarchy and unique, required bones
+        /// present, human parents above their bones, no UpperChest without Chest, a T-pose.
         public static Avatar BuildHumanAvatar(GameObject go, HumanDescription humanDescription)
         {
             Why = Wrong(go, humanDescription);
@@ -310,7 +310,7 @@ namespace UnityEngine
             return Arms(mapped);
         }
 
-        /// The nearest human bone above that is mapped.
+        /// The closest mapped human bone above.
         static Transform Parent(int bone, Dictionary<string, Transform> mapped)
         {
             for (var i = HumanTrait.GetParentBone(bone); i >= 0; i = HumanTrait.GetParentBone(i))
@@ -336,7 +336,7 @@ namespace UnityEngine
             return false;
         }
 
-        /// In a T-pose arms are level, here within a degree.
+        /// In a T-pose arms are horizontal, here within a degree.
         static string Arms(Dictionary<string, Transform> mapped)
         {
             foreach (var side in new[] { "Left", "Right" })

@@ -21,6 +21,13 @@ namespace UnityEngine
     public sealed class HideInInspector : Attribute { }
 
     [AttributeUsage(AttributeTargets.Field)]
+    public class TooltipAttribute : Attribute
+    {
+        public readonly string tooltip;
+        public TooltipAttribute(string tooltip) { this.tooltip = tooltip; }
+    }
+
+    [AttributeUsage(AttributeTargets.Field)]
     public sealed class RangeAttribute : Attribute
     {
         public RangeAttribute(float min, float max) { }
@@ -57,5 +64,30 @@ namespace UnityEngine
     {
         internal readonly Type Type;
         public RequireComponent(Type requiredComponent) { Type = requiredComponent; }
+    }
+}
+
+namespace UnityEngine.Scripting.APIUpdating
+{
+    [AttributeUsage(AttributeTargets.Class | AttributeTargets.Struct | AttributeTargets.Enum | AttributeTargets.Interface | AttributeTargets.Delegate)]
+    public class MovedFromAttribute : Attribute
+    {
+        internal readonly string SourceClassName;
+
+        public MovedFromAttribute(
+            bool autoUpdateAPI, string sourceNamespace = null, string sourceAssembly = null, string sourceClassName = null)
+        {
+            SourceClassName = sourceClassName;
+        }
+    }
+}
+
+namespace UnityEngine.Serialization
+{
+    [AttributeUsage(AttributeTargets.Field, AllowMultiple = true, Inherited = false)]
+    public class FormerlySerializedAsAttribute : Attribute
+    {
+        public FormerlySerializedAsAttribute(string oldName) { this.oldName = oldName; }
+        public string oldName { get; private set; }
     }
 }

@@ -1,4 +1,4 @@
-// Stand-ins for what Unity draws with: renderers, levels of detail, materials, pipelines. See ../signatures.txt.
+// Stand-ins for Unity's rendering: renderers, levels of detail, materials, pipelines. See ../signatures.txt.
 using System;
 using System.Collections.Generic;
 
@@ -9,7 +9,7 @@ namespace UnityEngine
         bool on = true;
         Material[] worn = new Material[0];
         public bool enabled { get { return on; } set { on = value; } }
-        /// A copy, as Unity's is.
+        /// A copy, as in Unity.
         public Material[] sharedMaterials
         {
             get { return (Material[])worn.Clone(); }
@@ -65,7 +65,7 @@ namespace UnityEngine
     {
         static readonly string[] none = new string[0];
 
-        /// Shaders that are in the build, with what they have.
+        /// Shaders of the build, with their properties.
         internal static readonly Dictionary<string, string[]> Known = new Dictionary<string, string[]>
         {
             { "Standard", new[] { "_Color", "_Glossiness", "_Metallic" } },

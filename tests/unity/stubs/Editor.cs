@@ -20,7 +20,7 @@ namespace UnityEditor
         public delegate void CallbackFunction();
         public static CallbackFunction update;
         public static event Action<PlayModeStateChange> playModeStateChanged;
-        internal static void Tell(PlayModeStateChange change) { playModeStateChanged(change); }
+        internal static void Raise(PlayModeStateChange change) { playModeStateChanged(change); }
     }
 
     public static class EditorUtility
@@ -65,7 +65,7 @@ namespace UnityEditor
     {
         public delegate void AssemblyReloadCallback();
         public static event AssemblyReloadCallback beforeAssemblyReload;
-        internal static void Tell() { beforeAssemblyReload(); }
+        internal static void Raise() { beforeAssemblyReload(); }
     }
 
     [AttributeUsage(AttributeTargets.Class)]
@@ -85,7 +85,7 @@ namespace UnityEditor
 
     public class AssetDatabase
     {
-        /// What is in the project: files with their parts, the main one first.
+        /// The project's files with their objects, the main object first.
         internal static readonly Dictionary<string, List<Object>> Files = new Dictionary<string, List<Object>>();
 
         public static void CreateAsset(Object asset, string path)
@@ -132,7 +132,7 @@ namespace UnityEditor
         internal static bool Fails;
         internal static readonly Dictionary<string, GameObject> Prefabs = new Dictionary<string, GameObject>();
 
-        /// Refuses what Unity would leave out or lose.
+        /// Refuses what Unity would drop or lose.
         public static GameObject SaveAsPrefabAsset(GameObject instanceRoot, string assetPath, out bool success)
         {
             success = !Fails;

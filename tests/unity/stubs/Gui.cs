@@ -1,20 +1,21 @@
-// Stand-ins for Unity's immediate GUI: controls give back what they are given, or what `User` says. See ../signatures.txt.
+// Stand-ins for Unity's immediate-mode GUI: controls return the value that they get, or the answer of `User`. See
+// ../signatures.txt.
 using System;
 
 namespace UnityEngine
 {
     public class GUILayoutOption { }
 
-    /// What somebody at the controls does.
+    /// Simulated input.
     static class User
     {
-        /// From what a control says and its value to its new value; null where nothing is done to it.
-        internal static Func<string, object, object> Does = null;
+        /// From a control's label and value to its new value; null leaves the value.
+        internal static Func<string, object, object> Answer = null;
         internal static bool Changed;
 
         internal static T Ask<T>(string label, T value)
         {
-            var answer = Does == null ? null : Does(label, value);
+            var answer = Answer == null ? null : Answer(label, value);
             if (answer == null || answer.Equals(value))
             {
                 return value;

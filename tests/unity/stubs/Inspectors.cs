@@ -1,4 +1,4 @@
-// Stand-ins for Unity's inspectors: serialised objects over reflection, and the editor's controls. See ../signatures.txt.
+// Stand-ins for Unity's inspectors: serialised objects by reflection, and editor controls. See ../signatures.txt.
 using System;
 using System.Collections;
 using System.Collections.Generic;
@@ -16,7 +16,7 @@ namespace UnityEditor
         Error = 3,
     }
 
-    /// Writes straight to the object; `Written` counts what would mark it as changed.
+    /// Writes straight to the object; `Written` counts the writes that would mark it as changed.
     public class SerializedObject
     {
         internal int Written;
@@ -106,7 +106,7 @@ namespace UnityEditor
 
     public sealed class EditorGUILayout
     {
-        /// What is shown.
+        /// Texts shown.
         internal static readonly List<string> Shown = new List<string>();
 
         static bool Field(SerializedProperty property)

@@ -1,4 +1,4 @@
-// Stand-ins for Unity's jobs and Burst. See ../signatures.txt.
+// Stand-ins for Unity's job system and Burst. See ../signatures.txt.
 using System;
 
 namespace Unity.Jobs

@@ -1,4 +1,4 @@
-// Stand-ins for Unity's vectors and matrices: as much of them as the package and its tests use. See ../signatures.txt.
+// Stand-ins for Unity's vectors and matrices, as far as package and tests use them. See ../signatures.txt.
 using System;
 using System.Runtime.InteropServices;
 
@@ -107,7 +107,7 @@ namespace UnityEngine
         public static Quaternion identity { get { return new Quaternion(0, 0, 0, 1); } }
     }
 
-    /// Column-major, as Unity's: the fields go down the columns.
+    /// Column-major, as in Unity: the fields go down the columns.
     [StructLayout(LayoutKind.Sequential)]
     public struct Matrix4x4
     {

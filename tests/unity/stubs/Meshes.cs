@@ -1,5 +1,5 @@
-// Stand-ins for Unity's meshes and native arrays: as much of them as the package and its tests use, with the checks that
-// Unity documents. See ../signatures.txt.
+// Stand-ins for Unity's meshes and native arrays, as far as package and tests use them, with the checks that Unity
+// documents. See ../signatures.txt.
 using System;
 using System.Collections.Generic;
 using System.Runtime.InteropServices;
@@ -29,7 +29,7 @@ namespace Unity.Collections
         internal IntPtr buffer;
         bool view;
 
-        /// Arrays that nobody disposed of yet.
+        /// Arrays not disposed yet.
         internal static int Alive;
 
         public NativeArray(
@@ -39,7 +39,7 @@ namespace Unity.Collections
             view = false;
             var bytes = length * Marshal.SizeOf(typeof(T));
             buffer = Marshal.AllocHGlobal(bytes + 1);
-            // What Unity does not clear is filled with what shows.
+            // What Unity leaves uninitialised is filled with a conspicuous value.
             var fill = options == NativeArrayOptions.ClearMemory ? 0L : unchecked((long)0xEEEEEEEEEEEEEEEE);
             var words = (long*)buffer;
             for (var i = 0; i < bytes / 8; i++)
@@ -334,7 +334,7 @@ namespace UnityEngine
             }
         }
 
-        /// Writable data that was neither applied nor disposed of.
+        /// Writable mesh data neither applied nor disposed.
         internal static int Pending;
 
         public static MeshDataArray AllocateWritableMeshData(int meshCount)

@@ -1,5 +1,5 @@
-// Stand-ins for Unity's objects, components and their life: as much of them as the package and its tests use. What is
-// public has Unity's signatures, see ../signatures.txt; what is internal is for the tests.
+// Stand-ins for Unity's objects and components and their life cycle, as far as package and tests use them. Public members
+// have Unity's signatures, see ../signatures.txt; internal ones are for the tests.
 using System;
 using System.Collections;
 using System.Collections.Generic;
@@ -21,12 +21,12 @@ namespace UnityEngine
         static int last;
         readonly int id = ++last;
         internal bool Destroyed;
-        /// A child that came with a prefab: Unity lets nobody destroy it.
+        /// Part of a prefab instance, which Unity does not allow to destroy.
         internal bool OfPrefab;
-        /// It is part of the project: destroying it without leave is an error in Unity.
+        /// A project asset: destroying it without permission is an error in Unity.
         internal bool Asset;
 
-        /// How many objects, components, meshes, materials and avatars are alive.
+        /// Number of live objects, components, meshes, materials and avatars.
         internal static int Alive;
 
         public Object()
@@ -114,8 +114,8 @@ namespace UnityEngine
     {
         internal bool Awoken, Enabled;
 
-        /// Calls what Unity calls.
-        internal static void Tell(Component part, string message)
+        /// Sends a Unity message.
+        internal static void Send(Component part, string message)
         {
             var method = part.GetType().GetMethod(
                 message, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public, null, Type.EmptyTypes, null);
@@ -133,7 +133,7 @@ namespace UnityEngine
             }
         }
 
-        /// Unity calls no script in edit mode that does not ask for it.
+        /// In edit mode Unity sends messages only to scripts that ask for it.
         bool Hears()
         {
             return Application.isPlaying || Attribute.IsDefined(GetType(), typeof(ExecuteAlways));
@@ -148,12 +148,12 @@ namespace UnityEngine
             if (!Awoken)
             {
                 Awoken = true;
-                Tell(this, "Awake");
+                Send(this, "Awake");
             }
             if (!Enabled && enabled)
             {
                 Enabled = true;
-                Tell(this, "OnEnable");
+                Send(this, "OnEnable");
             }
         }
 
@@ -162,17 +162,17 @@ namespace UnityEngine
             if (Enabled)
             {
                 Enabled = false;
-                Tell(this, "OnDisable");
+                Send(this, "OnDisable");
             }
         }
 
-        /// Unity calls OnDestroy of what was awake once, and of nothing else.
+        /// Unity sends OnDestroy only to scripts that were awake once.
         internal void Die()
         {
             FallAsleep();
             if (Awoken)
             {
-                Tell(this, "OnDestroy");
+                Send(this, "OnDestroy");
             }
         }
     }
@@ -298,7 +298,7 @@ namespace UnityEngine
             }
         }
 
-        /// All scripts here and below.
+        /// All scripts of the object and its children.
         internal void Scripts(Action<MonoBehaviour> action)
         {
             foreach (var part in new List<Component>(parts))
@@ -349,7 +349,7 @@ namespace UnityEngine
         }
     }
 
-    /// What Instantiate does, and what is left over a reload of the code: fields that Unity serialises.
+    /// Instantiate: copies the fields that Unity serialises.
     static class Cloning
     {
         const BindingFlags Own = BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
@@ -471,7 +471,7 @@ namespace UnityEngine
 
     public static class Debug
     {
-        /// What was complained of.
+        /// Logged errors.
         internal static readonly List<string> Errors = new List<string>();
         public static void Log(object message) { }
         public static void LogError(object message) { Errors.Add(message.ToString()); }

@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use anthronet::Side;
+use anthronet::skeleton::{Finger, RigJoint, SidedJoint};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -60,51 +62,56 @@ struct Weights {
     weights: BTreeMap<String, Vec<(u32, f32)>>,
 }
 
-/// Depth-first order, so that parents come first and limbs stay together.
-const ORDER: [&str; 27] = [
-    "Root",
-    "pelvis",
-    "spine_01",
-    "spine_02",
-    "spine_03",
-    "neck_01",
-    "head",
-    "jaw",
-    "eye_l",
-    "eye_r",
-    "clavicle",
-    "upperarm",
-    "lowerarm",
-    "hand",
-    "thumb_01",
-    "thumb_02",
-    "thumb_03",
-    "index_01",
-    "index_02",
-    "index_03",
-    "middle_01",
-    "middle_02",
-    "middle_03",
-    "ring_01",
-    "ring_02",
-    "ring_03",
-    "pinky_01",
-];
-const ORDER_REST: [&str; 6] = ["pinky_02", "pinky_03", "thigh", "calf", "foot", "ball"];
+/// The joints that the source's rig has, depth first, so that parents come first and limbs stay together. Twist joints are
+/// put in after their limbs.
+fn order() -> impl Iterator<Item = RigJoint> {
+    use SidedJoint as J;
+    let middle = [
+        RigJoint::Root,
+        RigJoint::Pelvis,
+        RigJoint::Spine01,
+        RigJoint::Spine02,
+        RigJoint::Spine03,
+        RigJoint::Neck01,
+        RigJoint::Head,
+        RigJoint::Jaw,
+    ];
+    let sided = |side: Side| {
+        let arm = [J::Clavicle, J::Upperarm, J::Lowerarm, J::Hand].into_iter();
+        let fingers = Finger::ALL.into_iter().flat_map(Finger::joints);
+        let limbs = arm.chain(fingers).chain([J::Thigh, J::Calf, J::Foot, J::Ball]);
+        limbs.map(move |joint| joint.on(side))
+    };
+    middle.into_iter().chain(J::Eye.both()).chain(Side::ALL.into_iter().flat_map(sided))
+}
 
-/// Limb, the twist helpers' places along it, and whether they undo (near end) or add (far end) roll.
+/// Twist helpers of a limb, their places along it, and whether they undo (near end) or add (far end) roll.
 struct TwistPlan {
-    limb: &'static str,
-    places: &'static [f32],
+    limb: SidedJoint,
+    helpers: &'static [(SidedJoint, f32)],
     undo: bool,
 }
 
 const TWISTS: [TwistPlan; 4] = [
-    TwistPlan { limb: "upperarm", places: &[0.0, 0.5], undo: true },
-    TwistPlan { limb: "lowerarm", places: &[0.5, 1.0], undo: false },
-    TwistPlan { limb: "thigh", places: &[0.0], undo: true },
-    TwistPlan { limb: "calf", places: &[1.0], undo: false },
+    TwistPlan {
+        limb: SidedJoint::Upperarm,
+        helpers: &[(SidedJoint::UpperarmTwist01, 0.0), (SidedJoint::UpperarmTwist02, 0.5)],
+        undo: true,
+    },
+    TwistPlan {
+        limb: SidedJoint::Lowerarm,
+        helpers: &[(SidedJoint::LowerarmTwist01, 0.5), (SidedJoint::LowerarmTwist02, 1.0)],
+        undo: false,
+    },
+    TwistPlan { limb: SidedJoint::Thigh, helpers: &[(SidedJoint::ThighTwist01, 0.0)], undo: true },
+    TwistPlan { limb: SidedJoint::Calf, helpers: &[(SidedJoint::CalfTwist01, 1.0)], undo: false },
 ];
+
+/// The twist helpers of this joint and the side they are on; `None` for a joint without.
+fn twists_of(joint: RigJoint) -> Option<(&'static TwistPlan, Side)> {
+    let plan = TWISTS.iter().find(|plan| joint.sided() == Some(plan.limb))?;
+    Some((plan, joint.side()?))
+}
 
 impl Rig {
     /// Reads rig and weights.
@@ -124,42 +131,35 @@ impl Rig {
             twists: Vec::new(),
             weights: vec![],
         };
-        let central = ORDER[..10].iter().map(|n| (*n).to_owned());
-        let sided = ["l", "r"]
-            .into_iter()
-            .flat_map(|side| ORDER[10..].iter().chain(&ORDER_REST).map(move |n| format!("{n}_{side}")));
-        for name in central.chain(sided) {
-            let (bone, parent) = match name.as_str() {
-                "eye_l" => (&default["eye.L"], "head"),
-                "eye_r" => (&default["eye.R"], "head"),
-                "jaw" => (&default["jaw"], "head"),
+        for joint in order() {
+            let head = RigJoint::Head.name();
+            let (bone, parent) = match joint {
+                RigJoint::Sided(SidedJoint::Eye, Side::Left) => (&default["eye.L"], head),
+                RigJoint::Sided(SidedJoint::Eye, Side::Right) => (&default["eye.R"], head),
+                RigJoint::Jaw => (&default["jaw"], head),
                 _ => {
                     let bone = game
-                        .get(&name)
-                        .ok_or_else(|| Error::Source(format!("rig.game_engine.json has no bone {name}")))?;
+                        .get(joint.name())
+                        .ok_or_else(|| Error::Source(format!("rig.game_engine.json has no bone {joint}")))?;
                     (bone, bone.parent.as_str())
                 }
             };
             let parent = rig.joints.iter().position(|j| j.name == parent);
-            let head = if name == "Root" {
+            let head = if joint == RigJoint::Root {
                 // The rig puts Root behind the body; the ground between the feet is what engines expect.
                 group(mesh, "joint-ground")?
             } else {
                 bone.head.vertices(mesh)?
             };
             let tail = bone.tail.vertices(mesh)?;
-            let plan = name.rsplit_once('_').and_then(|(limb, _)| TWISTS.iter().find(|t| t.limb == limb));
             let limb = rig.joints.len();
-            rig.joints.push(JointSource { name: name.clone(), parent });
+            rig.joints.push(JointSource { name: joint.name().to_owned(), parent });
             rig.heads.push(head.clone());
             rig.tails.push(tail.clone());
-            for (i, &place) in plan.map_or(&[][..], |p| p.places).iter().enumerate() {
-                let (stem, side) = name.rsplit_once('_').unwrap_or((&name, ""));
+            let Some((plan, side)) = twists_of(joint) else { continue };
+            for &(helper, place) in plan.helpers {
                 rig.twists.push((rig.joints.len(), place));
-                rig.joints.push(JointSource {
-                    name: format!("{stem}_twist_{:02}_{side}", i + 1),
-                    parent: Some(limb),
-                });
+                rig.joints.push(JointSource { name: helper.on(side).name().to_owned(), parent: Some(limb) });
                 rig.heads.push(head.clone());
                 rig.tails.push(tail.clone());
             }
@@ -173,6 +173,14 @@ impl Rig {
         self.joints.iter().position(|j| j.name == name)
     }
 
+    /// Where this joint stands.
+    ///
+    /// # Errors
+    /// [`Error::Source`] naming the joint when the rig has none of that name.
+    pub fn require(&self, name: &str) -> Result<usize> {
+        self.find(name).ok_or_else(|| Error::Source(format!("the rig has no joint {name}")))
+    }
+
     fn skin(
         &self,
         mesh: &BaseMesh,
@@ -180,14 +188,10 @@ impl Rig {
         default: &Weights,
         default_rig: &BTreeMap<String, Bone>,
     ) -> Result<Vec<Vec<(u16, f32)>>> {
-        let missing = |name: &str| Error::Source(format!("the rig has no joint {name}"));
-        let (head, jaw) = (
-            self.find("head").ok_or_else(|| missing("head"))?,
-            self.find("jaw").ok_or_else(|| missing("jaw"))?,
-        );
+        let (head, jaw) = (self.require(RigJoint::Head.name())?, self.require(RigJoint::Jaw.name())?);
         let mut dense = vec![BTreeMap::<usize, f32>::new(); mesh.raw_positions.len()];
         for (name, list) in &game.weights {
-            let joint = self.find(name).ok_or_else(|| missing(name))?;
+            let joint = self.require(name)?;
             for &(v, w) in list {
                 *dense[v as usize].entry(joint).or_insert(0.0) += w;
             }
@@ -211,14 +215,14 @@ impl Rig {
         }
         // Rigid parts.
         let rigid = [
-            ("helper-l-eye", "eye_l"),
-            ("helper-r-eye", "eye_r"),
-            ("helper-upper-teeth", "head"),
-            ("helper-lower-teeth", "jaw"),
-            ("helper-tongue", "jaw"),
+            ("helper-l-eye", SidedJoint::Eye.on(Side::Left)),
+            ("helper-r-eye", SidedJoint::Eye.on(Side::Right)),
+            ("helper-upper-teeth", RigJoint::Head),
+            ("helper-lower-teeth", RigJoint::Jaw),
+            ("helper-tongue", RigJoint::Jaw),
         ];
         for (name, joint) in rigid {
-            let joint = self.find(joint).ok_or_else(|| missing(joint))?;
+            let joint = self.require(joint.name())?;
             for v in group(mesh, name)? {
                 dense[v as usize] = BTreeMap::from([(joint, 1.0)]);
             }
@@ -243,15 +247,10 @@ impl Rig {
             vertices.iter().map(|&v| mesh.raw_positions[v as usize]).sum::<Vec3>() / vertices.len() as f32
         };
         for (limb, joint) in self.joints.iter().enumerate() {
-            let Some(plan) =
-                joint.name.rsplit_once('_').and_then(|(stem, _)| TWISTS.iter().find(|t| t.limb == stem))
-            else {
-                continue;
-            };
-            let helpers: Vec<usize> = (1..=plan.places.len()).map(|i| limb + i).collect();
+            let Some((plan, _)) = RigJoint::from_name(&joint.name).and_then(twists_of) else { continue };
             // Places of the nodes along the bone, in order: helpers and the limb itself at the other end.
             let mut nodes: Vec<(f32, usize)> =
-                plan.places.iter().copied().zip(helpers.iter().copied()).collect();
+                plan.helpers.iter().enumerate().map(|(i, (_, place))| (*place, limb + 1 + i)).collect();
             nodes.push((if plan.undo { 1.0 } else { 0.0 }, limb));
             nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (start, end) = (mean(&self.heads[limb]), mean(&self.tails[limb]));

@@ -288,7 +288,7 @@ impl Prepared {
 fn measure_statistics(set: &TrainingSet) -> Result<([f64; MEASURE_COUNT], [f64; MEASURE_COUNT])> {
     let mean: [f64; MEASURE_COUNT] = column_means(&set.measures, MEASURE_COUNT)
         .try_into()
-        .map_err(|_| Error::Invalid("measures: expected 36 columns".into()))?;
+        .map_err(|_| Error::Invalid(format!("measures: expected {MEASURE_COUNT} columns")))?;
     let mut std = [0.0; MEASURE_COUNT];
     for row in set.measures.chunks_exact(MEASURE_COUNT) {
         for j in 0..MEASURE_COUNT {

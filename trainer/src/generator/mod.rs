@@ -36,7 +36,7 @@ pub struct TrainingSet {
     pub k: usize,
     /// `N × K`, metres, in an orthonormal basis of the 3V coordinates.
     pub coefficients: Vec<f32>,
-    /// `N × 36`, metres.
+    /// `N × MEASURE_COUNT`, metres.
     pub measures: Vec<f32>,
     /// `N`: 0 female, 1 male.
     pub sex: Vec<u8>,

@@ -5,8 +5,8 @@ using System.Runtime.InteropServices;
 namespace Anthronet.Native
 {
     /// <summary>
-    /// What holds native memory or threads. Before Unity unloads the code all of it is released: threads would run on in
-    /// code that is gone, and native memory would be nobody's.
+    /// Live objects that hold native memory or threads. All of them are released before a domain reload: threads would
+    /// run on in unloaded code, and native memory would leak.
     /// </summary>
     internal static class AnthroAlive
     {
@@ -14,7 +14,7 @@ namespace Anthronet.Native
         static readonly List<WeakReference> all = new List<WeakReference>();
         static int sweepAt = 64;
 
-        /// <summary>Remembers an object without keeping it alive.</summary>
+        /// <summary>Registers an object without keeping it alive.</summary>
         internal static void Add(IDisposable one)
         {
             lock (gate)
@@ -28,7 +28,7 @@ namespace Anthronet.Native
             }
         }
 
-        /// <summary>Disposes of everything: first what uses handles, then the handles.</summary>
+        /// <summary>Disposes everything: first the users of handles, then the handles.</summary>
         internal static void ReleaseAll()
         {
             WeakReference[] those;

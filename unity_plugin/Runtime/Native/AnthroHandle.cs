@@ -4,8 +4,8 @@ using System.Runtime.InteropServices;
 namespace Anthronet.Native
 {
     /// <summary>
-    /// What the library handed out. Freed once: by Dispose, or by the finaliser where nobody disposed of it. No handle
-    /// needs the one that it was made of, so the order does not matter.
+    /// A native object, freed once: by `Dispose`, or by the finaliser if nobody disposed it. Native objects do not depend
+    /// on those that they were made from, so the order does not matter.
     /// </summary>
     internal abstract class AnthroHandle : SafeHandle
     {
@@ -21,14 +21,14 @@ namespace Anthronet.Native
         }
     }
 
-    /// <summary>Keeps a handle from being freed during a call. A structure: it makes no garbage.</summary>
+    /// <summary>Keeps a handle from being freed during a native call. A struct, to allocate no managed memory.</summary>
     internal unsafe struct Held : IDisposable
     {
         readonly AnthroHandle handle;
         bool held;
 
-        /// <exception cref="ArgumentNullException">There is no handle.</exception>
-        /// <exception cref="ObjectDisposedException">It is freed.</exception>
+        /// <exception cref="ArgumentNullException">The handle is null.</exception>
+        /// <exception cref="ObjectDisposedException">The handle is freed.</exception>
         public Held(AnthroHandle handle)
         {
             if (handle == null)
@@ -154,7 +154,7 @@ namespace Anthronet.Native
         }
     }
 
-    /// <summary>Memory of our own outside of the collector's reach.</summary>
+    /// <summary>Native memory allocated by the package itself.</summary>
     internal sealed unsafe class MemoryHandle : AnthroHandle
     {
         public MemoryHandle(long bytes) : base(Marshal.AllocHGlobal(new IntPtr(bytes))) { }

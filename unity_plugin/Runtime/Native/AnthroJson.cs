@@ -4,8 +4,8 @@ using System.Globalization;
 namespace Anthronet.Native
 {
     /// <summary>
-    /// Reads the top of an object in JSON that the library wrote: words, numbers, and lists of numbers by key. It is no
-    /// parser of JSON at large, which Unity has none of for such objects.
+    /// Reads top-level values of JSON objects that the library wrote: words, numbers, lists of numbers. Not a general
+    /// JSON parser; Unity has none for such objects.
     /// </summary>
     internal struct AnthroJson
     {
@@ -16,7 +16,7 @@ namespace Anthronet.Native
             this.json = json;
         }
 
-        /// <summary>A word or number, without its quotes; null where the key is missing or holds nothing.</summary>
+        /// <summary>A word or number without quotes; null if the key is missing or its value is null.</summary>
         public string Word(string key)
         {
             var start = Start(key);
@@ -29,7 +29,7 @@ namespace Anthronet.Native
             return word == "null" ? null : word;
         }
 
-        /// <summary>A list of numbers; empty where the key is missing or holds nothing.</summary>
+        /// <summary>A list of numbers; empty if the key is missing or its value is null.</summary>
         public double[] Numbers(string key)
         {
             var start = Start(key);

@@ -2,7 +2,7 @@ using System;
 
 namespace Anthronet.Native
 {
-    /// <summary>The shared library: whether it is there, of the right version, and what its calls say.</summary>
+    /// <summary>The native library: loading, version check, and calls.</summary>
     internal static unsafe class Library
     {
         const string Folder = "Packages/com.anthronet.unity/Runtime/Plugins/";
@@ -16,7 +16,7 @@ namespace Anthronet.Native
 #elif UNITY_IOS && !UNITY_EDITOR
         const string Expected = "iOS/libanthronet.a";
 #elif UNITY_WEBGL && !UNITY_EDITOR
-        // Its threads are not there: a library for it is not supported, and this is where one would lie.
+        // The library needs threads, which WebGL lacks: this is where an unsupported build would be.
         const string Expected = "WebGL/libanthronet.a";
 #else
         const string Expected = "Linux/x86_64/libanthronet.so";
@@ -24,15 +24,16 @@ namespace Anthronet.Native
 
         static volatile bool ready;
 
-        /// <summary>Where the library of this platform has to lie.</summary>
+        /// <summary>Path of the library for the current platform.</summary>
         internal static string ExpectedFile
         {
             get { return Folder + Expected; }
         }
 
-        /// <summary>Makes sure that the library is there and of the version that this package was made for.</summary>
-        /// <exception cref="DllNotFoundException">It is not there; the message names the file that was expected.</exception>
-        /// <exception cref="NotSupportedException">It is of another release.</exception>
+        /// <summary>Checks that the library loads and has the version that this package was made for.</summary>
+        /// <exception cref="DllNotFoundException">The library did not load; the message has its expected
+        /// path.</exception>
+        /// <exception cref="NotSupportedException">The library is of another release.</exception>
         internal static void Ensure()
         {
             if (ready)
@@ -57,25 +58,25 @@ namespace Anthronet.Native
         internal static DllNotFoundException Missing(Exception reason)
         {
             return new DllNotFoundException(
-                "AnthroNet: its native library did not load; expected " + ExpectedFile + ", built for this platform and"
-                + " switched on for it in its import settings. `cargo xtask package unity` puts the one for Linux"
-                + " there, Documentation~/platforms.md says how to build the others.", reason);
+                "AnthroNet: the native library did not load: expected " + ExpectedFile + ", built for this platform and"
+                + " enabled for it in its import settings. `cargo xtask package unity` adds the library for Linux;"
+                + " Documentation~/platforms.md says how to build the others.", reason);
         }
 
-        /// <summary>Refuses a library of another release.</summary>
+        /// <summary>Throws if the library is of another release.</summary>
         internal static void CheckVersion(uint version)
         {
             if (version != NativeMethods.ANTHRONET_ABI_VERSION)
             {
                 throw new NotSupportedException(
-                    "AnthroNet: " + ExpectedFile + " has version " + version + " of the C interface, expected "
-                    + NativeMethods.ANTHRONET_ABI_VERSION + ": package and library must be of one release.");
+                    "AnthroNet: " + ExpectedFile + " has version " + version + " of the C interface, expected version "
+                    + NativeMethods.ANTHRONET_ABI_VERSION + ": package and library have to be of the same release.");
             }
         }
 
-        /// <summary>What is given, which may not be null.</summary>
-        /// <exception cref="ArgumentNullException">It is.</exception>
-        internal static T Given<T>(T value, string name) where T : class
+        /// <summary>Returns the argument after checking it.</summary>
+        /// <exception cref="ArgumentNullException">It is null.</exception>
+        internal static T NotNull<T>(T value, string name) where T : class
         {
             if (value == null)
             {
@@ -84,13 +85,56 @@ namespace Anthronet.Native
             return value;
         }
 
-        /// <summary>Throws what a call says.</summary>
-        /// <exception cref="AnthroException">The status is not "done".</exception>
+        /// <summary>A native function that writes a number.</summary>
+        internal delegate int NumberCall(void* handle, uint* number, anthronet_error* error);
+
+        /// <summary>A native function that writes a text, valid as long as the handle.</summary>
+        internal delegate int TextCall(void* handle, anthronet_text* text, anthronet_error* error);
+
+        /// <summary>A native function that creates bytes, such as JSON.</summary>
+        internal delegate int BytesCall(void* handle, anthronet_bytes** bytes, anthronet_error* error);
+
+        internal static int Number(AnthroHandle handle, NumberCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                uint number;
+                anthronet_error error;
+                Check(call(held.Pointer, &number, &error), &error);
+                return (int)number;
+            }
+        }
+
+        internal static string Text(AnthroHandle handle, TextCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_text text;
+                anthronet_error error;
+                Check(call(held.Pointer, &text, &error), &error);
+                return Utf8.Text(text);
+            }
+        }
+
+        /// <summary>The text of bytes that a native function creates, which are freed.</summary>
+        internal static string BytesText(AnthroHandle handle, BytesCall call)
+        {
+            using (var held = new Held(handle))
+            {
+                anthronet_bytes* bytes;
+                anthronet_error error;
+                Check(call(held.Pointer, &bytes, &error), &error);
+                return Utf8.TakeText(bytes);
+            }
+        }
+
+        /// <summary>Throws the error of a native call.</summary>
+        /// <exception cref="AnthroException">The status is not ANTHRONET_OK.</exception>
         internal static void Check(int status, anthronet_error* error)
         {
             if (status != NativeMethods.ANTHRONET_OK)
             {
-                throw new AnthroException((AnthroError)status, Utf8.Ended(error->message, 512));
+                throw new AnthroException((AnthroError)status, Utf8.ZeroTerminated(error->message, 512));
             }
         }
     }

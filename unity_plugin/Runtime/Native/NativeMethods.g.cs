@@ -380,7 +380,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_model_measure_range(anthronet_model* model, uint measure, double* out_min, double* out_max, anthronet_error* error);
 
         /// <summary>
-        ///  Number of measures: 36.
+        ///  Number of measures.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_measure_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern uint anthronet_measure_count();
@@ -400,7 +400,7 @@ namespace Anthronet.Native
         /// <summary>
         ///  Measures a body in its bind pose at any level of detail, sculpted or not: `positions` are the vertices of the body
         ///  alone in the model's order, three floats each, `stride` bytes apart (0: packed), metres, in `from_space`. Fills
-        ///  `count` (36) measures, metres; `out_measured` may be NULL.
+        ///  `count` measures, as many as `anthronet_measure_count` says, metres; `out_measured` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_measure_mesh", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_measure_mesh(anthronet_model* model, void* positions, uint vertex_count, ulong stride, uint from_space, double* out_metres, uint count, anthronet_measured* out_measured, anthronet_error* error);
@@ -456,13 +456,13 @@ namespace Anthronet.Native
 
         /// <summary>
         ///  Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-        ///  `anthronet_measure_name`; `count` is their number, 36. What `metres` holds of an open measure does not matter.
+        ///  `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_measures", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_measures(anthronet_request* request, double* metres, byte* given, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` (36) entries each.
+        ///  What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_measures", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_measures(anthronet_request* request, double* out_metres, byte* out_given, uint count, anthronet_error* error);
@@ -524,7 +524,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_body_report(anthronet_body* body, anthronet_bytes** out_json, anthronet_error* error);
 
         /// <summary>
-        ///  The report's measures: fills `count` (36) entries in the order of `anthronet_measure_name`.
+        ///  The report's measures: fills `count` entries, one per measure, in the order of `anthronet_measure_name`.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_body_measures", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_body_measures(anthronet_body* body, anthronet_measure_report* out_measures, uint count, anthronet_error* error);

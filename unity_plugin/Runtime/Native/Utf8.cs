@@ -3,14 +3,14 @@ using System.Text;
 
 namespace Anthronet.Native
 {
-    /// <summary>Text to and from the library, which speaks UTF-8 with lengths.</summary>
+    /// <summary>Converts text from and to the library's UTF-8 with explicit lengths.</summary>
     internal static unsafe class Utf8
     {
         static readonly UTF8Encoding Strict = new UTF8Encoding(false, true);
 
-        /// <summary>The bytes of a text, with one zero behind them so that there is always a first one.</summary>
-        /// <exception cref="ArgumentNullException">There is no text.</exception>
-        /// <exception cref="ArgumentException">It holds half of a surrogate pair.</exception>
+        /// <summary>The UTF-8 bytes of a text, with one zero appended so that the array is never empty.</summary>
+        /// <exception cref="ArgumentNullException">The text is null.</exception>
+        /// <exception cref="ArgumentException">The text has an unpaired surrogate.</exception>
         internal static byte[] Bytes(string text, string what, out ulong length)
         {
             if (text == null)
@@ -32,8 +32,8 @@ namespace Anthronet.Native
             return length == 0 ? string.Empty : Encoding.UTF8.GetString(data, checked((int)length));
         }
 
-        /// <summary>Text that ends at a zero, or at the capacity.</summary>
-        internal static string Ended(byte* data, int capacity)
+        /// <summary>Text that ends at a zero byte or at the capacity.</summary>
+        internal static string ZeroTerminated(byte* data, int capacity)
         {
             var length = 0;
             while (length < capacity && data[length] != 0)
@@ -43,7 +43,7 @@ namespace Anthronet.Native
             return Text(data, (ulong)length);
         }
 
-        /// <summary>All of the library's bytes as text; they are freed.</summary>
+        /// <summary>The library's bytes as text, freeing them.</summary>
         internal static string TakeText(anthronet_bytes* bytes)
         {
             using (var held = new BytesHandle(bytes))
@@ -55,7 +55,7 @@ namespace Anthronet.Native
             }
         }
 
-        /// <summary>A copy of all of the library's bytes; they are freed.</summary>
+        /// <summary>A copy of the library's bytes, freeing them.</summary>
         internal static byte[] TakeBytes(anthronet_bytes* bytes)
         {
             using (var held = new BytesHandle(bytes))

@@ -3,10 +3,10 @@ using UnityEngine;
 
 namespace Anthronet.Samples
 {
-    /// <summary>Plays the built-in clips and a motion file on a person, with a bar for the time.</summary>
+    /// <summary>Plays the built-in clips and a motion file on a character, with a time slider.</summary>
     public sealed class ClipPlayer : MonoBehaviour
     {
-        /// <summary>A .bvh, .fbx, .glb, .gltf, .npz or .usd file; may be left empty.</summary>
+        [Tooltip("A .bvh, .fbx, .glb, .gltf, .npz or .usd file; may be empty.")]
         public string file = "";
 
         AnthroAnimator animator;
@@ -57,7 +57,7 @@ namespace Anthronet.Samples
                 animator.Speed = animator.Speed == 0f ? 1f : 0f;
             }
             var duration = (float)animator.Clip.Duration;
-            // Within the round that it is in: remainders of negative times are negative.
+            // Wrap the time into the clip; remainders of negative times would be negative.
             var time = (float)(animator.Time - duration * Math.Floor(animator.Time / duration));
             var moved = GUILayout.HorizontalSlider(time, 0f, duration);
             if (moved != time)

@@ -3,17 +3,18 @@ using UnityEngine;
 namespace Anthronet.Samples
 {
     /// <summary>
-    /// The people of a population file in rows, spawned within a budget of time per frame, walking on the spot. Assign
-    /// `population.jsonl.txt`, which lies beside this, or a file of your own.
+    /// The people of a population file, spawned in a grid within a time budget per frame, walking in place. Assign the
+    /// sample's `population.jsonl.txt` or a file of your own.
     /// </summary>
     public sealed class Crowd : MonoBehaviour
     {
-        /// <summary>A request a line; without it people are drawn by their seeds alone.</summary>
+        [Tooltip("One request per line; without a file, people are random.")]
         public TextAsset population;
-        /// <summary>Most people; those of the file or this many without.</summary>
+        [Tooltip("Number of people, at most as many as the file has.")]
         public int count = 200;
-        /// <summary>Metres from one to the next.</summary>
-        public float distance = 1.2f;
+        [Tooltip("Distance between neighbours, metres.")]
+        public float spacing = 1.2f;
+        [Tooltip("Time budget per frame for spawning, milliseconds.")]
         public double millisecondsPerFrame = 4.0;
 
         AnthroSpawn spawn;
@@ -27,17 +28,17 @@ namespace Anthronet.Samples
             AnthroRunner.Run(spawn);
         }
 
-        /// <summary>At most so many requests, of a population where there is one.</summary>
-        public static AnthroRequest[] Requests(string population, int most)
+        /// <summary>The first requests of a population, or random ones without a population.</summary>
+        public static AnthroRequest[] Requests(string population, int maxCount)
         {
             if (population != null)
             {
                 var read = AnthroPopulation.Read(population);
-                System.Array.Resize(ref read, Mathf.Min(read.Length, most));
+                System.Array.Resize(ref read, Mathf.Min(read.Length, maxCount));
                 return read;
             }
-            var drawn = new AnthroRequest[most];
-            for (var i = 0; i < most; i++)
+            var drawn = new AnthroRequest[maxCount];
+            for (var i = 0; i < maxCount; i++)
             {
                 drawn[i] = new AnthroRequest
                 {
@@ -51,8 +52,8 @@ namespace Anthronet.Samples
 
         void Place(int index, AnthroCharacter character)
         {
-            character.transform.localPosition = Position(index, spawn.Count, distance);
-            // One that was used before has an animator already.
+            character.transform.localPosition = Position(index, spawn.Count, spacing);
+            // A pooled character has an animator already.
             var animator = character.GetComponent<AnthroAnimator>();
             if (animator == null)
             {
@@ -62,8 +63,8 @@ namespace Anthronet.Samples
             animator.Time = 0.37 * index;
         }
 
-        /// <summary>Rows of a square around the middle.</summary>
-        public static Vector3 Position(int index, int count, float distance)
+        /// <summary>Position in a square grid around the origin.</summary>
+        public static Vector3 Position(int index, int count, float spacing)
         {
             var side = 1;
             while (side * side < count)
@@ -71,7 +72,7 @@ namespace Anthronet.Samples
                 side++;
             }
             return new Vector3(
-                (index % side - 0.5f * (side - 1)) * distance, 0f, (index / side - 0.5f * (side - 1)) * distance);
+                (index % side - 0.5f * (side - 1)) * spacing, 0f, (index / side - 0.5f * (side - 1)) * spacing);
         }
 
         void OnDestroy()

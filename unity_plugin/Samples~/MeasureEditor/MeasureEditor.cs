@@ -2,12 +2,15 @@ using UnityEngine;
 
 namespace Anthronet.Samples
 {
-    /// <summary>A panel over the game with a switch and a slider for every measure: the person follows at once.</summary>
+    /// <summary>An in-game panel with a toggle and a slider for every measure, which change the character at
+    /// once.</summary>
     public sealed class MeasureEditor : MonoBehaviour
     {
-        /// <summary>Measures of the middle come first, then those of the left, which stand for both sides here.</summary>
+        /// <summary>Measures without a side come first, then those of the left, which stand for both sides
+        /// here.</summary>
         const int Shown = 24;
 
+        [Tooltip("Sex of the person.")]
         public AnthroSex sex = AnthroSex.Female;
 
         readonly AnthroMeasureReport[] reports = new AnthroMeasureReport[AnthroMeasures.Count];
@@ -33,7 +36,7 @@ namespace Anthronet.Samples
             {
                 changed |= Row(measure);
             }
-            if (GUILayout.Button("Somebody else"))
+            if (GUILayout.Button("Another person"))
             {
                 request.Seed++;
                 request.Fill = AnthroFill.Sample;
@@ -48,12 +51,12 @@ namespace Anthronet.Samples
             }
         }
 
-        /// <summary>A measure: given or not, and how long.</summary>
-        /// <returns>Whether somebody changed it.</returns>
+        /// <summary>Draws the row of a measure: whether it is set, and its value.</summary>
+        /// <returns>Whether the user changed it.</returns>
         bool Row(int measure)
         {
             double min, max;
-            AnthroModel.Default.Range(measure, out min, out max);
+            AnthroModel.Default.MeasureRange(measure, out min, out max);
             var name = AnthroMeasures.Names[measure].Replace("_left", "");
             var was = request.IsGiven(measure);
             var value = (float)(was ? request[measure] : reports[measure].obtained);
@@ -77,7 +80,7 @@ namespace Anthronet.Samples
             }
             else
             {
-                request.Open(name);
+                request.Unset(name);
             }
             return true;
         }
@@ -93,7 +96,7 @@ namespace Anthronet.Samples
             }
             catch (AnthroException refused)
             {
-                // The person stays as it was.
+                // The character is unchanged.
                 error = refused.Message;
             }
         }

@@ -2,11 +2,11 @@ using UnityEngine;
 
 namespace Anthronet.Samples
 {
-    /// <summary>One person, walking; height and waist may be changed while it plays.</summary>
+    /// <summary>One walking character whose height and waist can be changed while it plays.</summary>
     public sealed class SingleCharacter : MonoBehaviour
     {
-        [Range(1.4f, 2.0f)] public float height = 1.72f;
-        [Range(0.6f, 1.3f)] public float waist = 0.82f;
+        [Tooltip("Height, metres.")] [Range(1.4f, 2.0f)] public float height = 1.72f;
+        [Tooltip("Waist circumference, metres.")] [Range(0.6f, 1.3f)] public float waist = 0.82f;
 
         AnthroCharacter character;
         float shownHeight, shownWaist;
@@ -14,7 +14,7 @@ namespace Anthronet.Samples
         void Start()
         {
             character = AnthroFactory.Create(Request(), new AnthroSettings { finestLod = 0, parent = transform });
-            character.OnReport += body => Debug.Log(body.Sex + ", " + body.Mass.ToString("0.0") + " kg");
+            character.OnGenerated += body => Debug.Log(body.Sex + ", " + body.Mass.ToString("0.0") + " kg");
             character.gameObject.AddComponent<AnthroAnimator>().Play("walk");
         }
 
@@ -27,7 +27,7 @@ namespace Anthronet.Samples
             character.Request = Request();
             try
             {
-                // It walks on: its clip is made anew for the longer or shorter legs.
+                // It walks on: the built-in clip is retargeted to the longer or shorter legs.
                 character.Generate();
             }
             catch (AnthroException error)

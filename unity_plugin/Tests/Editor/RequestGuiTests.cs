@@ -4,14 +4,14 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// What the inspector says of measures.
+    /// Labels and reports in the inspector.
     [TestFixture]
     public static class RequestGuiTests
     {
-        [Test(Description = "labels are the measures in words, the same for both sides")]
+        [Test(Description = "labels are the measures in words with their unit, the same for both sides")]
         public static void Labels()
         {
-            Expect.Equal("Waist circumference", AnthroRequestGui.Label(0), "label");
+            Expect.Equal("Waist circumference (m)", AnthroRequestGui.Label(0), "label");
             for (var i = AnthroRequestGui.GroupSize; i < 2 * AnthroRequestGui.GroupSize; i++)
             {
                 Expect.Equal(AnthroRequestGui.Label(i), AnthroRequestGui.Label(i + AnthroRequestGui.GroupSize), "sides of " + i);
@@ -19,12 +19,12 @@ namespace Anthronet.Tests
             Expect.Equal(24, Enumerable.Range(0, AnthroMeasures.Count).Select(AnthroRequestGui.Label).Distinct().Count(), "labels");
         }
 
-        [Test(Description = "a measure is told with its percentile, given with its residual, open with its interval")]
-        public static void Told()
+        [Test(Description = "reports have the percentile, and the residual of a requested measure or the interval of another")]
+        public static void Reports()
         {
             var report = new AnthroMeasureReport { obtained = 1.7, residual = -0.0004, low90 = 1.6, high90 = 1.8, percentile = 61.7 };
-            Expect.Equal("-0.4 mm, percentile 62", AnthroRequestGui.Told(report, true), "given");
-            Expect.Equal("1.700 m (90 %: 1.600 to 1.800), percentile 62", AnthroRequestGui.Told(report, false), "open");
+            Expect.Equal("residual -0.4 mm, percentile 62", AnthroRequestGui.ReportText(report, true), "given");
+            Expect.Equal("1.700 m (90 %: 1.600 to 1.800), percentile 62", AnthroRequestGui.ReportText(report, false), "open");
         }
     }
 }

@@ -7,11 +7,11 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// Motion: files in, files out, clips.
+    /// Motion files, export and clips.
     [TestFixture]
     public static class ClipTests
     {
-        [Test(Description = "files are written and read back as motions")]
+        [Test(Description = "exported files are read back as motions")]
         public static void Files()
         {
             var file = Path.Combine(Path.GetTempPath(), "anthronet-unity-test-" + Process.GetCurrentProcess().Id + ".glb");
@@ -27,9 +27,9 @@ namespace Anthronet.Tests
                         Expect.Equal("walk", motion.ClipName(0), "its name");
                         Expect.That(motion.ReportJson.StartsWith("{"), "report");
                     }
-                    using (var again = AnthroClip.Open(file, body, new AnthroRetarget { inPlace = true }))
+                    using (var again = AnthroClip.Open(file, body, new AnthroRetargetOptions { inPlace = true }))
                     using (var memory = AnthroMotion.Open(File.ReadAllBytes(file), "person.glb"))
-                    using (var third = memory.Onto(body, 0, new AnthroRetarget { mappingJson = "{}", framesPerSecond = 10 }))
+                    using (var third = memory.Retarget(body, 0, new AnthroRetargetOptions { mappingJson = "{}", framesPerSecond = 10 }))
                     {
                         Expect.Equal(walk.JointCount, again.JointCount, "joints");
                         Expect.Near(10, third.FramesPerSecond, 1e-9, "rate");
@@ -55,11 +55,11 @@ namespace Anthronet.Tests
             using (var body = NativeTests.Body())
             using (var walk = AnthroClip.Builtin("walk", body))
             using (var idle = AnthroClip.Builtin("idle", body))
-            using (var slow = walk.Resampled(10))
+            using (var slow = walk.Resample(10))
             using (var here = walk.InPlace())
             using (var round = walk.Looped(0.2))
-            using (var both = walk.Blended(idle, 0.5f))
-            using (var then = walk.Then(idle, 0.2))
+            using (var both = walk.Blend(idle, 0.5f))
+            using (var then = walk.Crossfade(idle, 0.2))
             {
                 var frames = walk.Bake();
                 var pose = new AnthroTransform[walk.JointCount];
@@ -69,7 +69,7 @@ namespace Anthronet.Tests
                 Expect.That(then.Duration > walk.Duration && both.FrameCount > 1 && round.FrameCount > 1, "durations");
                 here.Sample(here.Duration, AnthroWrap.Once, pose, true);
                 Expect.That(Math.Abs(pose[1].translation.z) < 0.2, "in place, yet at z " + pose[1].translation.z);
-                using (var copy = AnthroClip.Of(body, "copy \u00fc", walk.FramesPerSecond, frames))
+                using (var copy = AnthroClip.FromPoses(body, "copy \u00fc", walk.FramesPerSecond, frames))
                 {
                     Expect.Equal("copy \u00fc", copy.Name, "name");
                     Expect.Equal(walk.FrameCount, copy.FrameCount, "frames");
@@ -79,7 +79,7 @@ namespace Anthronet.Tests
 
         static readonly string[] joints =
         {
-            // Depth, name, offset; depth one less than before closes what is open.
+            // Depth, name, offset; a lower depth closes the joints before.
             "0 Hips 0 95 0", "1 Spine 0 12 0", "2 Spine1 0 14 0", "3 Neck 0 25 0", "4 Head 0 12 0",
             "3 LeftShoulder 4 20 0", "4 LeftArm 14 0 0", "5 LeftForeArm 27 0 0", "6 LeftHand 25 0 0",
             "3 RightShoulder -4 20 0", "4 RightArm -14 0 0", "5 RightForeArm -27 0 0", "6 RightHand -25 0 0",
@@ -87,7 +87,7 @@ namespace Anthronet.Tests
             "1 RightUpLeg -9 -4 0", "2 RightLeg 0 -42 0", "3 RightFoot 0 -41 0", "4 RightToeBase 0 -7 13",
         };
 
-        /// Three frames of a skeleton as CMU's, in centimetres.
+        /// Three frames of a CMU-like skeleton, in centimetres.
         internal static readonly string Bvh = Skeleton() + "MOTION\nFrames: 3\nFrame Time: 0.0333333\n"
             + Frame(0) + Frame(10) + Frame(20);
 
@@ -120,7 +120,7 @@ namespace Anthronet.Tests
             return text.ToString();
         }
 
-        /// The left arm lifted by so many degrees.
+        /// A frame with the left arm raised.
         static string Frame(int degrees)
         {
             var numbers = joints.SelectMany((joint, i) => (i == 0 ? "0 95 0 " : "").Split(new[] { ' ' }, StringSplitOptions.RemoveEmptyEntries)
@@ -128,12 +128,12 @@ namespace Anthronet.Tests
             return string.Join(" ", numbers) + "\n";
         }
 
-        [Test(Description = "a BVH of a few lines comes onto the body: frames, rate, the arm that is lifted")]
+        [Test(Description = "a small BVH file is retargeted: frames, rate, the raised arm")]
         public static void FromBvh()
         {
             using (var body = NativeTests.Body())
             using (var motion = AnthroMotion.Open(System.Text.Encoding.ASCII.GetBytes(Bvh), "arm.bvh"))
-            using (var clip = motion.Onto(body))
+            using (var clip = motion.Retarget(body))
             {
                 Expect.Equal(3, clip.FrameCount, "frames");
                 Expect.Near(30, clip.FramesPerSecond, 0.01, "rate");
@@ -151,10 +151,10 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "motion files of the shared folder come onto a body, one of each format")]
+        [Test(Description = "motion files of the shared folder are retargeted, one of each format")]
         public static void FromFiles()
         {
-            // Beside the repository; ANTHRONET_CLIPS names another place.
+            // Beside the repository; ANTHRONET_CLIPS names another folder.
             var folder = Environment.GetEnvironmentVariable("ANTHRONET_CLIPS");
             if (string.IsNullOrEmpty(folder) || !Directory.Exists(folder))
             {

@@ -3,7 +3,7 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// What tests say, each with words for what did not hold.
+    /// Assertions with a message.
     public static class Expect
     {
         public static void That(bool holds, string otherwise)

@@ -7,20 +7,20 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// Lifetimes of what is native, threads, jobs.
+    /// Lifetimes of native objects, threads, jobs.
     [TestFixture]
     public static class LifetimeTests
     {
-        [Test(Description = "handles are freed once, in any order, and not under a call")]
+        [Test(Description = "native objects are freed once, in any order, and not during a call")]
         public static void Lifetimes()
         {
             var model = AnthroModel.OpenEmbedded();
             var body = model.Generate(new AnthroRequest());
-            var job = model.Start(new[] { new AnthroRequest { Seed = 3 } });
+            var job = model.StartJob(new[] { new AnthroRequest { Seed = 3 } });
             model.Dispose();
             model.Dispose();
             Expect.Throws<ObjectDisposedException>(() => model.Generate(new AnthroRequest()), "model");
-            Expect.Throws<ObjectDisposedException>(() => model.Start(new[] { new AnthroRequest() }), "model");
+            Expect.Throws<ObjectDisposedException>(() => model.StartJob(new[] { new AnthroRequest() }), "model");
             var surface = new AnthroSurface(body, 2);
             var clip = AnthroClip.Builtin("idle", body);
             body.Dispose();
@@ -50,7 +50,7 @@ namespace Anthronet.Tests
             var last = job.Take(0);
             job.Dispose();
             Expect.Equal(3ul, last.Seed, "a body outlives its job and model");
-            // Nobody disposes of these: the finalisers do.
+            // Nobody disposes these: the finalisers do.
             for (var i = 0; i < 20; i++)
             {
                 new AnthroSurface(last, 3);
@@ -102,11 +102,11 @@ namespace Anthronet.Tests
             var requests = Enumerable.Range(1, 300).Select(i => new AnthroRequest { Seed = (ulong)i }).ToArray();
             requests[0] = new AnthroRequest().Set("height", 9);
             var watch = Stopwatch.StartNew();
-            using (var job = AnthroModel.Default.Start(requests))
+            using (var job = AnthroModel.Default.StartJob(requests))
             {
                 Expect.That(watch.ElapsedMilliseconds < 1000, "the start waits");
                 Expect.Equal(300, job.Count, "count");
-                Expect.Code(AnthroError.Busy, "", () => job.Take(299), "not there yet");
+                Expect.Code(AnthroError.Busy, "", () => job.Take(299), "not finished");
                 AnthroBody body;
                 AnthroException error;
                 while (!job.TryTake(1, out body, out error))
@@ -129,7 +129,7 @@ namespace Anthronet.Tests
                 Expect.That(done < 300, "all were made");
                 Expect.Code(AnthroError.Cancelled, "", () => job.Take(299), "will not be");
             }
-            using (var empty = AnthroModel.Default.Start(new AnthroRequest[0]))
+            using (var empty = AnthroModel.Default.StartJob(new AnthroRequest[0]))
             {
                 Expect.Equal(0, empty.Count, "an empty job");
             }

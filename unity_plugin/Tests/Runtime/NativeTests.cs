@@ -8,7 +8,7 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// The wrappers without Unity: errors, lifetimes, jobs, the same bytes as everywhere.
+    /// The wrappers of the native library without Unity: errors, requests, bodies.
     [TestFixture]
     public static class NativeTests
     {
@@ -18,7 +18,7 @@ namespace Anthronet.Tests
             return AnthroModel.Default.Generate(request.Set("height", 1.7).Set("waist_circumference", 0.8));
         }
 
-        [Test(Description = "a missing or foreign library is told with its file")]
+        [Test(Description = "the error of a missing library or one of another release has the file")]
         public static void Missing()
         {
             var error = Library.Missing(new DllNotFoundException("anthronet"));
@@ -29,7 +29,7 @@ namespace Anthronet.Tests
             Expect.That(version.Message.Contains("99") && version.Message.Contains("1"), version.Message);
         }
 
-        [Test(Description = "the version of the library is the package's")]
+        [Test(Description = "library and package have the same version")]
         public static unsafe void Version()
         {
             anthronet_text version;
@@ -38,7 +38,7 @@ namespace Anthronet.Tests
             Expect.Equal(AnthroPackage.Version, Utf8.Text(version), "version");
         }
 
-        [Test(Description = "measures are the library's, in its order")]
+        [Test(Description = "measures have the library's names and order")]
         public static unsafe void Measures()
         {
             Expect.Equal((uint)AnthroMeasures.Count, NativeMethods.anthronet_measure_count(), "count");
@@ -49,12 +49,12 @@ namespace Anthronet.Tests
                 Library.Check(NativeMethods.anthronet_measure_name(i, &name, &error), &error);
                 Expect.Equal(Utf8.Text(name), AnthroMeasures.Names[(int)i], "measure " + i);
                 double min, max;
-                AnthroModel.Default.Range((int)i, out min, out max);
+                AnthroModel.Default.MeasureRange((int)i, out min, out max);
                 Expect.That(0 < min && min < max && max < 3, AnthroMeasures.Names[(int)i] + ": " + min + " to " + max);
             }
         }
 
-        [Test(Description = "requests come through JSON as they were")]
+        [Test(Description = "requests survive a round trip through JSON")]
         public static void Requests()
         {
             var request = new AnthroRequest
@@ -73,7 +73,7 @@ namespace Anthronet.Tests
             Expect.That(again.IsGiven(AnthroMeasures.IndexOf("arm_length_right")), "right arm");
             Expect.That(!again.IsGiven(AnthroMeasures.IndexOf("foot_width_left")), "left foot");
             Expect.That(again.Latent.SequenceEqual(latent), "latent");
-            Expect.That(!again.Open("height").Copy().IsGiven(3), "opened");
+            Expect.That(!again.Unset("height").Copy().IsGiven(3), "opened");
             Expect.Equal(1.83, request[3], "the first is another one");
             Expect.That(new AnthroRequest().Latent == null, "no latent");
         }
@@ -93,22 +93,22 @@ namespace Anthronet.Tests
             Expect.Code(AnthroError.Io, "nowhere", () => AnthroModel.Open("/nowhere/model\u20ac"), "model");
             Expect.Code(AnthroError.Model, "", () => AnthroModel.Open(new byte[0]), "empty model");
             Expect.Code(AnthroError.Enum, "sex", () => model.Generate(new AnthroRequest { Sex = (AnthroSex)9 }), "sex");
-            Expect.Code(AnthroError.Index, "", () => { double a, b; model.Range(36, out a, out b); }, "range");
+            Expect.Code(AnthroError.Index, "", () => { double a, b; model.MeasureRange(36, out a, out b); }, "range");
             Expect.Throws<ArgumentNullException>(() => model.Generate(null), "no request");
             Expect.Throws<ArgumentNullException>(() => AnthroModel.Open((string)null), "no path");
             foreach (var given in new Action[]
             {
                 () => AnthroClip.Builtin("walk", null), () => new AnthroSkinner(null), () => new AnthroSurface(null, 0),
                 () => new AnthroCrowdSkin(null, 1), () => new AnthroCrowdSkin(new AnthroSkinner[1], 1),
-                () => model.Start(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
+                () => model.StartJob(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
                 () => AnthroFactory.CreateAsync(new AnthroRequest[1]), () => AnthroMeshes.Create((AnthroSurface)null, new AnthroJoint[0], "x"),
-                () => new AnthroRequest().Take(null), () => AnthroRequest.FromJson(null),
+                () => new AnthroRequest().CopyFrom(null), () => AnthroRequest.FromJson(null),
             })
             {
                 var missing = Expect.Throws<ArgumentNullException>(() => given(), "nothing given");
                 Expect.That(!string.IsNullOrEmpty(missing.ParamName) && missing.ParamName != "handle", "which one: " + missing);
             }
-            Expect.Throws<OverflowException>(() => { double a, b; model.Range(-1, out a, out b); }, "negative index");
+            Expect.Throws<OverflowException>(() => { double a, b; model.MeasureRange(-1, out a, out b); }, "negative index");
             using (var body = Body())
             {
                 Expect.Code(AnthroError.Size, "36", () => body.Measures(new AnthroMeasureReport[2]), "few reports");
@@ -125,7 +125,7 @@ namespace Anthronet.Tests
             }
         }
 
-        [Test(Description = "bodies have the measures that are asked for")]
+        [Test(Description = "bodies have the requested measures")]
         public static void Bodies()
         {
             using (var body = Body())

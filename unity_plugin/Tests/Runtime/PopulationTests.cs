@@ -2,11 +2,11 @@ using NUnit.Framework;
 
 namespace Anthronet.Tests
 {
-    /// Files of requests.
+    /// Population files.
     [TestFixture]
     public static class PopulationTests
     {
-        [Test(Description = "a population is read line by line, and a bad line is named")]
+        [Test(Description = "a population has one request per line, and errors have the line number")]
         public static void Lines()
         {
             var requests = AnthroPopulation.Read(

@@ -1,11 +1,11 @@
-//! The declarations that Python calls, made from the text of the C header.
+//! The declarations that Python calls, in the words of ctypes.
 //!
-//! cbindgen writes one form of every declaration, so that this reads no more C than that. What it does not know is an
-//! error; `tests/python_declarations.py` compares what it made with what a C compiler makes of the header.
+//! What is not known here is an error; `tests/python/test_declarations.py` compares what was made with what a C compiler makes
+//! of the header.
 
-use std::fmt::Write as _;
-
+use super::declared::{Declared, Function, Type};
 use crate::tools::Outcome;
+use std::fmt::Write as _;
 
 const PREAMBLE: &str = r#""""Declarations of libanthronet: what `include/anthronet.h` says, in the words of ctypes.
 
@@ -29,29 +29,30 @@ const CTYPES: [&str; 12] = [
     "c_void_p",
 ];
 
-/// The Python module that declares what the header declares.
-pub(super) fn declarations(header: &str) -> Outcome<String> {
-    let header = Header::parse(header)?;
+/// The Python module that declares what the sources declare.
+pub(super) fn declarations(declared: &Declared) -> Outcome<String> {
     let mut text = "\n".to_owned();
-    for (name, value) in &header.constants {
-        let _ = writeln!(text, "{name} = {value}");
+    for (name, value) in &declared.constants {
+        let _ = writeln!(text, "{} = {value}", name.strip_prefix("ANTHRONET_").unwrap_or(name));
     }
-    for (name, result, parameters) in &header.callbacks {
-        let kinds = header.parameters(parameters)?;
-        let _ = writeln!(text, "\n{} = CFUNCTYPE({}, {kinds})", class(name), header.result(result)?);
+    for callback in &declared.callbacks {
+        // What a callback is given is not ended by a zero, as bytes would have to be.
+        let kinds = parameters(declared, callback, "c_void_p")?;
+        let result = result(declared, callback)?;
+        let _ = writeln!(text, "\n{} = CFUNCTYPE({result}, {kinds})", class(&callback.name));
     }
-    for (name, fields) in &header.structures {
+    for (name, fields) in in_order_of_use(declared) {
         let _ = write!(text, "\n\nclass {}(Structure):\n    _fields_ = [\n", class(name));
-        for field in fields {
-            let (name, kind) = header.field(field)?;
-            let _ = writeln!(text, "        (\"{name}\", {kind}),");
+        for (name, kind) in fields {
+            let _ = writeln!(text, "        (\"{name}\", {}),", field(declared, kind)?);
         }
         text.push_str("    ]\n");
     }
     text.push_str("\n\n# Name: what it returns, and what it takes.\nFUNCTIONS = {\n");
-    for (name, result, parameters) in &header.functions {
-        let kinds = header.parameters(parameters)?;
-        let _ = writeln!(text, "    \"{name}\": ({}, [{kinds}]),", header.result(result)?);
+    for function in &declared.functions {
+        let kinds = parameters(declared, function, "c_char_p")?;
+        let result = result(declared, function)?;
+        let _ = writeln!(text, "    \"{}\": ({result}, [{kinds}]),", function.name);
     }
     text.push_str("}\n");
     let mut imports = String::new();
@@ -63,136 +64,85 @@ pub(super) fn declarations(header: &str) -> Outcome<String> {
     Ok(format!("{PREAMBLE}\nfrom ctypes import (\n{imports})\n{text}"))
 }
 
-type Function = (String, String, Vec<String>);
+type Structure<'a> = (&'a str, &'a [(String, Type)]);
 
-/// The declarations of the header, in order, each as its words.
-#[derive(Default)]
-struct Header {
-    constants: Vec<(String, String)>,
-    structures: Vec<(String, Vec<String>)>,
-    callbacks: Vec<Function>,
-    functions: Vec<Function>,
+/// The structures in the order in which the functions use them, each after those that it is made of: the header's order.
+fn in_order_of_use(declared: &Declared) -> Vec<Structure<'_>> {
+    fn add<'a>(declared: &'a Declared, kind: &'a Type, found: &mut Vec<Structure<'a>>) {
+        let name = match kind {
+            Type::Pointer { to: inner, .. } | Type::Array(inner, _) => return add(declared, inner, found),
+            Type::Named(name) => name,
+        };
+        if let Some(fields) = declared.fields(name)
+            && found.iter().all(|(other, _)| other != name)
+        {
+            fields.iter().for_each(|(_, kind)| add(declared, kind, found));
+            found.push((name, fields));
+        }
+    }
+    let mut found = Vec::new();
+    for (_, kind) in declared.functions.iter().flat_map(|function| &function.parameters) {
+        add(declared, kind, &mut found);
+    }
+    found
 }
 
-impl Header {
-    fn parse(text: &str) -> Outcome<Self> {
-        let mut header = Self::default();
-        let text = text.split_once("*/").map_or(text, |(_, rest)| rest);
-        let mut declarations = String::new();
-        for line in text.lines() {
-            let line = line.split("//").next().unwrap_or_default().trim();
-            if let Some(definition) = line.strip_prefix("#define ") {
-                if let Some((name, value)) = definition.split_once(' ') {
-                    let name = name.strip_prefix("ANTHRONET_").unwrap_or(name);
-                    header.constants.push((name.to_owned(), value.trim().to_owned()));
-                }
-            } else if !line.starts_with('#') && line != "extern \"C\" {" && !line.starts_with("}  //") {
-                declarations.push_str(line);
-                declarations.push(' ');
-            }
-        }
-        let mut rest = declarations.as_str();
-        while let Some(end) = rest.find([';', '{']) {
-            let (head, tail) = (rest[..end].trim(), &rest[end + 1..]);
-            rest = if rest.as_bytes()[end] == b'{' {
-                let (body, tail) = tail.split_once('}').ok_or("a structure of the header does not end")?;
-                let (name, tail) = tail.split_once(';').ok_or("a structure of the header has no name")?;
-                let fields = body.split(';').map(|f| f.trim().to_owned()).filter(|f| !f.is_empty());
-                header.structures.push((name.trim().to_owned(), fields.collect()));
-                tail
-            } else {
-                header.declaration(head)?;
-                tail
-            };
-        }
-        Ok(header)
-    }
+fn result(declared: &Declared, function: &Function) -> Outcome<String> {
+    function.result.as_ref().map_or_else(|| Ok("None".to_owned()), |kind| value(declared, kind))
+}
 
-    /// A declaration without braces: an alias, a callback, a function.
-    fn declaration(&mut self, words: &str) -> Outcome {
-        let parameters = |list: &str| -> Vec<String> {
-            let list = list.trim_end_matches(')').split(',').map(|p| p.trim().to_owned());
-            list.filter(|parameter| !parameter.is_empty() && parameter != "void").collect()
-        };
-        let unknown = || format!("do not know how to declare `{words}` in Python");
-        if let Some(alias) = words.strip_prefix("typedef ") {
-            if let Some((result, rest)) = alias.split_once(" (*") {
-                let (name, list) = rest.split_once(")(").ok_or_else(unknown)?;
-                self.callbacks.push((name.to_owned(), result.to_owned(), parameters(list)));
-            } else if !alias.starts_with("struct ") && alias != "int32_t anthronet_status" {
-                return Err(unknown());
-            }
-            return Ok(());
+/// A type that is passed by value: a number, a structure as a field, or a callback.
+fn value(declared: &Declared, kind: &Type) -> Outcome<String> {
+    let Type::Named(name) = kind else {
+        return Err("pointers and arrays are not passed by value".to_owned());
+    };
+    let number = match name.as_str() {
+        "i32" => "c_int32",
+        "u32" => "c_uint32",
+        "u64" => "c_uint64",
+        "u8" => "c_uint8",
+        "f32" => "c_float",
+        "f64" => "c_double",
+        "c_char" => "c_char",
+        _ if declared.fields(name).is_some() || declared.callbacks.iter().any(|c| c.name == *name) => {
+            return Ok(class(name));
         }
-        let (head, list) = words.split_once('(').ok_or_else(unknown)?;
-        let (result, name) = head.rsplit_once(' ').ok_or_else(unknown)?;
-        self.functions.push((name.to_owned(), result.to_owned(), parameters(list)));
-        Ok(())
-    }
-
-    fn result(&self, kind: &str) -> Outcome<String> {
-        if kind == "void" { Ok("None".to_owned()) } else { self.value(kind) }
-    }
-
-    /// A type that is passed by value: a number, a structure as a field, or a callback.
-    fn value(&self, kind: &str) -> Outcome<String> {
-        let kind = kind.strip_prefix("struct ").unwrap_or(kind);
-        let number = match kind {
-            "anthronet_status" | "int32_t" => "c_int32",
-            "uint32_t" => "c_uint32",
-            "uint64_t" => "c_uint64",
-            "uint8_t" => "c_uint8",
-            "float" => "c_float",
-            "double" => "c_double",
-            "char" => "c_char",
-            _ if self.callbacks.iter().any(|(name, ..)| name == kind)
-                || self.structures.iter().any(|(name, _)| name == kind) =>
-            {
-                return Ok(class(kind));
-            }
-            _ => return Err(format!("do not know the type `{kind}` in Python")),
-        };
-        Ok(number.to_owned())
-    }
-
-    fn parameters(&self, all: &[String]) -> Outcome<String> {
-        let mut kinds = Vec::new();
-        for (i, words) in all.iter().enumerate() {
-            let counted = all.get(i + 1).is_some_and(|next| next.ends_with(" count"));
-            kinds.push(self.parameter(words, counted)?);
+        _ => {
+            let meant = declared.aliases.get(name);
+            return value(declared, meant.ok_or_else(|| format!("do not know the type `{name}` in Python"))?);
         }
-        Ok(kinds.join(", "))
-    }
+    };
+    Ok(number.to_owned())
+}
 
-    /// Pointers to structures are typed and text is bytes; all others take handles, arrays and addresses alike, and so
-    /// do those that a count follows.
-    fn parameter(&self, words: &str, counted: bool) -> Outcome<String> {
-        let Some((kind, name)) = words.rsplit_once('*') else {
-            let (kind, _) = words.rsplit_once(' ').ok_or_else(|| format!("`{words}` has no name"))?;
-            return self.value(kind);
-        };
-        let pointed = kind.trim().strip_prefix("const ").unwrap_or(kind).trim();
-        let pointed_struct = pointed.strip_prefix("struct ").unwrap_or(pointed);
-        if !counted && self.structures.iter().any(|(name, _)| name == pointed_struct) {
-            return Ok(format!("POINTER({})", class(pointed_struct)));
-        }
-        // What a callback is given is not ended by a zero, as bytes would have to be.
-        let text_in = pointed == "char" && !name.starts_with("out_") && name != "message";
-        Ok(if text_in { "c_char_p" } else { "c_void_p" }.to_owned())
+/// The types of all parameters; `text` is that of text which is read.
+fn parameters(declared: &Declared, function: &Function, text: &str) -> Outcome<String> {
+    let mut kinds = Vec::new();
+    for (i, (_, kind)) in function.parameters.iter().enumerate() {
+        let counted = function.parameters.get(i + 1).is_some_and(|(next, _)| next == "count");
+        kinds.push(parameter(declared, kind, counted, text).map_err(|e| format!("{}: {e}", function.name))?);
     }
+    Ok(kinds.join(", "))
+}
 
-    /// Name and type of a field.
-    fn field(&self, words: &str) -> Outcome<(String, String)> {
-        let unknown = || format!("do not know how to declare the field `{words}` in Python");
-        if let Some((_, name)) = words.rsplit_once('*') {
-            return Ok((name.to_owned(), "c_void_p".to_owned()));
+/// Pointers to structures are typed and text is bytes; all others take handles, arrays and addresses alike, and so
+/// do those that a count follows.
+fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Outcome<String> {
+    let Type::Pointer { constant, to } = kind else { return value(declared, kind) };
+    Ok(match &**to {
+        Type::Named(name) if !counted && declared.fields(name).is_some() => {
+            format!("POINTER({})", class(name))
         }
-        let (kind, name) = words.rsplit_once(' ').ok_or_else(unknown)?;
-        let Some((name, count)) = name.split_once('[') else {
-            return Ok((name.to_owned(), self.value(kind)?));
-        };
-        let count = count.strip_suffix(']').ok_or_else(unknown)?;
-        Ok((name.to_owned(), format!("{} * {count}", self.value(kind)?)))
+        Type::Named(name) if *constant && name == "c_char" => text.to_owned(),
+        _ => "c_void_p".to_owned(),
+    })
+}
+
+fn field(declared: &Declared, kind: &Type) -> Outcome<String> {
+    match kind {
+        Type::Pointer { .. } => Ok("c_void_p".to_owned()),
+        Type::Array(of, count) => Ok(format!("{} * {count}", value(declared, of)?)),
+        Type::Named(_) => value(declared, kind),
     }
 }
 

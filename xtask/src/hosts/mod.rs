@@ -1,7 +1,8 @@
 //! The cross-boundary tests: files of the released command in programs that are not ours.
 //!
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
-//! `skipped NAME: why`; all its other lines are for the reader.
+//! `skipped NAME: why`; all its other lines are for the reader. The tests of the Python package are pytest's, which
+//! `tests/python/conftest.py` makes print the same.
 
 mod animation;
 mod blender;

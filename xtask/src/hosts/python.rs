@@ -6,8 +6,8 @@ use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::{self, Environment};
+use crate::package;
 use crate::tools::{self, Outcome};
-use crate::{bindings, package};
 
 pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
     let python = match &environment.python {
@@ -24,14 +24,12 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             return Ok(());
         }
     };
-    tally.script("the Python wheel", environment.python_script("python_wheel.py")?.arg(&wheel));
     let folder = folder.join("python");
-    tally.script(
-        "type hints of the Python package",
-        environment.python_script("python_types.py")?.arg(&folder),
-    );
-    let header = tools::root().join(bindings::HEADER);
-    let same_bytes = tools::target().join("tmp/same_bytes");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    let mut of_the_wheel = pytest(python, "test_wheel.py", &folder.join("wheel"));
+    tally.script("the Python wheel", of_the_wheel.arg("--wheel").arg(&wheel));
+    let mut types = pytest(python, "test_types.py", &folder.join("types"));
+    tally.script("type hints of the Python package", &mut types);
     let (mut scripts, mut speed) = (Vec::new(), None);
     for version in environment::PYTHONS {
         let clean = match environment::python_with(version, &wheel)? {
@@ -41,38 +39,41 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
                 continue;
             }
         };
-        let folder = folder.join(version);
-        std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
-        let script = |name: &str, arguments: &[&Path]| {
-            let mut command = Command::new(&clean);
-            command
-                .env("PYTHONDONTWRITEBYTECODE", "1")
-                .env_remove("PYTHONPATH")
-                .env_remove("ANTHRONET_LIBRARY");
-            command.arg(tools::root().join("tests").join(name)).args(arguments);
-            command
+        let mut case = |what: &str, tests: &str, arguments: &[&Path]| {
+            let folder = folder.join(format!("{version}-{}", tests.trim_end_matches(".py")));
+            let mut command = pytest(&clean, tests, &folder);
+            command.args(arguments);
+            scripts.push((format!("Python {version}: {what}"), command));
         };
-        let mut case = |what: &str, name: &str, arguments: &[&Path]| {
-            scripts.push((format!("Python {version}: {what}"), script(name, arguments)));
-        };
-        case("interface", "python_api.py", &[&header, &folder]);
-        case("memory and threads", "python_memory.py", &[&folder]);
-        case("README", "python_readme.py", &[&folder]);
+        case("interface", "interface", &[]);
+        case("memory and threads", "test_memory.py", &[]);
+        case("README", "test_readme.py", &[]);
         // None of these depends on the version of Python.
         if version == environment::PYTHONS[0] {
-            case("declarations", "python_declarations.py", &[&header]);
-            case("files", "python_files.py", &[anthronet, &folder]);
+            case("declarations", "test_declarations.py", &[]);
+            case("files", "test_files.py", &[Path::new("--anthronet"), anthronet]);
             // The consumers in C, which come first, have left the list.
-            case("same bytes", "python_same_bytes.py", &[&same_bytes]);
-            speed = Some(script("python_speed.py", &[]));
+            let same_bytes = tools::target().join("tmp/same_bytes");
+            case("same bytes", "test_same_bytes.py", &[Path::new("--same-bytes"), &same_bytes]);
+            speed = Some(pytest(&clean, "test_speed.py", &folder.join("speed")));
         }
     }
     tally.scripts(scripts);
     if let Some(mut speed) = speed {
         tally.script("speed of the Python package", &mut speed);
     }
-    let mut measures = environment.python_script("python_measures.py")?;
+    let mut measures = pytest(python, "test_measures.py", &folder.join("measures"));
     measures.env("PYTHONPATH", tools::root().join("python")).env("ANTHRONET_LIBRARY", package::library()?);
     tally.script("measures of Python's bodies by numpy and scipy", &mut measures);
     Ok(())
+}
+
+/// Runs a file or folder of `tests/python` on the package that this Python has; what its tests write is left in a folder of
+/// their own.
+fn pytest(python: &Path, tests: &str, folder: &Path) -> Command {
+    let mut command = Command::new(python);
+    command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("PYTHONPATH").env_remove("ANTHRONET_LIBRARY");
+    command.args(["-m", "pytest", "--basetemp"]).arg(folder);
+    command.arg(tools::root().join("tests/python").join(tests));
+    command
 }

@@ -7,9 +7,8 @@ use glam::{Quat, Vec2, Vec3};
 use crate::math::RigidTransform;
 use crate::pose::Leg;
 use crate::pose::ik::Reach;
-use crate::skeleton::humanoid::finger;
-use crate::skeleton::{Pose, RestPose, model_from_joints};
-use crate::{Error, Result};
+use crate::skeleton::{Finger, Pose, RigJoint, SidedJoint, Skeleton, model_from_joints};
+use crate::{Error, Result, Side};
 
 /// What of a leg may be used, so that a knee never locks.
 const STRETCH: f32 = 0.992;
@@ -88,7 +87,7 @@ struct ArmJoints {
 
 /// A skeleton at rest with its joints found and its proportions.
 pub(super) struct Figure {
-    pub(super) rest: Arc<RestPose>,
+    pub(super) rest: Arc<Skeleton>,
     model: Vec<RigidTransform>,
     root: usize,
     pelvis: usize,
@@ -102,49 +101,46 @@ pub(super) struct Figure {
     pub(super) leg_bones: [f32; 2],
 }
 
-/// +1 on the left, −1 on the right: what mirrors turns about Y and Z.
-const SIDES: [(&str, f32); 2] = [("l", 1.0), ("r", -1.0)];
-
 impl Figure {
-    pub(super) fn new(rest: &Arc<RestPose>) -> Result<Self> {
-        let joint = |name: &str| rest.require(name);
-        let arm = |side: &str| -> Result<ArmJoints> {
-            let of = |part: &str| joint(&format!("{part}_{side}"));
-            let helpers = [("upperarm_twist_01", -1.0), ("upperarm_twist_02", -0.5)];
+    pub(super) fn new(rest: &Arc<Skeleton>) -> Result<Self> {
+        let joint = |joint: RigJoint| rest.require_rig_joint(joint);
+        let arm = |side: Side| -> Result<ArmJoints> {
+            let of = |part: SidedJoint| joint(part.on(side));
+            let helpers = [(SidedJoint::UpperarmTwist01, -1.0), (SidedJoint::UpperarmTwist02, -0.5)];
+            let is_finger = |joint: RigJoint| {
+                joint.side() == Some(side)
+                    && joint.finger().is_some_and(|(finger, _)| finger != Finger::Thumb)
+            };
+            let fingers = rest.rig_joints().enumerate().filter(|(_, joint)| joint.is_some_and(is_finger));
             Ok(ArmJoints {
-                clavicle: of("clavicle")?,
-                upper: of("upperarm")?,
-                lower: of("lowerarm")?,
-                hand: of("hand")?,
+                clavicle: of(SidedJoint::Clavicle)?,
+                upper: of(SidedJoint::Upperarm)?,
+                lower: of(SidedJoint::Lowerarm)?,
+                hand: of(SidedJoint::Hand)?,
                 helpers: helpers
                     .iter()
-                    .filter_map(|(part, share)| Some((rest.find(&format!("{part}_{side}"))?, *share)))
+                    .filter_map(|(part, share)| Some((rest.rig_joint(part.on(side))?, *share)))
                     .collect(),
-                fingers: (0..rest.len())
-                    .filter(|&joint| {
-                        let name = &rest.names()[joint];
-                        name.ends_with(side) && matches!(finger(name), Some((1.., _)))
-                    })
-                    .collect(),
+                fingers: fingers.map(|(joint, _)| joint).collect(),
             })
         };
         let legs = Leg::both(rest)?;
-        let lengths = legs.map(|leg| leg.limb.length(rest.pose()));
+        let lengths = legs.map(|leg| leg.limb.length(rest.rest_pose()));
         if lengths.iter().any(|l| *l < 1e-3) {
             return Err(Error::invalid(
                 "skeleton",
                 format!("expected legs with a length, got {lengths:?} m"),
             ));
         }
-        let bone = |joint: usize| rest.pose().locals[joint].translation.length();
+        let bone = |joint: usize| rest.rest_pose().locals[joint].translation.length();
         Ok(Self {
             rest: rest.clone(),
             model: rest.model_from_joints(),
-            root: joint("Root")?,
-            pelvis: joint("pelvis")?,
-            spine: [joint("spine_01")?, joint("spine_02")?, joint("spine_03")?],
-            neck: [joint("neck_01")?, joint("head")?],
-            arms: [arm("l")?, arm("r")?],
+            root: joint(RigJoint::Root)?,
+            pelvis: joint(RigJoint::Pelvis)?,
+            spine: [joint(RigJoint::Spine01)?, joint(RigJoint::Spine02)?, joint(RigJoint::Spine03)?],
+            neck: [joint(RigJoint::Neck01)?, joint(RigJoint::Head)?],
+            arms: [arm(Side::Left)?, arm(Side::Right)?],
             leg_length: lengths[0].min(lengths[1]),
             leg_bones: [bone(legs[0].limb.lower), bone(legs[0].limb.end)],
             legs,
@@ -162,7 +158,7 @@ impl Figure {
     /// How much the pelvis would have to come down for legs to reach their feet with a slightly bent knee, metres;
     /// below 0 when there is room.
     pub(super) fn too_high(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         let mut model = Vec::new();
         model_from_joints(self.rest.parents(), &pose.locals, &mut model);
@@ -185,10 +181,10 @@ impl Figure {
 
     /// The pose of a stance.
     pub(super) fn pose(&self, stance: &Stance) -> Pose {
-        let mut pose = self.rest.pose().clone();
+        let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
-        for (f, (_, side)) in SIDES.iter().enumerate() {
-            self.set_arm(&self.arms[f], &stance.arms[f], *side, &mut pose);
+        for (f, side) in Side::ALL.into_iter().enumerate() {
+            self.set_arm(&self.arms[f], &stance.arms[f], side, &mut pose);
         }
         let mut model = Vec::new();
         model_from_joints(self.rest.parents(), &pose.locals, &mut model);
@@ -196,7 +192,7 @@ impl Figure {
             let mut target = self.foot_goal(f, &stance.feet[f]);
             target.translation += stance.root;
             // Bent on its own hinge, so that it is the knee that says where the knee goes.
-            let outwards = -SIDES[f].1 * stance.knees_out.to_radians();
+            let outwards = -Side::ALL[f].sign() * stance.knees_out.to_radians();
             pose.locals[leg.limb.upper].rotation *= Quat::from_rotation_y(outwards);
             pose.locals[leg.limb.lower].rotation *= Quat::from_rotation_x(-0.5);
             leg.limb.reach(&mut pose, leg.above(&model), &Reach { target, softness: 0.0 });
@@ -222,10 +218,10 @@ impl Figure {
         }
     }
 
-    fn set_arm(&self, joints: &ArmJoints, arm: &Arm, side: f32, pose: &mut Pose) {
+    fn set_arm(&self, joints: &ArmJoints, arm: &Arm, side: Side, pose: &mut Pose) {
         let x = |degrees: f32| Quat::from_rotation_x(degrees.to_radians());
-        let y = |degrees: f32| Quat::from_rotation_y(side * degrees.to_radians());
-        let z = |degrees: f32| Quat::from_rotation_z(side * degrees.to_radians());
+        let y = |degrees: f32| Quat::from_rotation_y(side.sign() * degrees.to_radians());
+        let z = |degrees: f32| Quat::from_rotation_z(side.sign() * degrees.to_radians());
         let mut turn = |joint: usize, by: Quat| pose.locals[joint].rotation *= by;
         turn(joints.clavicle, z(arm.shrug));
         turn(joints.upper, y(-arm.forward) * z(-arm.lowered - arm.shrug) * y(-arm.outward));
@@ -245,7 +241,7 @@ impl Figure {
         let (ankle, ball) = (self.model[leg.limb.end], self.model[leg.ball]);
         let heel = ankle.translation + ankle.rotation * leg.heel;
         let pivot = if foot.roll > 0.0 { ball.translation } else { heel };
-        let toe_out = Quat::from_rotation_y(SIDES[f].1 * foot.toe_out.to_radians());
+        let toe_out = Quat::from_rotation_y(Side::ALL[f].sign() * foot.toe_out.to_radians());
         let turn = toe_out * Quat::from_rotation_x(foot.roll.to_radians());
         // Turned about the middle of the foot, rolled about its pivot.
         let middle = (0.5 * (heel + ball.translation)).with_y(0.0);
@@ -257,10 +253,10 @@ impl Figure {
     }
 
     /// Turns joints of the pose about their own axes, degrees as for the left; right joints are mirrored.
-    pub(super) fn turn(&self, pose: &mut Pose, name: &str, x: f32, y: f32, z: f32) {
-        let side = if name.ends_with("_r") { -1.0 } else { 1.0 };
-        if let Some(joint) = self.rest.find(name) {
-            pose.locals[joint].rotation *= euler(Vec3::new(x, side * y, side * z));
+    pub(super) fn turn(&self, pose: &mut Pose, joint: RigJoint, x: f32, y: f32, z: f32) {
+        let sign = joint.side().map_or(1.0, Side::sign);
+        if let Some(joint) = self.rest.rig_joint(joint) {
+            pose.locals[joint].rotation *= euler(Vec3::new(x, sign * y, sign * z));
         }
     }
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::Clip;
 use super::edit::clip_of_poses;
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 use figure::Figure;
 
@@ -37,7 +37,7 @@ const RATE: f64 = 30.0;
 /// # Errors
 /// [`Error::Request`] when the name is not one of [`BUILTIN`], [`Error::Invalid`] naming a joint of our rig that is
 /// missing or has no length.
-pub fn builtin(name: &str, rest: &Arc<RestPose>) -> Result<Clip> {
+pub fn builtin(name: &str, rest: &Arc<Skeleton>) -> Result<Clip> {
     let figure = Figure::new(rest)?;
     let poses: Vec<Pose> = match name {
         "idle" => idle::poses(&figure),

@@ -2,39 +2,53 @@
 
 use super::figure::Figure;
 use super::{RATE, smooth};
-use crate::skeleton::Pose;
+use crate::Side;
+use crate::skeleton::{Pose, RigJoint, SidedJoint};
 
 /// Seconds from one key to the next.
 const STEP: f32 = 0.7;
 
+/// What turns in an exercise.
+#[derive(Clone, Copy)]
+enum Exercised {
+    Middle(RigJoint),
+    /// Both sides together.
+    Both(SidedJoint),
+}
+use Exercised::{Both, Middle};
+
 /// Turns of joints about X, Y, Z in degrees, as for the left, one after the other; both sides move together.
 struct Exercise {
-    /// Joints, without the side; `share` of the turn for each.
-    joints: &'static [(&'static str, f32)],
+    /// Joints and the share of the turn that each takes.
+    joints: &'static [(Exercised, f32)],
     keys: &'static [[f32; 3]],
 }
 
-const fn exercise(joints: &'static [(&'static str, f32)], keys: &'static [[f32; 3]]) -> Exercise {
+const fn exercise(joints: &'static [(Exercised, f32)], keys: &'static [[f32; 3]]) -> Exercise {
     Exercise { joints, keys }
 }
 
-const SPINE: &[(&str, f32)] = &[("spine_01", 0.34), ("spine_02", 0.33), ("spine_03", 0.33)];
-const NECK: &[(&str, f32)] = &[("neck_01", 0.5), ("head", 0.5)];
-const FINGERS: &[(&str, f32)] = &[
-    ("index_01", 1.0),
-    ("index_02", 1.0),
-    ("index_03", 0.7),
-    ("middle_01", 1.0),
-    ("middle_02", 1.0),
-    ("middle_03", 0.7),
-    ("ring_01", 1.0),
-    ("ring_02", 1.0),
-    ("ring_03", 0.7),
-    ("pinky_01", 1.0),
-    ("pinky_02", 1.0),
-    ("pinky_03", 0.7),
-    ("thumb_02", 0.3),
-    ("thumb_03", 0.6),
+const SPINE: &[(Exercised, f32)] = &[
+    (Middle(RigJoint::Spine01), 0.34),
+    (Middle(RigJoint::Spine02), 0.33),
+    (Middle(RigJoint::Spine03), 0.33),
+];
+const NECK: &[(Exercised, f32)] = &[(Middle(RigJoint::Neck01), 0.5), (Middle(RigJoint::Head), 0.5)];
+const FINGERS: &[(Exercised, f32)] = &[
+    (Both(SidedJoint::Index01), 1.0),
+    (Both(SidedJoint::Index02), 1.0),
+    (Both(SidedJoint::Index03), 0.7),
+    (Both(SidedJoint::Middle01), 1.0),
+    (Both(SidedJoint::Middle02), 1.0),
+    (Both(SidedJoint::Middle03), 0.7),
+    (Both(SidedJoint::Ring01), 1.0),
+    (Both(SidedJoint::Ring02), 1.0),
+    (Both(SidedJoint::Ring03), 0.7),
+    (Both(SidedJoint::Pinky01), 1.0),
+    (Both(SidedJoint::Pinky02), 1.0),
+    (Both(SidedJoint::Pinky03), 0.7),
+    (Both(SidedJoint::Thumb02), 0.3),
+    (Both(SidedJoint::Thumb03), 0.6),
 ];
 
 const UPPER_BODY: &[Exercise] = &[
@@ -42,20 +56,23 @@ const UPPER_BODY: &[Exercise] = &[
         NECK,
         &[[45., 0., 0.], [-45., 0., 0.], [0., 65., 0.], [0., -65., 0.], [0., 0., 35.], [0., 0., -35.]],
     ),
-    exercise(&[("jaw", 1.0)], &[[-20., 0., 0.]]),
-    exercise(&[("eye", 1.0)], &[[20., 0., 0.], [-20., 0., 0.]]),
+    exercise(&[(Middle(RigJoint::Jaw), 1.0)], &[[-20., 0., 0.]]),
+    exercise(&[(Both(SidedJoint::Eye), 1.0)], &[[20., 0., 0.], [-20., 0., 0.]]),
     exercise(
         SPINE,
         &[[60., 0., 0.], [-25., 0., 0.], [0., 40., 0.], [0., -40., 0.], [0., 0., 30.], [0., 0., -30.]],
     ),
-    exercise(&[("clavicle", 1.0)], &[[0., 0., 25.], [0., 0., -8.], [20., 0., 0.], [-20., 0., 0.]]),
     exercise(
-        &[("upperarm", 1.0)],
+        &[(Both(SidedJoint::Clavicle), 1.0)],
+        &[[0., 0., 25.], [0., 0., -8.], [20., 0., 0.], [-20., 0., 0.]],
+    ),
+    exercise(
+        &[(Both(SidedJoint::Upperarm), 1.0)],
         &[[0., 0., -80.], [0., 0., 70.], [90., 0., 0.], [-35., 0., 0.], [0., 60., 0.], [0., -70., 0.]],
     ),
-    exercise(&[("lowerarm", 1.0)], &[[140., 0., 0.]]),
+    exercise(&[(Both(SidedJoint::Lowerarm), 1.0)], &[[140., 0., 0.]]),
     exercise(
-        &[("hand", 1.0)],
+        &[(Both(SidedJoint::Hand), 1.0)],
         &[[0., 0., -75.], [0., 0., 65.], [20., 0., 0.], [-35., 0., 0.], [0., -90., 0.]],
     ),
     exercise(FINGERS, &[[0., 0., -75.], [0., 0., 10.]]),
@@ -85,46 +102,43 @@ fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let frames = (STEP * RATE as f32) as usize;
     let share = |frame: usize| smooth(frame as f32 / frames as f32);
-    let mut poses = vec![figure.rest.pose().clone()];
+    let mut poses = vec![figure.rest.rest_pose().clone()];
     for exercise in UPPER_BODY {
         let home = [0.0; 3];
         let stops: Vec<[f32; 3]> = [&[home][..], exercise.keys, &[home]].concat();
         for pair in stops.windows(2) {
             poses.extend((1..=frames).map(|frame| {
-                let mut pose = figure.rest.pose().clone();
+                let mut pose = figure.rest.rest_pose().clone();
                 let [x, y, z] =
                     std::array::from_fn(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * share(frame));
                 for (joint, part) in exercise.joints {
-                    let central = figure.rest.find(joint).is_some();
-                    for name in if central { vec![(*joint).to_owned()] } else { sided(joint) } {
-                        figure.turn(&mut pose, &name, x * part, y * part, z * part);
+                    let turn = |joint| figure.turn(&mut pose, joint, x * part, y * part, z * part);
+                    match *joint {
+                        Middle(joint) => [joint].into_iter().for_each(turn),
+                        Both(joint) => joint.both().into_iter().for_each(turn),
                     }
                 }
                 pose
             }));
         }
     }
-    for side in ["l", "r"] {
+    for side in Side::ALL {
         let up = lifted(figure, LIFTED);
         let stops = [&[lifted(figure, 0.0), up][..], LEG, &[up, lifted(figure, 0.0)]].concat();
         for (i, pair) in stops.windows(2).enumerate() {
             poses.extend((1..=frames).map(|frame| {
-                let mut pose = figure.rest.pose().clone();
+                let mut pose = figure.rest.rest_pose().clone();
                 let mix = |j: usize| pair[0][j] + (pair[1][j] - pair[0][j]) * share(frame);
                 let on_floor = i == 0 || i + 2 == stops.len();
                 let at = if on_floor { lifted(figure, mix(3)) } else { std::array::from_fn(mix) };
                 let [hip_x, hip_y, hip_z, knee, ankle, toes] = at;
-                figure.turn(&mut pose, &format!("thigh_{side}"), hip_x, hip_y, hip_z);
-                figure.turn(&mut pose, &format!("calf_{side}"), -knee, 0.0, 0.0);
-                figure.turn(&mut pose, &format!("foot_{side}"), ankle, 0.0, 0.0);
-                figure.turn(&mut pose, &format!("ball_{side}"), toes, 0.0, 0.0);
+                figure.turn(&mut pose, SidedJoint::Thigh.on(side), hip_x, hip_y, hip_z);
+                figure.turn(&mut pose, SidedJoint::Calf.on(side), -knee, 0.0, 0.0);
+                figure.turn(&mut pose, SidedJoint::Foot.on(side), ankle, 0.0, 0.0);
+                figure.turn(&mut pose, SidedJoint::Ball.on(side), toes, 0.0, 0.0);
                 pose
             }));
         }
     }
     poses
-}
-
-fn sided(joint: &str) -> Vec<String> {
-    ["l", "r"].map(|side| format!("{joint}_{side}")).to_vec()
 }

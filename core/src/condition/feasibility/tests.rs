@@ -182,12 +182,12 @@ proptest! {
             }
             // Nor are there smaller ones: no name and no pair of names of the request, sides together.
             let mut all: Vec<_> =
-                MeasureId::all().filter(|id| mask[id.index()]).map(|id| stem(id.name())).collect();
+                MeasureId::all().filter(|id| mask[id.index()]).map(|id| id.base_name()).collect();
             all.sort_unstable();
             all.dedup();
             let of = |names: &[&str]| {
                 std::array::from_fn(|i| {
-                    given[i].filter(|_| names.contains(&stem(MeasureId::from_index(i).unwrap().name())))
+                    given[i].filter(|_| names.contains(&MeasureId::from_index(i).unwrap().base_name()))
                 })
             };
             for (i, a) in all.iter().enumerate() {
@@ -201,5 +201,5 @@ proptest! {
 }
 
 fn stem(name: &str) -> &str {
-    name.trim_end_matches("_left").trim_end_matches("_right")
+    MeasureId::from_name(name).unwrap().base_name()
 }

@@ -160,7 +160,8 @@ fn taller_people_have_longer_arms_and_are_likelier_men() {
 #[test]
 fn percentiles_are_linear_between_quantiles() {
     let mean = [0.0; MEASURE_COUNT];
-    let identity: Vec<_> = (0..36 * 36).map(|i| f64::from(u8::from(i % 37 == 0))).collect();
+    let n = MEASURE_COUNT;
+    let identity: Vec<_> = (0..n * n).map(|i| f64::from(u8::from(i % (n + 1) == 0))).collect();
     let mut table = quantiles_of(&mean);
     table[10] = 9.0;
     let p = SexPrior::new(&mean, &identity, &table).unwrap();
@@ -188,7 +189,7 @@ fn damaged_priors_are_refused() {
         let message = SexPrior::new(m, c, q).unwrap_err().to_string();
         assert!(message.contains(word), "{message}");
     };
-    refused(&mean[1..], &covariance, &table, "36");
+    refused(&mean[1..], &covariance, &table, &MEASURE_COUNT.to_string());
     refused(&mean, &covariance[1..], &table, "1296");
     refused(&mean, &covariance, &[], "3636");
     let with = |data: &[f64], i: usize, v: f64| {
@@ -201,7 +202,12 @@ fn damaged_priors_are_refused() {
     refused(&mean, &with(&covariance, 37, -1.0), &table, "positive definite");
     refused(&mean, &with(&covariance, 0, 1e-9), &table, "positive definite");
     refused(&mean, &covariance, &with(&table, 5, 1e9), "waist_circumference");
-    assert!(Prior::from_slices(&mean, &covariance, &table).unwrap_err().to_string().contains("2 x 36"));
+    assert!(
+        Prior::from_slices(&mean, &covariance, &table)
+            .unwrap_err()
+            .to_string()
+            .contains(&format!("2 x {MEASURE_COUNT}"))
+    );
     let twice = |v: &[f64]| [v, v].concat();
     Prior::from_slices(&twice(&mean), &twice(&covariance), &twice(&table)).unwrap();
     assert!(good.condition(&[Some(f64::NAN); MEASURE_COUNT]).is_err());

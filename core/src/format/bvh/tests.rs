@@ -23,11 +23,11 @@ fn reads_joints_and_frames() {
     let motion = read(SMALL).unwrap();
     let clip = &motion.clips[0];
     assert_eq!((clip.name(), clip.frame_count(), clip.frames_per_second()), ("walk", 2, 30.0));
-    let rest = clip.rest();
+    let rest = clip.skeleton();
     assert_eq!(rest.names(), ["Hips", "Left Leg"]);
     assert_eq!(rest.parents(), [None, Some(0)]);
     assert_eq!(rest.ends(), [None, Some(Vec3::new(0.0, -0.9, 0.0))]);
-    assert_eq!(rest.pose().locals[1].translation, Vec3::new(0.1, -0.1, 0.0));
+    assert_eq!(rest.rest_pose().locals[1].translation, Vec3::new(0.1, -0.1, 0.0));
     let pose = clip.pose(0);
     // Numbers go by the order of channels: x, z, y.
     assert_eq!(pose.locals[0].translation, Vec3::new(1.0, 3.0, 2.0));
@@ -62,7 +62,7 @@ fn several_roots_and_moving_joints() {
         .replace(" 0 0 0 0\n", " 0 0 0 -0.1 0\n");
     let motion = read(&text).unwrap();
     let clip = &motion.clips[0];
-    assert_eq!(clip.rest().parents(), [None, Some(0), None]);
+    assert_eq!(clip.skeleton().parents(), [None, Some(0), None]);
     // The channel replaces its number of the offset; the others stay.
     assert_eq!(clip.pose(0).locals[1].translation, Vec3::new(0.1, -0.5, 0.0));
     assert_eq!(clip.translations().iter().map(|t| t.joint).collect::<Vec<_>>(), [0, 1]);
@@ -71,7 +71,7 @@ fn several_roots_and_moving_joints() {
 #[test]
 fn a_second_joint_of_a_name_is_renamed() {
     let motion = read(&SMALL.replace("Left Leg", "Hips")).unwrap();
-    assert_eq!(motion.clips[0].rest().names(), ["Hips", "Hips.1"]);
+    assert_eq!(motion.clips[0].skeleton().names(), ["Hips", "Hips.1"]);
     assert!(motion.report.warnings.iter().any(|w| w.contains("`Hips.1`")), "{:?}", motion.report.warnings);
 }
 

@@ -134,7 +134,7 @@ fn bones_turn_as_their_curves_say() {
     let motion = read(SMALL).unwrap();
     let clip = &motion.clips[0];
     assert_eq!((clip.name(), clip.frame_count(), clip.frames_per_second()), ("Take 001", 31, 30.0));
-    assert_eq!(clip.rest().names(), ["mixamorig:Hips", "mixamorig:LeftUpLeg"]);
+    assert_eq!(clip.skeleton().names(), ["mixamorig:Hips", "mixamorig:LeftUpLeg"]);
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::File));
     assert_eq!((motion.report.unit, motion.report.unit_found), (Unit::Centimetre, Found::File));
     let [hips, leg] = clip.pose(30).locals[..] else { panic!() };
@@ -145,7 +145,10 @@ fn bones_turn_as_their_curves_say() {
     assert!(leg.rotation.dot(turned).abs() > 1.0 - 1e-5, "{leg:?}");
     let half = Quat::from_rotation_z(FRAC_PI_2) * Quat::from_rotation_x(FRAC_PI_2 / 2.0);
     assert!(clip.pose(15).locals[1].rotation.dot(half).abs() > 1.0 - 1e-5);
-    assert!(clip.rest().pose().locals[1].rotation.dot(Quat::from_rotation_z(FRAC_PI_2)).abs() > 1.0 - 1e-5);
+    assert!(
+        clip.skeleton().rest_pose().locals[1].rotation.dot(Quat::from_rotation_z(FRAC_PI_2)).abs()
+            > 1.0 - 1e-5
+    );
 }
 
 #[test]

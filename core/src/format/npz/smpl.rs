@@ -6,6 +6,7 @@
 
 use glam::{Quat, Vec3};
 
+use crate::Side;
 use crate::math::RigidTransform;
 
 /// A rest pose: +Y up, facing +Z, metres; joints rest unturned.
@@ -118,8 +119,9 @@ impl Building {
     }
 
     fn add_hands(&mut self) {
-        for (side, sign) in [("left", 1.0), ("right", -1.0)] {
-            let mirror = |v: Vec3| Vec3::new(v.x * sign, v.y, v.z);
+        for side in Side::ALL {
+            let mirror = |v: Vec3| Vec3::new(v.x * side.sign(), v.y, v.z);
+            let side = side.name();
             for (finger, knuckle, lengths) in FINGERS {
                 let along = if finger == "thumb" { Vec3::new(0.6, 0.0, 0.8) } else { Vec3::X };
                 let (mut place, mut parent) = (Vec3::from(knuckle), format!("{side}_wrist"));

@@ -61,13 +61,13 @@ fn every_model_of_the_family_stands_on_its_feet() {
             (format, Axis::Z, Found::File)
         );
         assert_eq!((clip.name(), clip.frame_count(), clip.frames_per_second()), ("walk", 2, 120.0));
-        assert_eq!(clip.rest().len(), joints);
+        assert_eq!(clip.skeleton().len(), joints);
         let place = |frame: usize, name: &str| {
-            let pose = clip.pose(frame).model_from_joints(clip.rest().parents());
-            pose[clip.rest().find(name).unwrap()].translation
+            let pose = clip.pose(frame).model_from_joints(clip.skeleton().parents());
+            pose[clip.skeleton().find(name).unwrap()].translation
         };
         // The rest pose, which the root's turn and the file's axis leave as it is.
-        for (joint, rest) in clip.rest().names().iter().zip(clip.rest().model_from_joints()) {
+        for (joint, rest) in clip.skeleton().names().iter().zip(clip.skeleton().model_from_joints()) {
             assert!(place(0, joint).distance(rest.translation) < 1e-5, "{joint}");
         }
         assert!(place(1, "pelvis").distance(Vec3::new(0.1, 0.95, -0.2)) < 1e-6);

@@ -10,7 +10,7 @@ use super::raw::Raw;
 use super::{Found, Motion, ReadOptions, ReadReport};
 use crate::Result;
 use crate::clip::Clip;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
 /// What a body of unknown unit is taken to be tall, metres.
@@ -25,14 +25,14 @@ const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
 /// # Errors
 /// [`Error::Invalid`](crate::Error::Invalid) when the joints or motions contradict themselves.
 pub(super) fn settle(mut raw: Raw, options: &ReadOptions) -> Result<Motion> {
-    let mut rest = RestPose::new(
+    let mut rest = Skeleton::new(
         std::mem::take(&mut raw.names),
         raw.parents.clone(),
         std::mem::take(&mut raw.rest),
         raw.ends.clone(),
     )?;
     raw.names = rest.names().to_vec();
-    raw.rest = rest.pose().locals.clone();
+    raw.rest = rest.rest_pose().locals.clone();
     let body = Proportions::of(&raw);
     let height = body.stature(&raw);
     let (unit, unit_found) = unit(&mut raw, &body, height, options);
@@ -44,7 +44,7 @@ pub(super) fn settle(mut raw: Raw, options: &ReadOptions) -> Result<Motion> {
     }
 
     convert(&mut raw, unit, up);
-    rest = RestPose::new(raw.names, raw.parents, raw.rest, raw.ends)?;
+    rest = Skeleton::new(raw.names, raw.parents, raw.rest, raw.ends)?;
     let rest = Arc::new(rest);
     let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
     let clip = |take: super::raw::Take| {

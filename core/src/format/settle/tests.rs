@@ -49,8 +49,8 @@ fn read(text: &str, options: &ReadOptions) -> Motion {
 /// Joints of the first frame.
 fn joint(motion: &Motion, name: &str) -> Vec3 {
     let clip = &motion.clips[0];
-    let joints = clip.pose(0).model_from_joints(clip.rest().parents());
-    joints[clip.rest().find(name).unwrap()].translation
+    let joints = clip.pose(0).model_from_joints(clip.skeleton().parents());
+    joints[clip.skeleton().find(name).unwrap()].translation
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn units_and_axes_are_found_from_the_body() {
             {
                 assert!(joint(&motion, name).distance(place.into()) < 1e-5, "{name} in {unit}, {up} up");
             }
-            let rest = motion.clips[0].rest();
+            let rest = motion.clips[0].skeleton();
             let neck = rest.model_from_joints()[rest.find("Neck").unwrap()].translation;
             assert!(neck.distance(Vec3::new(0.0, 0.55, 0.0)) < 1e-5, "the rest pose stands, too");
             let toes = rest.ends()[rest.find("LeftFoot").unwrap()].unwrap();

@@ -2,10 +2,11 @@
 use crate::pose::limits::JointLimits;
 use std::sync::Arc;
 
+use crate::Side;
 use crate::clip::{BUILTIN, builtin};
 use crate::retarget::feet;
 use crate::retarget::feet::FeetOptions;
-use crate::skeleton::RestPose;
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 use crate::testing::bodies::bodies;
 
 #[test]
@@ -48,24 +49,27 @@ fn the_last_frame_is_the_first_but_for_the_way() {
 fn walking_looks_like_walking() {
     for (body, rest) in bodies() {
         let clip = builtin("walk", &rest).unwrap();
-        let joint = |name: &str| rest.find(name).unwrap();
         for frame in 0..clip.frame_count() {
             let model = clip.pose(frame).model_from_joints(rest.parents());
-            let at = |name: &str| model[joint(name)].translation;
-            for side in ["l", "r"] {
-                let [hip, knee, ankle] = ["thigh", "calf", "foot"].map(|j| at(&format!("{j}_{side}")));
+            let at = |joint: RigJoint| model[rest.rig_joint(joint).unwrap()].translation;
+            for side in Side::ALL {
+                let leg = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot];
+                let [hip, knee, ankle] = leg.map(|joint| at(joint.on(side)));
                 let share = (knee.y - ankle.y) / (hip.y - ankle.y);
                 assert!(knee.z > (ankle + (hip - ankle) * share).z, "{body} {frame}: knee behind the leg");
-                let [shoulder, elbow, wrist] =
-                    ["upperarm", "lowerarm", "hand"].map(|j| at(&format!("{j}_{side}")));
+                let arm = [SidedJoint::Upperarm, SidedJoint::Lowerarm, SidedJoint::Hand];
+                let [shoulder, elbow, wrist] = arm.map(|joint| at(joint.on(side)));
                 assert!(elbow.y < shoulder.y && wrist.y < elbow.y, "{body} {frame}: arms hang");
                 let share = (elbow.y - wrist.y) / (shoulder.y - wrist.y);
                 assert!(elbow.z < (wrist + (shoulder - wrist) * share).z, "{body} {frame}: elbow in front");
-                let toes = at(&format!("ball_{side}")) - ankle;
+                let toes = at(SidedJoint::Ball.on(side)) - ankle;
                 assert!(toes.z > libm::fabsf(toes.x), "{body} {frame}: foot points aside");
             }
             let forward = model[0].translation.z;
-            assert!((at("pelvis").z - forward).abs() < 0.1, "{body} {frame}: the root is under the pelvis");
+            assert!(
+                (at(RigJoint::Pelvis).z - forward).abs() < 0.1,
+                "{body} {frame}: the root is under the pelvis"
+            );
         }
         // A comfortable walk: 1.0 to 1.6 m/s for legs of 0.6 to 1.1 m.
         let way = clip.pose(clip.frame_count() - 1).locals[0].translation.z;
@@ -80,7 +84,7 @@ fn names_what_is_wrong() {
     let error = builtin("dance", &rest).unwrap_err().to_string();
     assert!(error.contains("idle, walk") && error.contains("`dance`"), "{error}");
     let root = crate::math::RigidTransform::IDENTITY;
-    let rest = RestPose::new(vec!["Root".into()], vec![None], vec![root], vec![None]).unwrap();
+    let rest = Skeleton::new(vec!["Root".into()], vec![None], vec![root], vec![None]).unwrap();
     let error = builtin("idle", &Arc::new(rest)).unwrap_err().to_string();
     assert!(error.contains("`thigh_l`"), "{error}");
 }

@@ -57,7 +57,7 @@ pub struct Contacts {
 /// [`Error`](crate::Error) naming a joint of the legs that is missing or an option out of range.
 pub fn contacts(clip: &Clip, options: &FeetOptions) -> Result<Contacts> {
     options.check()?;
-    let legs = Leg::both(clip.rest())?;
+    let legs = Leg::both(clip.skeleton())?;
     let mut tracks = soles::tracks(clip, &legs, 0.0);
     let floor = if options.find_floor { floor_of(&tracks) } else { 0.0 };
     for sole in tracks.iter_mut().flatten() {

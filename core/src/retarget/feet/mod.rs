@@ -114,7 +114,7 @@ pub struct FeetReport {
 /// # Errors
 /// [`Error::Invalid`] when a joint of the legs is missing or a contact is beyond the last frame.
 pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
-    let legs = Leg::both(clip.rest())?;
+    let legs = Leg::both(clip.skeleton())?;
     let last = contacts.feet.iter().flatten().map(|c| c.end).max().unwrap_or(0);
     if last > clip.frame_count() {
         let message = format!("contacts up to frame {last} of a clip of {}", clip.frame_count());

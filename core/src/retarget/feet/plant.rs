@@ -17,7 +17,7 @@ use crate::pose::Leg;
 use crate::pose::SwingTwist;
 use crate::pose::ik::Reach;
 use crate::pose::limits::JointLimits;
-use crate::skeleton::{Pose, RestPose, model_from_joints};
+use crate::skeleton::{Pose, RigJoint, Skeleton, model_from_joints};
 
 /// The last part of a leg's stretch, over which it slows down; the pelvis sinks so that feet on the floor need none.
 const SOFTNESS: f32 = 0.001;
@@ -76,9 +76,9 @@ pub fn plant_loop(clip: &Clip, options: &FeetOptions) -> Result<(Clip, FeetRepor
 /// The planted clip, the contacts of the one that came in, and the report without its measures.
 fn held(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetReport)> {
     let found = contacts(clip, options)?;
-    let rest = clip.rest();
+    let rest = clip.skeleton();
     let legs = Leg::both(rest)?;
-    let pelvis = rest.require("pelvis")?;
+    let pelvis = rest.require_rig_joint(RigJoint::Pelvis)?;
     let blend = libm::roundf(options.blend * clip.frames_per_second() as f32) as usize;
 
     let corrected = |floor: f32| -> [Vec<Correction>; 2] {
@@ -113,7 +113,7 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
     let mut rises = Vec::new();
     let mut model = Vec::new();
     for_each_pose(clip, |frame, pose| {
-        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+        model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
         for (foot, leg) in legs.iter().enumerate().filter(|(foot, _)| standing(*foot, frame)) {
             let (ankle, ball) = (model[leg.limb.end], model[leg.ball]);
             let moved = feet[foot][frame].apply(ankle.translation, leg.points(ankle, ball).joint);
@@ -126,7 +126,7 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
 
 struct Planter<'a> {
     legs: [Leg; 2],
-    rest: &'a RestPose,
+    rest: &'a Skeleton,
     limits: JointLimits,
     floor: f32,
     options: &'a FeetOptions,
@@ -141,7 +141,7 @@ impl Planter<'_> {
         pelvis: usize,
         blend: usize,
     ) -> Result<(Clip, Vec<f32>)> {
-        let rest = clip.rest();
+        let rest = clip.skeleton();
         let drops = self.pelvis_drops(clip, feet, blend);
         let mut rotations = Vec::with_capacity(clip.frame_count() * rest.len());
         let mut places = Vec::with_capacity(clip.frame_count());
@@ -195,7 +195,7 @@ impl Planter<'_> {
         let mut needed = vec![0.0_f32; clip.frame_count()];
         let mut model = Vec::new();
         for_each_pose(clip, |frame, pose| {
-            model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+            model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
             for (leg, corrections) in self.legs.iter().zip(feet) {
                 let goal = self.goal(leg, &model, &corrections[frame]).translation;
                 let hip = self.over_floor(model[leg.limb.upper]).translation;
@@ -279,7 +279,7 @@ impl Planter<'_> {
 
     /// Bends the toes of every frame, within their limits.
     fn bend_toes(&self, leg: &Leg, bends: &[f32], pose: &mut Pose, rotations: &mut [Quat]) {
-        let at_rest = self.rest.pose().locals[leg.ball].rotation;
+        let at_rest = self.rest.rest_pose().locals[leg.ball].rotation;
         for (bend, frame) in bends.iter().zip(rotations.chunks_exact_mut(self.rest.len())) {
             let limit = self.limits.get(leg.ball).map_or(PI, |limit| limit.swing_x[1]);
             let bent = SwingTwist::of(at_rest.conjugate() * frame[leg.ball]).swing.x;

@@ -121,11 +121,11 @@ fn at(joint: RigidTransform, point: Vec3) -> Vec3 {
 
 /// How far what touches goes over the floor, contact by contact, from each of its frames to the next.
 pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Vec<Vec3>> {
-    let sole = RoundSole::of(leg, &clip.rest().model_from_joints());
+    let sole = RoundSole::of(leg, &clip.skeleton().model_from_joints());
     let mut joints = Vec::with_capacity(clip.frame_count());
     let mut model = Vec::new();
     for_each_pose(clip, |_, pose| {
-        model_from_joints(clip.rest().parents(), &pose.locals, &mut model);
+        model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
         joints.push([model[leg.limb.end], model[leg.ball]]);
     });
     let of_contact = |contact: &Contact| {
@@ -171,7 +171,7 @@ mod tests {
 
     const POINTS: [FootPoint; 2] = [FootPoint::Heel, FootPoint::Ball];
 
-    fn left(rest: &crate::skeleton::RestPose) -> (RoundSole, [RigidTransform; 2]) {
+    fn left(rest: &crate::skeleton::Skeleton) -> (RoundSole, [RigidTransform; 2]) {
         let (leg, model) = (Leg::both(rest).unwrap()[0], rest.model_from_joints());
         (RoundSole::of(&leg, &model), [model[leg.limb.end], model[leg.ball]])
     }

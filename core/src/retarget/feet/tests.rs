@@ -8,7 +8,7 @@ use crate::testing::bodies::bodies;
 
 /// The walk with everything wrong that a retargeted capture has: a floor off by 7 cm, a way scaled by 1.06 so that feet
 /// slide, noise of 2 mm on the pelvis, knees turned by up to 2°.
-fn spoilt(rest: &std::sync::Arc<crate::skeleton::RestPose>) -> Clip {
+fn spoilt(rest: &std::sync::Arc<crate::skeleton::Skeleton>) -> Clip {
     let walk = builtin("walk", rest).unwrap();
     let mut random = Random::new(5, 1);
     let mut noise = |size: f64| (random.uniform() - 0.5) as f32 * size as f32;
@@ -72,8 +72,8 @@ fn feet_are_held_and_lifted_out_of_the_floor() {
 }
 
 /// Somebody who stands on the tips of curled toes and then is lifted by 3 cm a frame.
-fn lifted(rest: &std::sync::Arc<crate::skeleton::RestPose>) -> Clip {
-    let mut pose = rest.pose().clone();
+fn lifted(rest: &std::sync::Arc<crate::skeleton::Skeleton>) -> Clip {
+    let mut pose = rest.rest_pose().clone();
     for (joint, degrees) in [("foot_l", -65.0_f32), ("foot_r", -65.0), ("ball_l", -45.0), ("ball_r", -45.0)] {
         pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_rotation_x(degrees.to_radians());
     }
@@ -151,7 +151,7 @@ fn names_what_is_wrong() {
 #[test]
 fn one_frame_is_enough() {
     let (_, rest) = bodies().remove(0);
-    let rotations = rest.rotations().collect();
+    let rotations = rest.rest_rotations().collect();
     let tracks = vec![TranslationTrack { joint: 0, values: vec![Vec3::Y * -0.3] }];
     let clip = Clip::new("c".into(), rest.clone(), 30.0, rotations, tracks).unwrap();
     let (planted, report) = plant(&clip, &FeetOptions::default()).unwrap();

@@ -9,8 +9,9 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::skeleton::RestPose;
-use crate::skeleton::humanoid::FINGERS;
+use super::Slot;
+use crate::Side;
+use crate::skeleton::{Finger, RigJoint, SidedJoint, Skeleton};
 
 /// Upper arm and forearm as parts of thigh and calf together: 50th percentiles of adults (Winter, *Biomechanics and
 /// Motor Control of Human Movement*, table 4.1: 0.186 and 0.146 of height to 0.245 and 0.246).
@@ -18,7 +19,7 @@ const UPPER_ARM: f32 = 0.38;
 const FOREARM: f32 = 0.30;
 
 struct Tree<'a> {
-    rest: &'a RestPose,
+    rest: &'a Skeleton,
     places: Vec<Vec3>,
     children: Vec<Vec<usize>>,
     /// The child that the longest way down goes to; none where no way has a length.
@@ -29,7 +30,7 @@ struct Tree<'a> {
 const MAX_LIMB: usize = 24;
 
 /// Our joint to source joint, as far as it was found.
-pub(super) fn find(rest: &RestPose) -> BTreeMap<String, usize> {
+pub(super) fn find(rest: &Skeleton) -> BTreeMap<Slot, usize> {
     let tree = Tree::new(rest);
     let mut found = BTreeMap::new();
     let Some((hips, legs)) = tree.hips() else { return found };
@@ -40,11 +41,12 @@ pub(super) fn find(rest: &RestPose) -> BTreeMap<String, usize> {
     let front = front.try_normalize().unwrap_or(Vec3::Z);
     let left = Vec3::Y.cross(front);
     let first_is_left = (tree.places[first.joints[0]] - tree.places[second.joints[0]]).dot(left) >= 0.0;
-    let sides = if first_is_left { ["l", "r"] } else { ["r", "l"] };
-    found.insert("pelvis".to_owned(), hips);
-    for (leg, side) in limbs.iter().zip(sides) {
-        for (name, &joint) in ["thigh", "calf", "foot", "ball"].iter().zip(&leg.joints) {
-            found.insert(format!("{name}_{side}"), joint);
+    let first_side = if first_is_left { Side::Left } else { Side::Right };
+    found.insert(RigJoint::Pelvis.into(), hips);
+    for (leg, side) in [(first, first_side), (second, first_side.mirrored())] {
+        let ours = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball];
+        for (ours, &joint) in ours.iter().zip(&leg.joints) {
+            found.insert(ours.on(side).into(), joint);
         }
     }
     let leg_length = limbs.iter().map(|leg| leg.length).sum::<f32>() / 2.0;
@@ -62,7 +64,7 @@ struct Leg {
 }
 
 impl<'a> Tree<'a> {
-    fn new(rest: &'a RestPose) -> Self {
+    fn new(rest: &'a Skeleton) -> Self {
         let model = rest.model_from_joints();
         let mut children = vec![Vec::new(); rest.len()];
         for (joint, parent) in rest.parents().iter().enumerate() {
@@ -184,14 +186,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Spine, neck, head and arms.
-    fn trunk(
-        &self,
-        hips: usize,
-        legs: &[usize; 2],
-        left: Vec3,
-        leg: f32,
-        found: &mut BTreeMap<String, usize>,
-    ) {
+    fn trunk(&self, hips: usize, legs: &[usize; 2], left: Vec3, leg: f32, found: &mut BTreeMap<Slot, usize>) {
         let centre = self.places[hips];
         let branches: Vec<usize> = self.below(hips).into_iter().filter(|j| !legs.contains(j)).collect();
         // The chest: the deepest joint with an arm on each side.
@@ -210,11 +205,11 @@ impl<'a> Tree<'a> {
         if chest == hips {
             return;
         }
-        for (branch, side) in [(left_arm, "l"), (right_arm, "r")] {
+        for (branch, side) in [(left_arm, Side::Left), (right_arm, Side::Right)] {
             self.arm(branch, side, leg, left.cross(Vec3::Y), found);
         }
         if let Some(&first) = self.path(hips, chest).get(1) {
-            found.insert("spine_01".to_owned(), first);
+            found.insert(RigJoint::Spine01.into(), first);
         }
         let head = self.children[chest]
             .iter()
@@ -227,20 +222,20 @@ impl<'a> Tree<'a> {
             });
         let Some(path) = head else { return };
         // The joint of the head stands a sixth of the leg above the shoulders; a head that carries eyes branches.
-        let shoulders = ["l", "r"].iter().filter_map(|s| found.get(&format!("upperarm_{s}")));
+        let shoulders = SidedJoint::Upperarm.both().into_iter().filter_map(|joint| found.get(&joint.into()));
         let shoulder = shoulders.map(|&j| self.places[j].y).fold(f32::NEG_INFINITY, f32::max);
         let miss = |joint: usize| (self.places[joint].y - shoulder - 0.17 * leg).abs();
         let head = path.iter().position(|&j| self.children[j].len() > 1).or_else(|| {
             (0..path.len()).min_by(|&a, &b| miss(path[a]).total_cmp(&miss(path[b])).then(b.cmp(&a)))
         });
         let Some(head) = head else { return };
-        found.insert("head".to_owned(), path[head]);
+        found.insert(RigJoint::Head.into(), path[head]);
         if head > 0 {
-            found.insert("neck_01".to_owned(), path[0]);
+            found.insert(RigJoint::Neck01.into(), path[0]);
         }
     }
 
-    fn arm(&self, branch: usize, side: &str, leg: f32, front: Vec3, found: &mut BTreeMap<String, usize>) {
+    fn arm(&self, branch: usize, side: Side, leg: f32, front: Vec3, found: &mut BTreeMap<Slot, usize>) {
         let mut path = self.longest(branch);
         path.truncate(MAX_LIMB);
         let mut best: Option<(f32, [usize; 3])> = None;
@@ -261,17 +256,19 @@ impl<'a> Tree<'a> {
             }
         }
         let Some((_, [shoulder, elbow, wrist])) = best else { return };
-        for (name, at) in [("upperarm", shoulder), ("lowerarm", elbow), ("hand", wrist)] {
-            found.insert(format!("{name}_{side}"), path[at]);
+        for (ours, at) in
+            [(SidedJoint::Upperarm, shoulder), (SidedJoint::Lowerarm, elbow), (SidedJoint::Hand, wrist)]
+        {
+            found.insert(ours.on(side).into(), path[at]);
         }
         if shoulder > 0 {
-            found.insert(format!("clavicle_{side}"), path[0]);
+            found.insert(SidedJoint::Clavicle.on(side).into(), path[0]);
         }
         self.fingers(path[wrist], side, front, found);
     }
 
     /// Five chains: the thumb begins nearest to the wrist, and the others stand in a row beside it.
-    fn fingers(&self, hand: usize, side: &str, front: Vec3, found: &mut BTreeMap<String, usize>) {
+    fn fingers(&self, hand: usize, side: Side, front: Vec3, found: &mut BTreeMap<Slot, usize>) {
         let mut chains: Vec<Vec<usize>> =
             self.children[hand].iter().map(|&c| self.longest(c)).filter(|path| path.len() >= 3).collect();
         if chains.len() != 5 {
@@ -299,9 +296,9 @@ impl<'a> Tree<'a> {
             (self.places[b[0]] - mean).dot(across).total_cmp(&(self.places[a[0]] - mean).dot(across))
         });
         chains.insert(0, thumb);
-        for (finger, chain) in FINGERS.iter().zip(&chains) {
-            for (i, &joint) in chain.iter().take(3).enumerate() {
-                found.insert(format!("{finger}_0{}_{side}", i + 1), joint);
+        for (finger, chain) in Finger::ALL.into_iter().zip(&chains) {
+            for (ours, &joint) in finger.joints().into_iter().zip(chain) {
+                found.insert(ours.on(side).into(), joint);
             }
         }
     }

@@ -3,6 +3,7 @@
 mod geometry;
 mod names;
 mod overrides;
+mod slot;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -13,18 +14,28 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 pub use overrides::{Overrides, read_overrides};
+pub(super) use slot::Slot;
 
-use crate::skeleton::RestPose;
-use crate::skeleton::humanoid::{humanoid_bones, native_name, native_names};
-use crate::{Error, Result};
+use crate::skeleton::humanoid::{humanoid_bones, native_name};
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
+use crate::{Error, Result, Side};
 
 /// What a source must have.
-const REQUIRED: [&str; 5] = ["pelvis", "thigh_l", "thigh_r", "calf_l", "calf_r"];
+const REQUIRED: [RigJoint; 5] = [
+    RigJoint::Pelvis,
+    SidedJoint::Thigh.on(Side::Left),
+    SidedJoint::Thigh.on(Side::Right),
+    SidedJoint::Calf.on(Side::Left),
+    SidedJoint::Calf.on(Side::Right),
+];
+/// Our spine and our neck, upwards.
+pub(super) const SPINE: [RigJoint; 3] = [RigJoint::Spine01, RigJoint::Spine02, RigJoint::Spine03];
+pub(super) const NECK: [RigJoint; 1] = [RigJoint::Neck01];
 
 /// The joints of a source skeleton that drive ours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMap {
-    sources: BTreeMap<String, usize>,
+    sources: BTreeMap<Slot, usize>,
     spine: Vec<usize>,
     neck: Vec<usize>,
     report: JointMapReport,
@@ -80,7 +91,7 @@ impl JointMap {
     /// # Errors
     /// [`Error::Invalid`] when `overrides` names a joint that does not exist, with those most like it, or when pelvis,
     /// thighs or calves are not found, with their names.
-    pub fn find(source: &RestPose, overrides: &Overrides) -> Result<Self> {
+    pub fn find(source: &Skeleton, overrides: &Overrides) -> Result<Self> {
         let (mapped, nothing) = overrides::check(source, overrides)?;
         let mut taken = vec![false; source.len()];
         for &joint in mapped.values().chain(&nothing) {
@@ -92,8 +103,8 @@ impl JointMap {
         }
         let (vocabulary, by_name) = names::best(source.names(), &builder.taken);
         let by_geometry = geometry::find(source);
-        let named = |slot: &str| by_name.contains_key(slot) || builder.pairs.contains_key(slot);
-        let names_first = REQUIRED.iter().all(|slot| named(slot));
+        let named = |slot: Slot| by_name.contains_key(&slot) || builder.pairs.contains_key(&slot);
+        let names_first = REQUIRED.iter().all(|joint| named(Slot::Joint(*joint)));
         let mut guesses = [(by_name, MatchedBy::Name), (by_geometry, MatchedBy::Geometry)];
         if !names_first {
             guesses.reverse();
@@ -101,8 +112,11 @@ impl JointMap {
         for (found, by) in guesses {
             builder.add(found, by);
         }
-        let missing: Vec<&str> =
-            REQUIRED.into_iter().filter(|slot| !builder.pairs.contains_key(*slot)).collect();
+        let missing: Vec<&str> = REQUIRED
+            .into_iter()
+            .filter(|joint| builder.joint(*joint).is_none())
+            .map(RigJoint::name)
+            .collect();
         if !missing.is_empty() {
             let joints: Vec<&str> = source.names().iter().take(12).map(String::as_str).collect();
             return Err(Error::invalid(
@@ -121,8 +135,13 @@ impl JointMap {
     }
 
     /// The source joint that drives this joint of ours.
-    pub fn source_of(&self, native: &str) -> Option<usize> {
-        self.sources.get(native).copied()
+    pub fn source_of(&self, ours: RigJoint) -> Option<usize> {
+        self.source_for(Slot::Joint(ours))
+    }
+
+    /// The source joint for this slot.
+    pub(super) fn source_for(&self, slot: Slot) -> Option<usize> {
+        self.sources.get(&slot).copied()
     }
 
     /// Every source joint that drives something.
@@ -147,17 +166,17 @@ impl JointMap {
 }
 
 struct Builder<'a> {
-    source: &'a RestPose,
+    source: &'a Skeleton,
     taken: Vec<bool>,
-    pairs: BTreeMap<String, (usize, MatchedBy)>,
+    pairs: BTreeMap<Slot, (usize, MatchedBy)>,
 }
 
 impl Builder<'_> {
     /// Adds pairs whose joints are both free.
-    fn add(&mut self, found: BTreeMap<String, usize>, by: MatchedBy) {
+    fn add(&mut self, found: BTreeMap<Slot, usize>, by: MatchedBy) {
         for (ours, joint) in found {
             // A guess by shape must not contradict what is known above it.
-            let known = by != MatchedBy::Geometry || self.fits(&ours, joint);
+            let known = by != MatchedBy::Geometry || self.fits(ours, joint);
             if known && !self.taken[joint] && !self.pairs.contains_key(&ours) {
                 self.taken[joint] = true;
                 self.pairs.insert(ours, (joint, by));
@@ -166,13 +185,13 @@ impl Builder<'_> {
     }
 
     /// Whether the nearest matched joint above is on the same side or in the middle.
-    fn fits(&self, ours: &str, joint: usize) -> bool {
+    fn fits(&self, ours: Slot, joint: usize) -> bool {
         let Some(above) = self.ancestors(joint).find_map(|j| self.ours_of(j)) else { return true };
-        !(above.ends_with("_l") && ours.ends_with("_r") || above.ends_with("_r") && ours.ends_with("_l"))
+        above.side().is_none_or(|side| ours.side() != Some(side.mirrored()))
     }
 
-    fn ours_of(&self, joint: usize) -> Option<&str> {
-        self.pairs.iter().find(|(_, (j, _))| *j == joint).map(|(ours, _)| ours.as_str())
+    fn ours_of(&self, joint: usize) -> Option<Slot> {
+        self.pairs.iter().find(|(_, (j, _))| *j == joint).map(|(ours, _)| *ours)
     }
 
     /// From the joint's parent upwards.
@@ -181,26 +200,27 @@ impl Builder<'_> {
         std::iter::successors(parents[joint], |&p| parents[p as usize]).map(|p| p as usize)
     }
 
-    fn joint(&self, ours: &str) -> Option<usize> {
-        self.pairs.get(ours).map(|pair| pair.0)
+    fn joint(&self, ours: RigJoint) -> Option<usize> {
+        self.pairs.get(&Slot::Joint(ours)).map(|pair| pair.0)
     }
 
     /// The joints strictly between pelvis and head (or what stands for it), upwards, in spine and neck.
     fn chains(&self, nothing: &[usize]) -> (Vec<usize>, Vec<usize>) {
-        let pelvis = self.joint("pelvis");
-        let arms = ["clavicle_l", "clavicle_r", "upperarm_l", "upperarm_r"];
-        let tops = ["head", "neck_01"].into_iter().chain(arms).chain(["spine_03", "spine_02", "spine_01"]);
+        let pelvis = self.joint(RigJoint::Pelvis);
+        let [[a, b], [c, d]] = [SidedJoint::Clavicle, SidedJoint::Upperarm].map(SidedJoint::both);
+        let arms = [a, b, c, d];
+        let tops = [RigJoint::Head].into_iter().chain(NECK).chain(arms).chain(SPINE.into_iter().rev());
         let Some((top, joint)) = tops.filter_map(|ours| Some((ours, self.joint(ours)?))).next() else {
             return Default::default();
         };
         let mut path: Vec<usize> = self.ancestors(joint).take_while(|j| Some(*j) != pelvis).collect();
         path.reverse();
-        if ["neck_01", "spine_01", "spine_02", "spine_03"].contains(&top) {
+        if NECK.contains(&top) || SPINE.contains(&top) {
             path.push(joint);
         }
-        path.retain(|joint| !nothing.contains(joint) && !self.ours_of(*joint).is_some_and(is_sided));
+        path.retain(|joint| !nothing.contains(joint) && self.ours_of(*joint).and_then(Slot::side).is_none());
         // The neck begins at the joint so called, or above the last joint that an arm hangs from.
-        let named = self.joint("neck_01").and_then(|neck| path.iter().position(|j| *j == neck));
+        let named = self.joint(RigJoint::Neck01).and_then(|neck| path.iter().position(|j| *j == neck));
         let hung = || {
             let last = |ours| {
                 self.ancestors(self.joint(ours)?).find_map(|above| path.iter().position(|j| *j == above))
@@ -213,17 +233,17 @@ impl Builder<'_> {
 
     fn finish(mut self, vocabulary: Option<String>, nothing: &[usize]) -> JointMap {
         let (spine, neck) = self.chains(nothing);
-        for (chain, ours) in [(&spine, &["spine_01", "spine_02", "spine_03"][..]), (&neck, &["neck_01"])] {
+        for (chain, ours) in [(&spine, &SPINE[..]), (&neck, &NECK)] {
             for (i, &joint) in chain.iter().enumerate() {
                 if self.taken[joint] {
                     continue;
                 }
                 // The joint of ours at the same place in the chain.
                 let at = if chain.len() > ours.len() { i * ours.len() / chain.len() } else { i };
-                let free = (at..ours.len()).find(|&k| !self.pairs.contains_key(ours[k]));
+                let free = (at..ours.len()).find(|&k| self.joint(ours[k]).is_none());
                 self.taken[joint] = true;
-                if let Some(slot) = free.and_then(|k| ours.get(k)) {
-                    self.pairs.insert((*slot).to_owned(), (joint, MatchedBy::Chain));
+                if let Some(ours) = free.and_then(|k| ours.get(k)) {
+                    self.pairs.insert(Slot::Joint(*ours), (joint, MatchedBy::Chain));
                 }
             }
         }
@@ -233,34 +253,28 @@ impl Builder<'_> {
         let mut report = JointMapReport { vocabulary, ..Default::default() };
         for (joint, name) in names.iter().enumerate() {
             if let Some((ours, (_, by))) = self.pairs.iter().find(|(_, (j, _))| *j == joint) {
-                report.matched.push(JointMatch { source: name.clone(), target: ours.clone(), by: *by });
+                let target = ours.name().to_owned();
+                report.matched.push(JointMatch { source: name.clone(), target, by: *by });
             } else if let Some(ours) = chain_slot(joint, &spine, &neck) {
-                let (target, by) = (ours.to_owned(), MatchedBy::Chain);
+                let (target, by) = (ours.name().to_owned(), MatchedBy::Chain);
                 report.matched.push(JointMatch { source: name.clone(), target, by });
-            } else if matched_or_above.contains(&joint) || is_twist(&native_name(name)) {
+            } else if matched_or_above.contains(&joint)
+                || RigJoint::from_name(&native_name(name)).is_some_and(RigJoint::is_twist)
+            {
                 report.passed_on.push(name.clone());
             } else {
                 report.unmatched.push(name.clone());
             }
         }
-        let natives = humanoid_bones().iter().map(|bone| &bone.native);
-        report.without_source = natives.filter(|n| !self.pairs.contains_key(*n)).cloned().collect();
+        let without = humanoid_bones().iter().filter(|bone| self.joint(bone.joint).is_none());
+        report.without_source = without.map(|bone| bone.native.clone()).collect();
         let sources = self.pairs.into_iter().map(|(ours, (joint, _))| (ours, joint)).collect();
         JointMap { sources, spine, neck, report }
     }
 }
 
-fn chain_slot(joint: usize, spine: &[usize], neck: &[usize]) -> Option<&'static str> {
+fn chain_slot(joint: usize, spine: &[usize], neck: &[usize]) -> Option<RigJoint> {
     let place = |chain: &[usize]| chain.iter().position(|j| *j == joint);
-    let spine_slot = |at: usize| ["spine_01", "spine_02", "spine_03"][at * 3 / spine.len()];
-    place(spine).map(spine_slot).or_else(|| place(neck).map(|_| "neck_01"))
-}
-
-/// Whether a joint of our rig only shares the roll of others.
-fn is_twist(ours: &str) -> bool {
-    ours.contains("_twist_") && native_names().any(|native| native == ours)
-}
-
-fn is_sided(ours: &str) -> bool {
-    ours.ends_with("_l") || ours.ends_with("_r")
+    let spine_slot = |at: usize| SPINE[at * SPINE.len() / spine.len()];
+    place(spine).map(spine_slot).or_else(|| place(neck).map(|_| RigJoint::Neck01))
 }

@@ -13,15 +13,14 @@
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
+use super::Slot;
+use crate::Side;
 use crate::skeleton::humanoid::humanoid_bones;
 
-/// Where a hand points, for sources whose fingers are one joint: no joint of ours, a direction.
-pub(super) const TIPS: [&str; 2] = ["hand_tip_l", "hand_tip_r"];
-
-/// A vocabulary: name of a joint of ours (or of [`TIPS`]) and the names for it, the best first.
+/// A vocabulary: what a source may drive and the names for it, the best first.
 pub(super) struct Vocabulary {
     pub(super) name: &'static str,
-    pub(super) rows: Vec<(String, Vec<String>)>,
+    pub(super) rows: Vec<(Slot, Vec<String>)>,
 }
 
 /// A vocabulary as it is written down: rows `ours=theirs|theirs…`, a star for the side.
@@ -152,7 +151,11 @@ pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
     let bones = humanoid_bones();
     let column = |name, of: fn(usize) -> &'static str| Vocabulary {
         name,
-        rows: bones.iter().enumerate().map(|(b, bone)| (bone.native.clone(), vec![plain(of(b))])).collect(),
+        rows: bones
+            .iter()
+            .enumerate()
+            .map(|(b, bone)| (Slot::Joint(bone.joint), vec![plain(of(b))]))
+            .collect(),
     };
     let mut all = vec![
         column("native", |b| &humanoid_bones()[b].native),
@@ -169,12 +172,14 @@ impl Written {
     fn read(&self) -> Vocabulary {
         let mut rows = Vec::new();
         for (ours, theirs) in self.central.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
-            rows.push((ours.to_owned(), theirs.split('|').map(str::to_owned).collect()));
+            let names = theirs.split('|').map(str::to_owned).collect();
+            rows.extend(Slot::from_name(ours).map(|slot| (slot, names)));
         }
-        for (side, ending) in self.sides.iter().zip(["_l", "_r"]) {
+        for (word, side) in self.sides.iter().zip(Side::ALL) {
             for (ours, theirs) in self.sided.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
-                let names = theirs.split('|').map(|name| name.replace('*', side)).collect();
-                rows.push((format!("{ours}{ending}"), names));
+                let names = theirs.split('|').map(|name| name.replace('*', word)).collect();
+                let slot = Slot::from_name(&[ours, side.joint_suffix()].concat());
+                rows.extend(slot.map(|slot| (slot, names)));
             }
         }
         Vocabulary { name: self.name, rows }
@@ -205,7 +210,7 @@ pub(super) fn comparable(names: &[String]) -> Vec<String> {
 
 /// The vocabulary that names the most joints and what it names: our joint to source joint. `taken` are source joints
 /// that somebody else spoke for. Of two source joints with one name the first counts.
-pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<String, usize>) {
+pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<Slot, usize>) {
     let mut index = BTreeMap::new();
     for (joint, name) in comparable(names).into_iter().enumerate() {
         if !taken[joint] {
@@ -219,7 +224,7 @@ pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<
         for (ours, theirs) in &vocabulary.rows {
             let joint = theirs.iter().find_map(|name| index.get(name));
             if let Some(&joint) = joint.filter(|j| used.insert(**j)) {
-                matched.insert(ours.clone(), joint);
+                matched.insert(*ours, joint);
             }
         }
         if matched.len() > found.1.len() {

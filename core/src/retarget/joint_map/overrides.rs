@@ -2,9 +2,8 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use super::names::TIPS;
-use crate::skeleton::RestPose;
-use crate::skeleton::humanoid::humanoid_bones;
+use super::Slot;
+use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
 /// Source joint to our joint, or to nothing where it shall drive nothing.
@@ -20,16 +19,8 @@ pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
     })
 }
 
-/// Every joint of ours that a source may drive.
-pub(super) fn slots() -> impl Iterator<Item = &'static str> {
-    humanoid_bones().iter().map(|bone| bone.native.as_str()).chain(TIPS)
-}
-
 /// Checks both sides: our joint to source joint, and source joints that shall drive nothing.
-pub(super) fn check(
-    source: &RestPose,
-    overrides: &Overrides,
-) -> Result<(BTreeMap<String, usize>, Vec<usize>)> {
+pub(super) fn check(source: &Skeleton, overrides: &Overrides) -> Result<(BTreeMap<Slot, usize>, Vec<usize>)> {
     let fail = |message| Err(Error::invalid("joint mapping", message));
     let mut mapped = BTreeMap::new();
     let mut nothing = Vec::new();
@@ -42,11 +33,11 @@ pub(super) fn check(
             nothing.push(joint);
             continue;
         };
-        if !slots().any(|slot| slot == ours) {
-            let near = near(ours, slots());
+        let Some(slot) = Slot::from_name(ours) else {
+            let near = near(ours, Slot::all().map(Slot::name));
             return fail(format!("`{theirs}`: our rig has no joint `{ours}`: did you mean {near}?"));
-        }
-        if let Some(other) = mapped.insert(ours.clone(), joint) {
+        };
+        if let Some(other) = mapped.insert(slot, joint) {
             let other = &source.names()[other];
             return fail(format!("both `{other}` and `{theirs}` shall drive `{ours}`"));
         }

@@ -3,11 +3,11 @@ use crate::math::RigidTransform;
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
 /// A skeleton whose names alone matter: a tree that is no person.
-fn named(names: &[&str]) -> RestPose {
+fn named(names: &[&str]) -> Skeleton {
     let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
     let parents = (0..names.len() as u32).map(|j| j.checked_sub(1)).collect();
     let count = names.len();
-    RestPose::new(names, parents, vec![RigidTransform::IDENTITY; count], vec![None; count]).unwrap()
+    Skeleton::new(names, parents, vec![RigidTransform::IDENTITY; count], vec![None; count]).unwrap()
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn every_vocabulary_is_known_by_its_names() {
         let mut names = Vec::new();
         let mut expected = Vec::new();
         for (i, name) in theirs.iter().enumerate() {
-            for (side, ending) in [(left, "_l"), (right, "_r")] {
+            for (side, ending) in [left, right].into_iter().zip(Side::ALL.map(Side::joint_suffix)) {
                 let name = name.replace('*', side);
                 if !names.contains(&name) {
                     let central = i == 0 || i == 9;
@@ -139,10 +139,14 @@ fn every_vocabulary_is_known_by_its_names() {
         assert_eq!(map.report().vocabulary.as_deref(), Some(vocabulary), "{refs:?}");
         for (joint, ours) in expected.iter().enumerate() {
             if let Some(ours) = ours {
-                assert_eq!(map.source_of(ours), Some(joint), "{vocabulary}: {ours}");
+                assert_eq!(source_of(&map, ours), Some(joint), "{vocabulary}: {ours}");
             }
         }
     }
+}
+
+fn source_of(map: &JointMap, ours: &str) -> Option<usize> {
+    map.source_of(RigJoint::from_name(ours).unwrap())
 }
 
 fn scrambled(name: &str) -> Option<String> {
@@ -155,15 +159,15 @@ fn a_person_without_names_is_known_by_its_shape() {
     let rest = person();
     let clip = motion(&rest, 1);
     let a_pose = posed(&rest, &[("upperarm_l", [0.0, 0.0, -60.0]), ("upperarm_r", [0.0, 0.0, 60.0])]);
-    for (pose, facing, scale) in [(rest.pose().locals.clone(), 0.0, 1.0), (a_pose, -1.6, 100.0)] {
+    for (pose, facing, scale) in [(rest.rest_pose().locals.clone(), 0.0, 1.0), (a_pose, -1.6, 100.0)] {
         let style = Style { rename: &scrambled, rest: pose, facing, frames: true, scale };
         let source = restyled(&clip, &style);
-        let map = JointMap::find(source.rest(), &BTreeMap::new()).unwrap();
+        let map = JointMap::find(source.skeleton(), &BTreeMap::new()).unwrap();
         let mut wrong = Vec::new();
         for (joint, name) in rest.names().iter().enumerate() {
             // Eyes and jaw look like any leaf of the head; the spine is a chain.
             let hidden = ["Root", "twist", "eye", "jaw", "spine_02", "spine_03"];
-            if !hidden.iter().any(|part| name.contains(part)) && map.source_of(name) != Some(joint) {
+            if !hidden.iter().any(|part| name.contains(part)) && source_of(&map, name) != Some(joint) {
                 wrong.push(name);
             }
         }
@@ -182,14 +186,14 @@ fn names_fill_in_what_they_do_not_say_by_shape() {
     let rest = person();
     let style = Style {
         rename: &|name| if name.starts_with("hand") { scrambled(name) } else { Some(name.to_owned()) },
-        rest: rest.pose().locals.clone(),
+        rest: rest.rest_pose().locals.clone(),
         facing: 0.0,
         frames: false,
         scale: 1.0,
     };
     let source = restyled(&motion(&rest, 1), &style);
-    let map = JointMap::find(source.rest(), &BTreeMap::new()).unwrap();
-    assert_eq!(map.source_of("hand_l"), rest.find("hand_l"));
+    let map = JointMap::find(source.skeleton(), &BTreeMap::new()).unwrap();
+    assert_eq!(source_of(&map, "hand_l"), rest.find("hand_l"));
     let hand = map.report().matched.iter().find(|m| m.target == "hand_l").unwrap();
     assert_eq!(hand.by, MatchedBy::Geometry);
     assert_eq!(map.report().vocabulary.as_deref(), Some("native"));
@@ -202,7 +206,7 @@ fn chains_take_whatever_stands_between() {
     let names: Vec<String> = names.split_ascii_whitespace().map(str::to_owned).collect();
     let parents = [0, 0, 1, 2, 0, 4, 5, 0, 7, 8, 9, 10, 11, 12, 10, 14];
     let parents = parents.iter().enumerate().map(|(j, p)| (j > 0).then_some(*p)).collect();
-    let rest = RestPose::new(names, parents, vec![RigidTransform::IDENTITY; 16], vec![None; 16]).unwrap();
+    let rest = Skeleton::new(names, parents, vec![RigidTransform::IDENTITY; 16], vec![None; 16]).unwrap();
     let map = JointMap::find(&rest, &BTreeMap::new()).unwrap();
     assert_eq!(map.spine(), [7, 8, 9, 10]);
     assert_eq!(map.neck(), [11, 12]);
@@ -223,7 +227,7 @@ fn the_users_word_counts() {
         r#"{"hub": "pelvis", "legA": "thigh_l", "shinA": "calf_l", "legB": "thigh_r", "shinB": "calf_r"}"#;
     let overrides = read_overrides(json, "map.json".as_ref()).unwrap();
     let map = JointMap::find(&rest, &overrides).unwrap();
-    assert_eq!(map.source_of("calf_r"), Some(4));
+    assert_eq!(source_of(&map, "calf_r"), Some(4));
     assert!(map.report().matched.iter().any(|m| m.by == MatchedBy::Mapping));
 
     let fails = |json: &str| {
@@ -237,6 +241,6 @@ fn the_users_word_counts() {
 
     let rest = person();
     let map = JointMap::find(&rest, &BTreeMap::from([("hand_l".to_owned(), None)])).unwrap();
-    assert_eq!(map.source_of("hand_l"), None);
+    assert_eq!(source_of(&map, "hand_l"), None);
     assert!(map.report().passed_on.contains(&"hand_l".to_owned()));
 }

@@ -168,8 +168,8 @@ enum Part {
 fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Part)> {
     let mut found: Vec<(String, Option<u32>, Part)> = Vec::new();
     for line in lines.lines().filter(|line| !line.trim().is_empty()) {
-        let both = if line.contains('*') { &[(sides[0], "_l"), (sides[1], "_r")][..] } else { &[("", "")] };
-        for (side, ending) in both {
+        let both = Side::ALL.map(|side| (sides[side.index()], side.joint_suffix()));
+        for (side, ending) in if line.contains('*') { &both[..] } else { &[("", "")] } {
             let line = line.replace('*', side);
             let place = |found: &[(String, Option<u32>, Part)], name: &str| {
                 found.iter().position(|j| j.0 == name.trim()).map(|j| j as u32)
@@ -200,7 +200,7 @@ fn every_joint_of_every_program_drives_what_it_should() {
     for (list, count) in lists.iter().zip([67, 83, 73, 55, 55, 55, 68, 85]) {
         let joints = joints(list);
         assert_eq!(joints.len(), count, "{}: {joints:?}", list.0);
-        let rest = RestPose::new(
+        let rest = Skeleton::new(
             joints.iter().map(|j| j.0.clone()).collect(),
             joints.iter().map(|j| j.1).collect(),
             vec![RigidTransform::IDENTITY; joints.len()],
@@ -208,11 +208,13 @@ fn every_joint_of_every_program_drives_what_it_should() {
         );
         let map = JointMap::find(&rest.unwrap(), &BTreeMap::new()).unwrap();
         assert_eq!(map.report().vocabulary.as_deref(), Some(list.0));
-        let driven: BTreeMap<usize, &String> = map.sources.iter().map(|(ours, j)| (*j, ours)).collect();
+        let driven: BTreeMap<usize, &str> = map.sources.iter().map(|(ours, j)| (*j, ours.name())).collect();
         for (joint, (name, _, part)) in joints.iter().enumerate() {
             let shares = map.spine().contains(&joint) || map.neck().contains(&joint);
             match part {
-                Part::Drives(ours) => assert_eq!(driven.get(&joint), Some(&ours), "{}: {name}", list.0),
+                Part::Drives(ours) => {
+                    assert_eq!(driven.get(&joint), Some(&ours.as_str()), "{}: {name}", list.0)
+                }
                 Part::Shares => assert!(shares, "{}: {name}", list.0),
                 Part::Nothing => {
                     assert!(

@@ -12,7 +12,7 @@ use super::solve::{
 };
 use crate::clip::{Clip, in_place, looped, resample};
 use crate::pose::limits::{JointLimits, TwistsBefore};
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
 /// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
@@ -125,19 +125,19 @@ pub struct RetargetReport {
     pub clips: Vec<ClipReport>,
 }
 
-/// Retargets every clip of a motion, which share a rest pose, to a body; `target` is the rest pose of its joints, see [`RestPose::of_joints`].
+/// Retargets every clip of a motion, which share a rest pose, to a body; `target` is the rest pose of its joints, see [`Skeleton::of_joints`].
 ///
 /// # Errors
 /// As [`JointMap::find`], [`Retargeter::new`] and [`plant`].
 pub fn retarget(
     sources: &[Clip],
-    target: &Arc<RestPose>,
+    target: &Arc<Skeleton>,
     options: &RetargetOptions,
 ) -> Result<(Vec<Clip>, RetargetReport)> {
     let Some(first) = sources.first() else {
         return Err(Error::invalid("motion", "expected at least one clip, got none"));
     };
-    let mut way = Way::new(first.rest(), target, options)?;
+    let mut way = Way::new(first.skeleton(), target, options)?;
     let clips = sources.iter().map(|source| way.bring(source)).collect::<Result<_>>()?;
     Ok((clips, way.report))
 }
@@ -148,17 +148,17 @@ pub fn retarget(
 /// As [`retarget`].
 pub fn retarget_clip(
     source: &Clip,
-    target: &Arc<RestPose>,
+    target: &Arc<Skeleton>,
     options: &RetargetOptions,
 ) -> Result<(Clip, RetargetReport)> {
-    let mut way = Way::new(source.rest(), target, options)?;
+    let mut way = Way::new(source.skeleton(), target, options)?;
     let clip = way.bring(source)?;
     Ok((clip, way.report))
 }
 
 /// The way from one skeleton to a body.
 struct Way<'a> {
-    target: &'a Arc<RestPose>,
+    target: &'a Arc<Skeleton>,
     options: &'a RetargetOptions,
     map: JointMap,
     retargeter: Retargeter,
@@ -168,7 +168,7 @@ struct Way<'a> {
 }
 
 impl<'a> Way<'a> {
-    fn new(source: &RestPose, target: &'a Arc<RestPose>, options: &'a RetargetOptions) -> Result<Self> {
+    fn new(source: &Skeleton, target: &'a Arc<Skeleton>, options: &'a RetargetOptions) -> Result<Self> {
         let map = JointMap::find(source, &options.mapping)?;
         let retargeter = Retargeter::new(source, target.clone(), &map, &options.transfer)?;
         let limits = JointLimits::of_rig(target);
@@ -227,7 +227,7 @@ impl<'a> Way<'a> {
 pub fn worst_limit_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
     let mut worst = (0.0, None);
     for frame in 0..clip.frame_count() {
-        for (joint, excess) in limits.excess(clip.rest(), &clip.pose(frame)).into_iter().enumerate() {
+        for (joint, excess) in limits.excess(clip.skeleton(), &clip.pose(frame)).into_iter().enumerate() {
             if excess > worst.0 {
                 worst = (excess, Some(joint));
             }

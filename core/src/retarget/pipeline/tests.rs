@@ -10,7 +10,7 @@ use crate::testing::bodies::bodies;
 
 /// Where a joint is over the floor, frame by frame.
 fn way(clip: &Clip, joint: &str) -> Vec<Vec3> {
-    let rest = clip.rest();
+    let rest = clip.skeleton();
     let joint = rest.find(joint).unwrap();
     (0..clip.frame_count())
         .map(|frame| clip.pose(frame).model_from_joints(rest.parents())[joint].translation.with_y(0.0))
@@ -18,10 +18,10 @@ fn way(clip: &Clip, joint: &str) -> Vec<Vec3> {
 }
 
 /// Two strides of the short body that favour a leg, whose end does not meet their beginning.
-fn limp() -> (Clip, Arc<RestPose>) {
+fn limp() -> (Clip, Arc<Skeleton>) {
     let all = bodies();
     let walk = builtin("walk", &all[0].1).unwrap();
-    let (frames, rest) = (walk.frame_count(), walk.rest().clone());
+    let (frames, rest) = (walk.frame_count(), walk.skeleton().clone());
     let knee = rest.find("calf_l").unwrap();
     let mut rotations = Vec::new();
     let mut tracks = walk.translations().to_vec();
@@ -40,7 +40,7 @@ fn limp() -> (Clip, Arc<RestPose>) {
     (clip, all[1].1.clone())
 }
 
-fn run(source: &Clip, target: &Arc<RestPose>, options: &RetargetOptions) -> (Clip, ClipReport) {
+fn run(source: &Clip, target: &Arc<Skeleton>, options: &RetargetOptions) -> (Clip, ClipReport) {
     let (mut clips, mut report) = retarget(std::slice::from_ref(source), target, options).unwrap();
     assert_eq!((clips.len(), report.clips.len()), (1, 1));
     (clips.remove(0), report.clips.remove(0))
@@ -106,7 +106,7 @@ fn in_place_the_body_stays_over_where_it_starts() {
 fn without_limits_an_elbow_goes_where_the_source_does() {
     let (motion, target) = limp();
     let source = &motion;
-    let hand = source.rest().find("hand_l").unwrap();
+    let hand = source.skeleton().find("hand_l").unwrap();
     let rotations = (0..source.frame_count())
         .flat_map(|frame| {
             let mut pose = source.pose(frame);
@@ -115,7 +115,7 @@ fn without_limits_an_elbow_goes_where_the_source_does() {
         })
         .collect();
     let tracks = source.translations().to_vec();
-    let bent = Clip::new("bent".into(), source.rest().clone(), 30.0, rotations, tracks).unwrap();
+    let bent = Clip::new("bent".into(), source.skeleton().clone(), 30.0, rotations, tracks).unwrap();
     let motion = bent;
     let (_, kept) = run(&motion, &target, &RetargetOptions::default());
     assert!(kept.beyond_limits < 5.0, "{kept:?}");

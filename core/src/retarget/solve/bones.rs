@@ -3,8 +3,9 @@
 use glam::Vec3;
 
 use super::super::JointMap;
+use super::super::joint_map::Slot;
 use crate::math::RigidTransform;
-use crate::skeleton::RestPose;
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 
 /// Below this two joints are one, metres: no direction can be read from them.
 const SHORTEST: f32 = 1e-4;
@@ -28,35 +29,37 @@ pub(super) struct Bone {
 }
 
 /// Both limbs of a side: joint and where its bone ends.
-pub(super) const LIMBS: [(&str, &str); 6] = [
-    ("upperarm", "lowerarm"),
-    ("lowerarm", "hand"),
-    ("hand", "middle_01"),
-    ("thigh", "calf"),
-    ("calf", "foot"),
-    ("foot", "ball"),
+pub(super) const LIMBS: [(SidedJoint, SidedJoint); 6] = [
+    (SidedJoint::Upperarm, SidedJoint::Lowerarm),
+    (SidedJoint::Lowerarm, SidedJoint::Hand),
+    (SidedJoint::Hand, SidedJoint::Middle01),
+    (SidedJoint::Thigh, SidedJoint::Calf),
+    (SidedJoint::Calf, SidedJoint::Foot),
+    (SidedJoint::Foot, SidedJoint::Ball),
 ];
 
 impl Bone {
-    /// The bone of this limb joint, such as `foot_l`, where both skeletons have it with a length.
-    pub(super) fn of(name: &str, map: &JointMap, source: &RestPose, target: &RestPose) -> Option<Self> {
-        let (stem, side) = name.rsplit_once('_')?;
-        let tip = next(stem)?;
-        let joint = map.source_of(name)?;
+    /// The bone of this joint of a limb or finger, where both skeletons have it with a length.
+    pub(super) fn of(ours: RigJoint, map: &JointMap, source: &Skeleton, target: &Skeleton) -> Option<Self> {
+        let RigJoint::Sided(stem, side) = ours else { return None };
+        let tip = next(stem)?.on(side);
+        let joint = map.source_of(ours)?;
         let candidates = match stem {
-            "hand" => &["hand_tip", "middle_01", "index_01"][..],
-            _ => &[tip.as_str()],
+            SidedJoint::Hand => vec![Slot::HandTip(side), tip.into(), SidedJoint::Index01.on(side).into()],
+            _ => vec![tip.into()],
         };
-        let tips =
-            candidates.iter().filter_map(|tip| Some(Tip::Joint(map.source_of(&format!("{tip}_{side}"))?)));
+        let tips = candidates.into_iter().filter_map(|tip| Some(Tip::Joint(map.source_for(tip)?)));
         // A knee is no end site: only hands, feet and the last bones of fingers may end in one.
-        let may_end = !["upperarm", "lowerarm", "thigh", "calf"].contains(&stem);
+        let may_end = !matches!(
+            stem,
+            SidedJoint::Upperarm | SidedJoint::Lowerarm | SidedJoint::Thigh | SidedJoint::Calf
+        );
         let end = source.ends().get(joint).copied().flatten().filter(|_| may_end).map(Tip::End);
         let model = source.model_from_joints();
         let source_tip = tips.chain(end).find(|tip| vector(&model, joint, *tip).length() > SHORTEST)?;
         Some(Self {
-            target: target.find(name)?,
-            target_tip: target.find(&format!("{tip}_{side}"))?,
+            target: target.rig_joint(ours)?,
+            target_tip: target.rig_joint(tip)?,
             source: joint,
             source_tip,
         })
@@ -81,10 +84,11 @@ fn vector(model: &[RigidTransform], joint: usize, tip: Tip) -> Vec3 {
 }
 
 /// The joint at the far end of a limb's or finger's bone.
-fn next(stem: &str) -> Option<String> {
-    if let Some((_, tip)) = LIMBS.iter().find(|(joint, _)| *joint == stem) {
-        return Some((*tip).to_owned());
-    }
-    let finger = stem.strip_suffix("_01").map(|f| format!("{f}_02"));
-    finger.or_else(|| stem.strip_suffix("_02").map(|f| format!("{f}_03")))
+fn next(joint: SidedJoint) -> Option<SidedJoint> {
+    let of_limb = LIMBS.iter().find(|(from, _)| *from == joint).map(|(_, to)| *to);
+    of_limb.or_else(|| {
+        let (finger, number) = joint.finger()?;
+        // Joints count from 1, so that this is the one after.
+        finger.joints().get(number).copied()
+    })
 }

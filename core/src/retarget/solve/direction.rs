@@ -4,8 +4,9 @@ use serde::Serialize;
 
 use super::super::JointMap;
 use super::bones::{Bone, LIMBS};
+use crate::Side;
 use crate::clip::Clip;
-use crate::skeleton::Pose;
+use crate::skeleton::{Pose, SidedJoint};
 
 /// Degrees between a bone of source and target in model space, over the frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,12 +46,12 @@ impl DirectionError {
 pub fn direction_error(source: &Clip, target: &Clip, map: &JointMap) -> DirectionError {
     let mut result = DirectionError::default();
     let (mut pose, mut theirs, mut ours) = (Pose::default(), Vec::new(), Vec::new());
-    let mut bones: Vec<(Bone, BoneError)> = Vec::new();
-    for side in ["l", "r"] {
-        for (stem, _) in LIMBS {
-            let name = format!("{stem}_{side}");
-            if let Some(bone) = Bone::of(&name, map, source.rest(), target.rest()) {
-                bones.push((bone, BoneError { bone: name, mean: 0.0, max: 0.0 }));
+    let mut bones: Vec<(SidedJoint, Bone, BoneError)> = Vec::new();
+    for side in Side::ALL {
+        for (joint, _) in LIMBS {
+            if let Some(bone) = Bone::of(joint.on(side), map, source.skeleton(), target.skeleton()) {
+                let name = joint.on(side).name().to_owned();
+                bones.push((joint, bone, BoneError { bone: name, mean: 0.0, max: 0.0 }));
             }
         }
     }
@@ -58,15 +59,15 @@ pub fn direction_error(source: &Clip, target: &Clip, map: &JointMap) -> Directio
     for frame in 0..frames {
         source.model_into(frame, &mut pose, &mut theirs);
         target.model_into(frame, &mut pose, &mut ours);
-        for (bone, error) in &mut bones {
+        for (_, bone, error) in &mut bones {
             let (a, b) = (bone.of_source(&theirs).as_dvec3(), bone.of_target(&ours).as_dvec3());
             let degrees = libm::atan2(a.cross(b).length(), a.dot(b)).to_degrees();
             error.mean += degrees / frames as f64;
             error.max = error.max.max(degrees);
         }
     }
-    for (_, error) in bones {
-        let end = error.bone.starts_with("hand") || error.bone.starts_with("foot");
+    for (joint, _, error) in bones {
+        let end = matches!(joint, SidedJoint::Hand | SidedJoint::Foot);
         if end { &mut result.ends } else { &mut result.limbs }.push(error);
     }
     result

@@ -2,34 +2,36 @@
 
 use glam::Quat;
 
+use super::super::joint_map::{NECK, SPINE};
+use super::bones::LIMBS;
 use super::fingers::relaxed;
 use super::reference::Reference;
 use super::{Driver, FingerMode, TransferOptions};
+use crate::Side;
 use crate::math::RigidTransform;
-use crate::skeleton::humanoid::finger;
+use crate::skeleton::{Finger, RigJoint, SidedJoint};
 
 /// One driver per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<Driver> {
     let target = reference.joints.target;
-    let mut drivers: Vec<Driver> = target.rotations().map(Driver::Still).collect();
-    let mut set = |name: &str, alignment: Quat| {
-        let pair = reference.map.source_of(name).zip(target.find(name));
+    let mut drivers: Vec<Driver> = target.rest_rotations().map(Driver::Still).collect();
+    let mut set = |ours: RigJoint, alignment: Quat| {
+        let pair = reference.map.source_of(ours).zip(target.rig_joint(ours));
         if let Some((source, joint)) = pair {
             drivers[joint] = Driver::Joint(source, reference.offset(source, joint, alignment));
         }
     };
-    for name in ["pelvis", "head", "clavicle_l", "clavicle_r"] {
-        set(name, reference.trunk());
+    for joint in [RigJoint::Pelvis, RigJoint::Head].into_iter().chain(SidedJoint::Clavicle.both()) {
+        set(joint, reference.trunk());
     }
     let mut hands = Vec::new();
-    for side in ["l", "r"] {
+    for side in Side::ALL {
         let arm = reference.arm(side);
         let leg = reference.leg(side, options.feet);
-        let limbs = ["upperarm", "lowerarm", "hand", "thigh", "calf", "foot"];
-        for (stem, alignment) in limbs.into_iter().zip(arm.into_iter().chain(leg)) {
-            set(&format!("{stem}_{side}"), alignment);
+        for ((joint, _), alignment) in LIMBS.into_iter().zip(arm.into_iter().chain(leg)) {
+            set(joint.on(side), alignment);
         }
-        set(&format!("ball_{side}"), leg[2]);
+        set(SidedJoint::Ball.on(side), leg[2]);
         hands.push((side, arm[2]));
     }
     for (side, hand) in hands {
@@ -39,28 +41,32 @@ pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<D
     drivers
 }
 
-fn fingers(reference: &Reference, mode: FingerMode, side: &str, hand: Quat, drivers: &mut [Driver]) {
+fn fingers(reference: &Reference, mode: FingerMode, side: Side, hand: Quat, drivers: &mut [Driver]) {
     if mode == FingerMode::Rest {
         return;
     }
     let target = reference.joints.target;
-    let names = target.names();
-    let of_hand: Vec<usize> =
-        (0..names.len()).filter(|&j| finger(&names[j]).is_some() && names[j].ends_with(side)).collect();
-    let source_of = |joint: usize| reference.map.source_of(&names[joint]);
-    let told = of_hand.iter().filter(|&&j| !names[j].starts_with("thumb") && source_of(j).is_some()).count();
+    let of_hand: Vec<(usize, RigJoint, (Finger, usize))> = target
+        .rig_joints()
+        .enumerate()
+        .filter_map(|(joint, ours)| Some((joint, ours.filter(|ours| ours.side() == Some(side))?)))
+        .filter_map(|(joint, ours)| Some((joint, ours, ours.finger()?)))
+        .collect();
+    let source_of = |ours: RigJoint| reference.map.source_of(ours);
+    let beside_thumb = of_hand.iter().filter(|(.., (finger, _))| *finger != Finger::Thumb);
+    let told = beside_thumb.filter(|(_, ours, _)| source_of(*ours).is_some()).count();
     let mut alignment = hand;
-    for joint in of_hand {
-        if names[joint].contains("_01_") {
+    for (joint, ours, (finger, number)) in of_hand {
+        if number == 1 {
             alignment = hand;
         }
-        match source_of(joint).filter(|_| mode == FingerMode::Source && told >= 4) {
+        match source_of(ours).filter(|_| mode == FingerMode::Source && told >= 4) {
             Some(source) => {
-                alignment = reference.finger(&names[joint], alignment);
+                alignment = reference.finger(ours, alignment);
                 drivers[joint] = Driver::Joint(source, reference.offset(source, joint, alignment));
             }
             None => {
-                if let Some(local) = relaxed(reference.joints, joint) {
+                if let Some(local) = relaxed(reference.joints, joint, finger, number) {
                     drivers[joint] = Driver::Still(local);
                 }
             }
@@ -72,18 +78,18 @@ fn fingers(reference: &Reference, mode: FingerMode, side: &str, hand: Quat, driv
 /// does at the same part of the way. A source of one joint bends evenly from the joint before the chain.
 fn trunk(reference: &Reference, drivers: &mut [Driver]) {
     let (map, target) = (reference.map, reference.joints.target);
-    let ours = |names: &[&str]| names.iter().filter_map(|name| target.find(name)).collect::<Vec<_>>();
-    let pelvis = map.source_of("pelvis");
+    let ours = |joints: &[RigJoint]| joints.iter().filter_map(|j| target.rig_joint(*j)).collect::<Vec<_>>();
+    let pelvis = map.source_of(RigJoint::Pelvis);
     let (spine, neck) = (map.spine(), map.neck());
-    let head = map.source_of("head");
-    share(reference, pelvis, spine, &ours(&["spine_01", "spine_02", "spine_03"]), drivers);
+    let head = map.source_of(RigJoint::Head);
+    share(reference, pelvis, spine, &ours(&SPINE), drivers);
     let chest = spine.last().copied().or(pelvis);
-    match (neck, chest, head, target.find("neck_01")) {
+    match (neck, chest, head, target.rig_joint(RigJoint::Neck01)) {
         ([], Some(chest), Some(head), Some(joint)) => {
             let part = |source| (source, reference.offset(source, joint, reference.trunk()));
             drivers[joint] = Driver::Between([part(chest), part(head)], 0.5);
         }
-        _ => share(reference, chest, neck, &ours(&["neck_01"]), drivers),
+        _ => share(reference, chest, neck, &ours(&NECK), drivers),
     }
 }
 

@@ -11,7 +11,9 @@ use glam::{Quat, Vec2, Vec3};
 use super::bones::Bone;
 use super::twist::wrapped;
 use super::{Joints, Reference};
+use crate::Side;
 use crate::math::RigidTransform;
+use crate::skeleton::SidedJoint;
 
 /// Bends at which a frame's own plane begins to count and counts fully, radians (15° and 40°).
 const BENT: [f32; 2] = [0.26, 0.70];
@@ -37,14 +39,12 @@ impl Limb {
     /// The target's limb, where source and target have its bones.
     pub(super) fn of(
         reference: &Reference,
-        upper: &str,
-        lower: &str,
-        side: &str,
+        [upper, lower]: [SidedJoint; 2],
+        side: Side,
         flexion: f32,
     ) -> Option<Self> {
         let joints: &Joints = reference.joints;
-        let bone =
-            |stem: &str| Bone::of(&format!("{stem}_{side}"), reference.map, joints.source, joints.target);
+        let bone = |joint: SidedJoint| Bone::of(joint.on(side), reference.map, joints.source, joints.target);
         let (upper, lower) = (bone(upper)?, bone(lower)?);
         let along = |bone: &Bone| {
             let rotation = joints.target_rest[bone.target].rotation.conjugate();

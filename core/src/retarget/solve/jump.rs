@@ -6,7 +6,7 @@ use super::super::JointMap;
 use super::bones::LIMBS;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose};
+use crate::skeleton::{Pose, SidedJoint, Skeleton};
 
 /// What [`worst_jump`] finds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -26,12 +26,12 @@ pub fn worst_jump(source: &Clip, target: &Clip, map: &JointMap) -> Jump {
     let frames = source.frame_count().min(target.frame_count());
     let (theirs, ours) = (steps(source, frames), steps(target, frames));
     let mut worst = Jump::default();
-    for (joint, sources) in limbs(target.rest(), map) {
+    for (joint, sources) in limbs(target.skeleton(), map) {
         for (frame, step) in ours.iter().enumerate() {
             let around = &theirs[frame.saturating_sub(1)..(frame + 2).min(theirs.len())];
             let allowed = around.iter().flat_map(|step| sources.iter().map(|s| step[*s])).fold(0.0, f64::max);
             if step[joint] - allowed > worst.degrees {
-                let name = target.rest().names()[joint].clone();
+                let name = target.skeleton().names()[joint].clone();
                 worst = Jump { degrees: step[joint] - allowed, joint: Some(name), frame };
             }
         }
@@ -40,17 +40,17 @@ pub fn worst_jump(source: &Clip, target: &Clip, map: &JointMap) -> Jump {
 }
 
 /// The joints of arms and legs, each with the source's joints above and below it.
-fn limbs(target: &RestPose, map: &JointMap) -> Vec<(usize, Vec<usize>)> {
+fn limbs(target: &Skeleton, map: &JointMap) -> Vec<(usize, Vec<usize>)> {
     let above =
         |joint: usize| std::iter::successors(Some(joint), |j| target.parents()[*j].map(|p| p as usize));
+    let ours: Vec<_> = target.rig_joints().collect();
     let related = |joint: usize| {
         let kin =
             (0..target.len()).filter(|j| above(joint).any(|a| a == *j) || above(*j).any(|a| a == joint));
-        kin.filter_map(|j| map.source_of(&target.names()[j])).collect::<Vec<_>>()
+        kin.filter_map(|j| map.source_of(ours[j]?)).collect::<Vec<_>>()
     };
-    let stems = LIMBS.iter().map(|(stem, _)| *stem).chain(["ball"]);
-    let names = stems.flat_map(|stem| ["l", "r"].map(|side| format!("{stem}_{side}")));
-    let joints = names.filter_map(|name| target.find(&name));
+    let limbs = LIMBS.iter().map(|(joint, _)| *joint).chain([SidedJoint::Ball]);
+    let joints = limbs.flat_map(SidedJoint::both).filter_map(|joint| target.rig_joint(joint));
     joints.map(|j| (j, related(j))).filter(|(_, sources)| !sources.is_empty()).collect()
 }
 

@@ -31,8 +31,8 @@ use twist::Twist;
 use super::JointMap;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::RigidTransform;
-use crate::skeleton::{Pose, RestPose};
-use crate::{Error, Result};
+use crate::skeleton::{Pose, SidedJoint, Skeleton};
+use crate::{Error, Result, Side};
 
 /// Who carries the way over the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,8 +135,8 @@ impl Default for TransferOptions {
 
 /// Both skeletons, and where their joints rest in model space.
 struct Joints<'a> {
-    source: &'a RestPose,
-    target: &'a RestPose,
+    source: &'a Skeleton,
+    target: &'a Skeleton,
     source_rest: Vec<RigidTransform>,
     target_rest: Vec<RigidTransform>,
 }
@@ -155,8 +155,8 @@ enum Driver {
 /// Carries clips of one skeleton over to another. Made once per pair, shared freely.
 #[derive(Clone, Debug)]
 pub struct Retargeter {
-    source: RestPose,
-    target: Arc<RestPose>,
+    source: Skeleton,
+    target: Arc<Skeleton>,
     drivers: Vec<Driver>,
     limbs: Vec<Limb>,
     twists: Vec<Twist>,
@@ -165,14 +165,14 @@ pub struct Retargeter {
 }
 
 impl Retargeter {
-    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`RestPose::of_joints`].
+    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`Skeleton::of_joints`].
     ///
     /// # Errors
     /// [`Error::Invalid`] when the target lacks pelvis or thighs, `map` is of another source, or the scale is not
     /// positive.
     pub fn new(
-        source: &RestPose,
-        target: Arc<RestPose>,
+        source: &Skeleton,
+        target: Arc<Skeleton>,
         map: &JointMap,
         options: &TransferOptions,
     ) -> Result<Self> {
@@ -195,9 +195,9 @@ impl Retargeter {
         let root = Root::new(&reference, options.scale)
             .ok_or_else(|| Error::invalid("retargeting", "the target has no pelvis with thighs"))?;
         let mut limbs = Vec::new();
-        for side in ["l", "r"] {
-            limbs.extend(Limb::of(&reference, "upperarm", "lowerarm", side, 1.0));
-            limbs.extend(Limb::of(&reference, "thigh", "calf", side, -1.0));
+        for side in Side::ALL {
+            limbs.extend(Limb::of(&reference, [SidedJoint::Upperarm, SidedJoint::Lowerarm], side, 1.0));
+            limbs.extend(Limb::of(&reference, [SidedJoint::Thigh, SidedJoint::Calf], side, -1.0));
         }
         let drivers = drivers::drivers(&reference, options);
         let twists = twist::find(&joints);
@@ -223,7 +223,7 @@ impl Retargeter {
     /// # Errors
     /// As [`retarget`](Self::retarget).
     pub fn retarget_with(&self, clip: &Clip, mut finish: impl FnMut(usize, &mut Pose)) -> Result<Clip> {
-        if **clip.rest() != self.source {
+        if **clip.skeleton() != self.source {
             let message = format!("`{}` moves another skeleton than the retargeter's source", clip.name());
             return Err(Error::invalid("clip", message));
         }
@@ -238,7 +238,7 @@ impl Retargeter {
         let mut places = Vec::with_capacity(clip.frame_count());
         let (mut pose, mut source, mut model, mut locals) = (Pose::default(), vec![], vec![], vec![]);
         let mut rolls = vec![None; self.twists.len()];
-        let mut finished = self.target.pose().clone();
+        let mut finished = self.target.rest_pose().clone();
         for frame in 0..clip.frame_count() {
             clip.model_into(frame, &mut pose, &mut source);
             self.model_rotations(&source, &mut model);

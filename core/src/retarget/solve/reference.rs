@@ -14,7 +14,9 @@ use glam::{Mat3, Quat, Vec3};
 use super::super::JointMap;
 use super::bones::Bone;
 use super::{FootMode, Joints};
+use crate::Side;
 use crate::math::RigidTransform;
+use crate::skeleton::{RigJoint, SidedJoint};
 
 /// Bends and leans below this are taken for the drawing of the skeleton and not for a pose, radians (15°).
 const POSED: f32 = 0.26;
@@ -34,23 +36,25 @@ pub(super) struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     pub(super) fn new(map: &'a JointMap, joints: &'a Joints<'a>) -> Self {
-        let yaw = |model: &[RigidTransform], find: &dyn Fn(&str) -> Option<usize>| {
-            let across = |name: &str| {
-                let at = |side| find(&format!("{name}_{side}")).map(|j| model[j].translation);
-                at("l").zip(at("r")).map_or(Vec3::ZERO, |(l, r)| l - r)
+        let yaw = |model: &[RigidTransform], find: &dyn Fn(RigJoint) -> Option<usize>| {
+            let across = |joint: SidedJoint| {
+                let [left, right] = joint.both().map(|joint| find(joint).map(|j| model[j].translation));
+                left.zip(right).map_or(Vec3::ZERO, |(l, r)| l - r)
             };
-            let left = across("thigh") + across("upperarm");
+            let left = across(SidedJoint::Thigh) + across(SidedJoint::Upperarm);
             libm::atan2f(-left.z, left.x)
         };
-        let up = |model: &[RigidTransform], find: &dyn Fn(&str) -> Option<usize>| {
-            let mid = |name: &str| {
-                let at = |side| find(&format!("{name}_{side}")).map(|j| model[j].translation);
-                at("l").zip(at("r")).map(|(l, r)| (l + r) / 2.0)
+        let up = |model: &[RigidTransform], find: &dyn Fn(RigJoint) -> Option<usize>| {
+            let mid = |joint: SidedJoint| {
+                let [left, right] = joint.both().map(|joint| find(joint).map(|j| model[j].translation));
+                left.zip(right).map(|(l, r)| (l + r) / 2.0)
             };
-            mid("upperarm").zip(mid("thigh")).and_then(|(top, bottom)| (top - bottom).try_normalize())
+            mid(SidedJoint::Upperarm)
+                .zip(mid(SidedJoint::Thigh))
+                .and_then(|(top, bottom)| (top - bottom).try_normalize())
         };
-        let of_source = |name: &str| map.source_of(name);
-        let of_target = |name: &str| joints.target.find(name);
+        let of_source = |joint: RigJoint| map.source_of(joint);
+        let of_target = |joint: RigJoint| joints.target.rig_joint(joint);
         let turn = yaw(&joints.source_rest, &of_source) - yaw(&joints.target_rest, &of_target);
         let facing = Quat::from_rotation_y(turn);
         let up = up(&joints.source_rest, &of_source).zip(up(&joints.target_rest, &of_target));
@@ -77,66 +81,67 @@ impl<'a> Reference<'a> {
     }
 
     /// `A` of a side's arm: upper arm, forearm, hand.
-    pub(super) fn arm(&self, side: &str) -> [Quat; 3] {
-        let [upper, lower] = self.hinge("upperarm", "lowerarm", side, Vec3::Z);
-        let hand = self.bone(&format!("hand_{side}"), lower);
+    pub(super) fn arm(&self, side: Side) -> [Quat; 3] {
+        let [upper, lower] = self.hinge([SidedJoint::Upperarm, SidedJoint::Lowerarm], side, Vec3::Z);
+        let hand = self.bone(SidedJoint::Hand.on(side), lower);
         [upper, lower, self.knuckles(side).unwrap_or(hand)]
     }
 
     /// `A` of a side's leg: thigh, calf, foot.
-    pub(super) fn leg(&self, side: &str, mode: FootMode) -> [Quat; 3] {
-        let [upper, lower] = self.hinge("thigh", "calf", side, Vec3::NEG_Z);
+    pub(super) fn leg(&self, side: Side, mode: FootMode) -> [Quat; 3] {
+        let [upper, lower] = self.hinge([SidedJoint::Thigh, SidedJoint::Calf], side, Vec3::NEG_Z);
         [upper, lower, self.foot(side, lower, mode)]
     }
 
     /// `A` of a finger bone, on top of that of the bone before.
-    pub(super) fn finger(&self, name: &str, before: Quat) -> Quat {
-        self.bone(name, before)
+    pub(super) fn finger(&self, joint: RigJoint, before: Quat) -> Quat {
+        self.bone(joint, before)
     }
 
-    fn pair(&self, name: &str) -> Option<(Vec3, Vec3)> {
-        let bone = Bone::of(name, self.map, self.joints.source, self.joints.target)?;
+    fn pair(&self, joint: RigJoint) -> Option<(Vec3, Vec3)> {
+        let bone = Bone::of(joint, self.map, self.joints.source, self.joints.target)?;
         let source = bone.of_source(&self.joints.source_rest).try_normalize()?;
         Some((source, bone.of_target(&self.joints.target_rest).try_normalize()?))
     }
 
     /// The shortest arc on top of what comes before.
-    fn bone(&self, name: &str, before: Quat) -> Quat {
-        match self.pair(name) {
+    fn bone(&self, joint: RigJoint, before: Quat) -> Quat {
+        match self.pair(joint) {
             Some((source, target)) => (Quat::from_rotation_arc(before * target, source) * before).normalize(),
             None => before,
         }
     }
 
     /// Upper and lower part of a limb that flexes the lower one towards `flexion` of the upper one's joint.
-    fn hinge(&self, upper: &str, lower: &str, side: &str, flexion: Vec3) -> [Quat; 2] {
-        let [upper, lower] = [upper, lower].map(|stem| format!("{stem}_{side}"));
-        let mut first = self.bone(&upper, self.trunk);
+    fn hinge(&self, limb: [SidedJoint; 2], side: Side, flexion: Vec3) -> [Quat; 2] {
+        let [upper, lower] = limb.map(|joint| joint.on(side));
+        let mut first = self.bone(upper, self.trunk);
         if let (Some((source, target)), Some((bent, _)), Some(joint)) =
-            (self.pair(&upper), self.pair(&lower), self.joints.target.find(&upper))
+            (self.pair(upper), self.pair(lower), self.joints.target.rig_joint(upper))
             && source.angle_between(bent) > POSED
         {
             let flexion = self.joints.target_rest[joint].rotation * flexion;
             first = align(target, flexion, source, bent).unwrap_or(first);
         }
-        [first, self.bone(&lower, first)]
+        [first, self.bone(lower, first)]
     }
 
     /// The hand by its direction and the row of its knuckles.
-    fn knuckles(&self, side: &str) -> Option<Quat> {
-        let (source, target) = self.pair(&format!("hand_{side}"))?;
-        let names = ["index_01", "pinky_01"].map(|stem| format!("{stem}_{side}"));
-        let [a, b] = [self.map.source_of(&names[0])?, self.map.source_of(&names[1])?];
-        let [c, d] = [self.joints.target.find(&names[0])?, self.joints.target.find(&names[1])?];
+    fn knuckles(&self, side: Side) -> Option<Quat> {
+        let (source, target) = self.pair(SidedJoint::Hand.on(side))?;
+        let [index, pinky] = [SidedJoint::Index01.on(side), SidedJoint::Pinky01.on(side)];
+        let [a, b] = [self.map.source_of(index)?, self.map.source_of(pinky)?];
+        let [c, d] = [self.joints.target.rig_joint(index)?, self.joints.target.rig_joint(pinky)?];
         let (rest, ours) = (&self.joints.source_rest, &self.joints.target_rest);
         let row = rest[a].translation - rest[b].translation;
         align(target, ours[c].translation - ours[d].translation, source, row)
     }
 
     /// The foot by its sole, which stands on the floor at rest whatever way the bone above it points, or by the bone.
-    fn foot(&self, side: &str, calf: Quat, mode: FootMode) -> Quat {
-        let Some((source, target)) = self.pair(&format!("foot_{side}")) else { return self.facing };
-        let by_bone = self.bone(&format!("foot_{side}"), calf);
+    fn foot(&self, side: Side, calf: Quat, mode: FootMode) -> Quat {
+        let foot = SidedJoint::Foot.on(side);
+        let Some((source, target)) = self.pair(foot) else { return self.facing };
+        let by_bone = self.bone(foot, calf);
         let up = self.up_of_foot(side);
         let flat = align(Vec3::Y, target, up, source);
         match flat.filter(|flat| mode == FootMode::Sole && (*flat * target).angle_between(source) < FLAT) {
@@ -146,11 +151,12 @@ impl<'a> Reference<'a> {
     }
 
     /// Which way is up from the sole at rest.
-    fn up_of_foot(&self, side: &str) -> Vec3 {
-        let at = |stem: &str| {
-            self.map.source_of(&format!("{stem}_{side}")).map(|j| self.joints.source_rest[j].translation)
+    fn up_of_foot(&self, side: Side) -> Vec3 {
+        let at = |joint: SidedJoint| {
+            self.map.source_of(joint.on(side)).map(|j| self.joints.source_rest[j].translation)
         };
-        let leg = at("thigh").zip(at("foot")).map_or(Vec3::Y, |(thigh, foot)| thigh - foot);
+        let leg =
+            at(SidedJoint::Thigh).zip(at(SidedJoint::Foot)).map_or(Vec3::Y, |(thigh, foot)| thigh - foot);
         let aside = leg.dot(self.facing * Vec3::X);
         if libm::atan2f(aside.abs(), leg.y) > SPLAYED { leg.normalize_or(Vec3::Y) } else { Vec3::Y }
     }

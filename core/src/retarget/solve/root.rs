@@ -5,9 +5,10 @@ use glam::{Quat, Vec3};
 use super::super::JointMap;
 use super::bones::Bone;
 use super::{Joints, Reference, RootMotion};
+use crate::Side;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
-use crate::skeleton::model_from_joints;
+use crate::skeleton::{RigJoint, SidedJoint, model_from_joints};
 
 /// Of the frames, those whose lowest foot is taken for standing on the floor at least: less would follow noise, more
 /// would sink who steps off it.
@@ -29,16 +30,17 @@ pub(super) struct Root {
 impl Root {
     pub(super) fn new(reference: &Reference, scale: Option<f32>) -> Option<Self> {
         let Joints { target, target_rest, .. } = reference.joints;
-        let find = |name: &str| target.find(name);
-        let pelvis = find("pelvis")?;
+        let pelvis = target.rig_joint(RigJoint::Pelvis)?;
         let middle = |model: &[RigidTransform], [l, r]: [usize; 2]| {
             (model[l].translation + model[r].translation) / 2.0
         };
-        let of_target = [find("thigh_l")?, find("thigh_r")?];
-        let thighs = [reference.map.source_of("thigh_l")?, reference.map.source_of("thigh_r")?];
+        let [left, right] = SidedJoint::Thigh.both();
+        let of_target = [target.rig_joint(left)?, target.rig_joint(right)?];
+        let thighs = [reference.map.source_of(left)?, reference.map.source_of(right)?];
         let hips = middle(target_rest, of_target);
         let scale = scale.unwrap_or_else(|| leg_ratio(reference.map, reference.joints));
-        let feet = ["foot_l", "foot_r", "ball_l", "ball_r"].into_iter().filter_map(find);
+        let feet = [SidedJoint::Foot, SidedJoint::Ball].into_iter().flat_map(SidedJoint::both);
+        let feet = feet.filter_map(|joint| target.rig_joint(joint));
         Some(Self {
             pelvis,
             parent: target.parents()[pelvis].map(|p| p as usize),
@@ -59,7 +61,7 @@ impl Root {
     /// frame by frame, in model space.
     pub(super) fn above_floor(&self, joints: &Joints, rotations: &[Quat], places: &[Vec3]) -> f32 {
         let parents = joints.target.parents();
-        let mut locals = joints.target.pose().locals.clone();
+        let mut locals = joints.target.rest_pose().locals.clone();
         let mut model = Vec::new();
         let mut lowest: Vec<f32> = Vec::with_capacity(places.len());
         for (frame, place) in rotations.chunks_exact(locals.len()).zip(places) {
@@ -107,13 +109,13 @@ impl Root {
 /// The target's leg to the source's: thigh, calf, and how far the ankle stands above the ball of the foot.
 fn leg_ratio(map: &JointMap, joints: &Joints) -> f32 {
     let (mut source, mut target) = (0.0, 0.0);
-    for side in ["l", "r"] {
-        for stem in ["thigh", "calf", "foot"] {
-            let Some(bone) = Bone::of(&format!("{stem}_{side}"), map, joints.source, joints.target) else {
+    for side in Side::ALL {
+        for joint in [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot] {
+            let Some(bone) = Bone::of(joint.on(side), map, joints.source, joints.target) else {
                 continue;
             };
             let (theirs, ours) = (bone.of_source(&joints.source_rest), bone.of_target(&joints.target_rest));
-            if stem == "foot" {
+            if joint == SidedJoint::Foot {
                 source += theirs.y.abs();
                 target += ours.y.abs();
             } else {
@@ -134,6 +136,6 @@ impl Clip {
         model: &mut Vec<RigidTransform>,
     ) {
         self.pose_into(frame, pose);
-        model_from_joints(self.rest().parents(), &pose.locals, model);
+        model_from_joints(self.skeleton().parents(), &pose.locals, model);
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::skeleton::RigJoint;
 use crate::skeleton::humanoid::{JointNames, renamed};
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
@@ -11,9 +12,9 @@ fn exactly() -> TransferOptions {
     TransferOptions { floor: Floor::Source, ..Default::default() }
 }
 
-fn retarget(clip: &Clip, target: &Arc<RestPose>, options: &TransferOptions) -> Clip {
-    let map = JointMap::find(clip.rest(), &Default::default()).unwrap();
-    Retargeter::new(clip.rest(), target.clone(), &map, options).unwrap().retarget(clip).unwrap()
+fn retarget(clip: &Clip, target: &Arc<Skeleton>, options: &TransferOptions) -> Clip {
+    let map = JointMap::find(clip.skeleton(), &Default::default()).unwrap();
+    Retargeter::new(clip.skeleton(), target.clone(), &map, options).unwrap().retarget(clip).unwrap()
 }
 
 /// The largest angle of a rotation and distance of a translation; twist joints only when asked for.
@@ -21,7 +22,7 @@ fn assert_same(a: &Clip, b: &Clip, tolerance: f32, twists: bool) {
     assert_eq!(a.frame_count(), b.frame_count());
     for frame in 0..a.frame_count() {
         let pairs = a.pose(frame).locals.into_iter().zip(b.pose(frame).locals);
-        for ((x, y), name) in pairs.zip(a.rest().names()) {
+        for ((x, y), name) in pairs.zip(a.skeleton().names()) {
             if name.contains("twist") && !twists {
                 continue;
             }
@@ -53,7 +54,7 @@ fn our_own_clip_stays_as_it_is() {
     for (i, q) in rotations.iter_mut().enumerate() {
         let joint = i % rest.len();
         if ["twist", "Root", "eye", "jaw"].iter().any(|part| names[joint].contains(part)) {
-            *q = rest.pose().locals[joint].rotation;
+            *q = rest.rest_pose().locals[joint].rotation;
         }
     }
     let wild = Clip::new("wild".into(), rest.clone(), 30.0, rotations, clip.translations().to_vec()).unwrap();
@@ -90,7 +91,7 @@ fn the_same_motion_in_any_style_is_the_same() {
             ("foot_r", [20.0, 0.0, 0.0]),
         ],
     );
-    let t_pose = rest.pose().locals.clone();
+    let t_pose = rest.rest_pose().locals.clone();
     for (what, pose, facing, frames) in [
         ("T", &t_pose, 0.0, false),
         ("other axes", &t_pose, 0.0, true),
@@ -115,12 +116,17 @@ fn the_same_motion_in_any_style_is_the_same() {
 fn a_giant_moves_as_far_as_its_legs_are_long() {
     let rest = person();
     let clip = motion(&rest, 12);
-    let style =
-        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: true, scale: 2.0 };
+    let style = Style {
+        rename: &mixamo,
+        rest: rest.rest_pose().locals.clone(),
+        facing: 0.0,
+        frames: true,
+        scale: 2.0,
+    };
     let giant = restyled(&clip, &style);
     assert_same(&retarget(&clip, &rest, &exactly()), &retarget(&giant, &rest, &exactly()), CLOSE, false);
     let twice = retarget(&giant, &rest, &TransferOptions { scale: Some(1.0), ..exactly() });
-    let height = |clip: &Clip| clip.pose(0).locals[clip.rest().find("pelvis").unwrap()].translation.y;
+    let height = |clip: &Clip| clip.pose(0).locals[clip.skeleton().find("pelvis").unwrap()].translation.y;
     assert!((height(&twice) - height(&clip)).abs() > 0.8);
 }
 
@@ -130,13 +136,18 @@ fn left_is_left() {
     let raised = posed(&rest, &[("upperarm_l", [0.0, 0.0, 80.0])]);
     let rotations: Vec<Quat> = raised.iter().map(|l| l.rotation).collect();
     let clip = Clip::new("wave".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
-    let style =
-        Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: -1.6, frames: true, scale: 1.0 };
+    let style = Style {
+        rename: &mixamo,
+        rest: rest.rest_pose().locals.clone(),
+        facing: -1.6,
+        frames: true,
+        scale: 1.0,
+    };
     let found = retarget(&restyled(&clip, &style), &rest, &TransferOptions::default());
     let model = found.pose(0).model_from_joints(rest.parents());
-    let hand = |side| model[rest.find(&format!("hand_{side}")).unwrap()].translation;
-    assert!(hand("l").y > 1.8 && (hand("r").y - 1.39).abs() < 0.01, "{} {}", hand("l"), hand("r"));
-    assert!(hand("l").x > 0.1 && hand("r").x < -0.5);
+    let [left, right] = SidedJoint::Hand.both().map(|hand| model[rest.rig_joint(hand).unwrap()].translation);
+    assert!(left.y > 1.8 && (right.y - 1.39).abs() < 0.01, "{left} {right}");
+    assert!(left.x > 0.1 && right.x < -0.5);
 }
 
 #[test]
@@ -149,7 +160,7 @@ fn roll_is_spread_along_limbs() {
     };
     let roll = |clip: &Clip, name: &str| {
         let joint = rest.find(name).unwrap();
-        let q = rest.pose().locals[joint].rotation.conjugate() * clip.rotations(0)[joint];
+        let q = rest.rest_pose().locals[joint].rotation.conjugate() * clip.rotations(0)[joint];
         crate::pose::SwingTwist::of(q).twist.to_degrees()
     };
     // A forearm that was rolled at the elbow rolls at the wrist.
@@ -176,7 +187,7 @@ fn spines_of_other_counts_bend_as_a_whole() {
         let rename = |name: &str| mixamo(name);
         let style = Style {
             rename: &rename,
-            rest: rest.pose().locals.clone(),
+            rest: rest.rest_pose().locals.clone(),
             facing: 0.3,
             frames: true,
             scale: 1.0,
@@ -184,8 +195,8 @@ fn spines_of_other_counts_bend_as_a_whole() {
         let source = restyled(&clip, &style);
         // A joint that shall drive nothing is left out of the chain.
         let overrides = drop.iter().map(|name| (mixamo(name).unwrap(), None)).collect();
-        let map = JointMap::find(source.rest(), &overrides).unwrap();
-        let retargeter = Retargeter::new(source.rest(), rest.clone(), &map, &exactly()).unwrap();
+        let map = JointMap::find(source.skeleton(), &overrides).unwrap();
+        let retargeter = Retargeter::new(source.skeleton(), rest.clone(), &map, &exactly()).unwrap();
         let found = retargeter.retarget(&source).unwrap();
         let error = direction_error(&source, &found, &map);
         // Degrees, of arcs that stop at 7e-4.
@@ -245,26 +256,26 @@ fn hands_without_fingers_are_at_ease() {
     let fingerless = |name: &str| fingerless(name).filter(|n| !n.contains("Middle") && !n.contains("Ring"));
     let style = Style {
         rename: &fingerless,
-        rest: rest.pose().locals.clone(),
+        rest: rest.rest_pose().locals.clone(),
         facing: 0.0,
         frames: false,
         scale: 1.0,
     };
     let source = restyled(&clip, &style);
-    let curl = |fingers, name: &str| {
+    let curl = |fingers, joint: RigJoint| {
         let found = retarget(&source, &rest, &TransferOptions { fingers, ..Default::default() });
-        let joint = rest.find(name).unwrap();
+        let joint = rest.rig_joint(joint).unwrap();
         let down = |q: Quat| (q * glam::Vec3::Y).y;
         // In the T-pose a curl lowers the finger's tip.
         let upright = rest.model_from_joints();
         let parent = upright[rest.parents()[joint].unwrap() as usize].rotation;
-        down(parent * rest.pose().locals[joint].rotation) - down(parent * found.rotations(0)[joint])
+        down(parent * rest.rest_pose().locals[joint].rotation) - down(parent * found.rotations(0)[joint])
     };
-    for side in ["l", "r"] {
-        let [index, pinky] =
-            ["index_01", "pinky_01"].map(|f| curl(FingerMode::Source, &format!("{f}_{side}")));
+    for side in Side::ALL {
+        let fingers = [SidedJoint::Index01, SidedJoint::Pinky01];
+        let [index, pinky] = fingers.map(|finger| curl(FingerMode::Source, finger.on(side)));
         assert!(index > 0.1 && pinky > index + 0.05, "{index} {pinky}");
-        assert_eq!(curl(FingerMode::Rest, &format!("index_01_{side}")), 0.0);
+        assert_eq!(curl(FingerMode::Rest, SidedJoint::Index01.on(side)), 0.0);
     }
 }
 
@@ -273,15 +284,21 @@ fn what_does_not_fit_is_refused() {
     let rest = person();
     let clip = motion(&rest, 2);
     let map = JointMap::find(&rest, &Default::default()).unwrap();
-    let new = |target: &Arc<RestPose>, scale| {
+    let new = |target: &Arc<Skeleton>, scale| {
         Retargeter::new(&rest, target.clone(), &map, &TransferOptions { scale, ..Default::default() })
     };
     assert!(new(&rest, Some(0.0)).unwrap_err().to_string().contains("positive scale"));
     let other = restyled(
         &clip,
-        &Style { rename: &mixamo, rest: rest.pose().locals.clone(), facing: 0.0, frames: false, scale: 1.0 },
+        &Style {
+            rename: &mixamo,
+            rest: rest.rest_pose().locals.clone(),
+            facing: 0.0,
+            frames: false,
+            scale: 1.0,
+        },
     );
-    assert!(new(other.rest(), None).unwrap_err().to_string().contains("no pelvis"));
+    assert!(new(other.skeleton(), None).unwrap_err().to_string().contains("no pelvis"));
     let message = new(&rest, None).unwrap().retarget(&other).unwrap_err().to_string();
     assert!(message.contains("another skeleton"), "{message}");
 }

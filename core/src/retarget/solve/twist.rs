@@ -11,6 +11,7 @@ use glam::Quat;
 
 use super::Joints;
 use crate::pose::SwingTwist;
+use crate::skeleton::{RigJoint, SidedJoint};
 
 /// A twist joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,18 +30,19 @@ pub(super) struct Twist {
 
 /// The twist joints of the target.
 pub(super) fn find(joints: &Joints) -> Vec<Twist> {
-    let rest = joints.target.pose();
-    let names = joints.target.names();
-    let limbs = [("upperarm", "upperarm"), ("lowerarm", "hand"), ("thigh", "thigh"), ("calf", "foot")];
-    let twist = |joint: usize| {
-        let (stem, side) = names[joint].rsplit_once('_')?;
-        let (limb, of) = limbs
-            .into_iter()
-            .find(|(limb, _)| stem.strip_prefix(limb).is_some_and(|ending| ending.starts_with("_twist_")))?;
-        let of = joints.target.find(&format!("{of}_{side}"))?;
-        let length = joints.target.find(&format!("{limb}_{side}")).and_then(|j| joints.target.ends()[j])?.y;
+    let rest = joints.target.rest_pose();
+    let twist = |(joint, ours): (usize, Option<RigJoint>)| {
+        let RigJoint::Sided(helper, side) = ours.filter(|ours| ours.is_twist())? else { return None };
+        let limb = helper.limb();
+        let own = matches!(limb, SidedJoint::Upperarm | SidedJoint::Thigh);
+        let of = match limb {
+            SidedJoint::Lowerarm => SidedJoint::Hand,
+            SidedJoint::Calf => SidedJoint::Foot,
+            _ => limb,
+        };
+        let of = joints.target.rig_joint(of.on(side))?;
+        let length = joints.target.rig_joint(limb.on(side)).and_then(|j| joints.target.ends()[j])?.y;
         let place = (rest.locals[joint].translation.y / length.max(1e-6)).clamp(0.0, 1.0);
-        let own = joints.target.find(&format!("{limb}_{side}")) == Some(of);
         let part = if own { place - 1.0 } else { place };
         Some(Twist {
             joint,
@@ -51,7 +53,7 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
             rest_of: rest.locals[of].rotation,
         })
     };
-    (0..names.len()).filter_map(twist).collect()
+    joints.target.rig_joints().enumerate().filter_map(twist).collect()
 }
 
 /// Sets the twist joints' rotations; `before` holds each one's roll in the frame before, or none.

@@ -84,9 +84,9 @@ fn joints_move_as_their_channels_say() {
     assert_eq!((motion.report.frames_per_second, motion.report.rate_found), (10.0, Found::Detected));
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::File));
     assert_eq!((motion.report.unit, motion.report.unit_found), (Unit::Metre, Found::File));
-    assert_eq!(clip.rest().names(), ["Hips", "Leg"], "parents first");
+    assert_eq!(clip.skeleton().names(), ["Hips", "Leg"], "parents first");
     // The armature's scale is in the lengths, and no reason to warn.
-    assert!(clip.rest().pose().locals[1].translation.distance(Vec3::new(0.1, -0.05, 0.0)) < 1e-6);
+    assert!(clip.skeleton().rest_pose().locals[1].translation.distance(Vec3::new(0.1, -0.05, 0.0)) < 1e-6);
     assert!(clip.pose(2).locals[0].translation.distance(Vec3::Y * 1.2) < 1e-6);
     assert!(clip.pose(1).locals[1].rotation.dot(Quat::from_rotation_x(0.5)).abs() > 1.0 - 1e-6);
     assert!(motion.report.warnings.is_empty(), "{:?}", motion.report.warnings);
@@ -142,7 +142,7 @@ fn steps_hold_lines_run_and_splines_curve() {
 fn without_a_skin_what_moves_is_a_joint() {
     let mut document = small(&[0.0, 0.1]);
     document.0.as_object_mut().unwrap().remove("skins");
-    assert_eq!(read(&document).unwrap().clips[0].rest().names(), ["Hips", "Leg"]);
+    assert_eq!(read(&document).unwrap().clips[0].skeleton().names(), ["Hips", "Leg"]);
 }
 
 #[test]

@@ -19,7 +19,7 @@ use crate::format::gltf::track;
 use crate::format::gltf::track::{FALLBACK_RATE, MAX_NUMBERS, ON_FRAME, Track};
 use crate::math::RigidTransform;
 use crate::scene::titles::Titles;
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton as RestSkeleton;
 
 /// How far scale may be from 1.
 const SCALE_TOLERANCE: f32 = 1e-4;
@@ -31,7 +31,7 @@ pub(super) fn clips(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Cli
     if document.root.animations.is_empty() {
         return Ok(Vec::new());
     }
-    let rest = RestPose::new(
+    let rest = RestSkeleton::new(
         skeleton.joints.iter().map(|j| j.name.clone()).collect(),
         skeleton.joints.iter().map(|j| j.parent).collect(),
         skeleton.locals.clone(),
@@ -128,7 +128,7 @@ impl Motion {
         &self,
         document: &Document,
         skeleton: &Skeleton,
-        rest: &Arc<RestPose>,
+        rest: &Arc<RestSkeleton>,
         name: String,
     ) -> Outcome<Clip> {
         let joints = skeleton.joints.len();

@@ -12,7 +12,7 @@ use crate::testing::scene::{arm, bent, sleeve};
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let mut scene = arm(8);
     let clip = bent(&scene);
-    let (rest, rotations) = (clip.rest().clone(), clip.rotations(1).to_vec());
+    let (rest, rotations) = (clip.skeleton().clone(), clip.rotations(1).to_vec());
     let still = crate::clip::Clip::new("still".into(), rest, 30.0, rotations.repeat(7), vec![]).unwrap();
     scene.clips = vec![clip, still];
     scene
@@ -142,7 +142,7 @@ fn others_lie_out_their_skeleton_in_other_ways() {
     let between = glam::Affine3A::from_translation(glam::Vec3::Y * 0.25);
     let [upper, lower, thumb] = [0, 1, 2].map(|j| SCENE.clips[0].pose(1).locals[j].to_affine());
     let expected = [above * upper, above * upper * lower, above * upper * lower * between * thumb];
-    let found = clip.pose(1).model_from_joints(clip.rest().parents());
+    let found = clip.pose(1).model_from_joints(clip.skeleton().parents());
     for (found, expected) in found.iter().zip(expected) {
         assert!(found.to_affine().abs_diff_eq(expected, 1e-6), "{found:?} {expected:?}");
     }

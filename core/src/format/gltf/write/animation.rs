@@ -74,7 +74,14 @@ fn joint_rotations(clip: &Clip, joint: usize) -> Vec<[f32; 4]> {
 fn joint_translations(clip: &Clip, joint: usize) -> Vec<[f32; 3]> {
     match clip.translations().iter().find(|track| track.joint as usize == joint) {
         Some(track) => track.values.iter().map(Vec3::to_array).collect(),
-        None => clip.rest().pose().locals.get(joint).map(|l| l.translation.to_array()).into_iter().collect(),
+        None => clip
+            .skeleton()
+            .rest_pose()
+            .locals
+            .get(joint)
+            .map(|l| l.translation.to_array())
+            .into_iter()
+            .collect(),
     }
 }
 

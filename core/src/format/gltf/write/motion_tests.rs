@@ -9,7 +9,7 @@ use super::tests::Parsed;
 use super::*;
 use crate::clip::{Clip, TranslationTrack};
 use crate::format::vrm::{VrmMeta, to_vrm};
-use crate::skeleton::RestPose;
+use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::{JointNames, humanoid_bones, renamed};
 use crate::testing::scene::{arm, bent};
 
@@ -27,8 +27,8 @@ fn tracks(file: &Parsed, animation: usize) -> Vec<(usize, String, Vec<f64>, Vec<
     channels.iter().map(track).collect()
 }
 
-fn rest(scene: &Scene) -> Arc<RestPose> {
-    bent(scene).rest().clone()
+fn rest(scene: &Scene) -> Arc<Skeleton> {
+    bent(scene).skeleton().clone()
 }
 
 #[test]
@@ -64,12 +64,12 @@ fn tracks_are_the_clip() {
 fn what_keeps_still_has_one_key_and_what_rests_none() {
     let mut scene = arm(4);
     let rest = rest(&scene);
-    let q: Vec<Quat> = rest.rotations().collect();
+    let q: Vec<Quat> = rest.rest_rotations().collect();
     // The root as it rests, the next joint turned and still, the last one moving.
     let rotations = (0..4).flat_map(|frame| {
         [q[0], q[1] * Quat::from_rotation_x(0.5), q[2] * Quat::from_rotation_y(0.1 * frame as f32)]
     });
-    let shifted = rest.pose().locals[1].translation + Vec3::Y * 0.01;
+    let shifted = rest.rest_pose().locals[1].translation + Vec3::Y * 0.01;
     let track = TranslationTrack { joint: 1, values: vec![shifted; 4] };
     scene.clips.push(Clip::new("a".into(), rest, 30.0, rotations.collect(), vec![track]).unwrap());
     let file = Parsed::glb(&to_glb(&scene).unwrap());
@@ -83,9 +83,9 @@ fn what_keeps_still_has_one_key_and_what_rests_none() {
 fn a_clip_in_which_nothing_moves_lasts_as_long() {
     let mut scene = arm(4);
     let rest = rest(&scene);
-    let rotations = rest.rotations().collect::<Vec<_>>().repeat(31);
+    let rotations = rest.rest_rotations().collect::<Vec<_>>().repeat(31);
     scene.clips.push(Clip::new("rest".into(), rest.clone(), 30.0, rotations, vec![]).unwrap());
-    let one = rest.rotations().collect();
+    let one = rest.rest_rotations().collect();
     scene.clips.push(Clip::new("one frame".into(), rest, 30.0, one, vec![]).unwrap());
     let file = Parsed::glb(&to_glb(&scene).unwrap());
     let lengths = [0, 1].map(|a| tracks(&file, a).iter().map(|t| *t.2.last().unwrap()).collect::<Vec<_>>());

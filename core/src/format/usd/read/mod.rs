@@ -189,14 +189,14 @@ fn bone_lengths(
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
 fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
-    let rest = Arc::new(scene.rest_pose(str::to_owned)?);
+    let rest = Arc::new(scene.skeleton(str::to_owned)?);
     let mut titles = Titles::default();
     let mut out: Vec<Clip> = Vec::with_capacity(clips.len());
     for clip in clips {
         let frames = clip.frame_count();
         let rotations = (0..frames).flat_map(|frame| clip.rotations(frame).iter().copied()).collect();
         let mut tracks = clip.translations().to_vec();
-        let both = clip.rest().pose().locals.iter().zip(&rest.pose().locals);
+        let both = clip.skeleton().rest_pose().locals.iter().zip(&rest.rest_pose().locals);
         for (joint, (own, bind)) in both.enumerate() {
             let moves = tracks.iter().any(|track| track.joint as usize == joint);
             if !moves && own.translation.distance(bind.translation) > REST_TOLERANCE {

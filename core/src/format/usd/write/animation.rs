@@ -33,13 +33,13 @@ pub(super) fn write(
     let rotations = layer.declare(path, "rotations", "quatf[]", Variability::Varying, None)?;
     layer.set(&rotations, FieldKey::TimeSamples, samples(&rotations_of))?;
     if clip.translations().is_empty() {
-        layer.attribute(path, "translations", "float3[]", translations_of(clip.rest().pose()))?;
+        layer.attribute(path, "translations", "float3[]", translations_of(clip.skeleton().rest_pose()))?;
     } else {
         let translations = layer.declare(path, "translations", "float3[]", Variability::Varying, None)?;
         layer.set(&translations, FieldKey::TimeSamples, samples(&translations_of))?;
     }
     let one = Vec3h { x: f16::ONE, y: f16::ONE, z: f16::ONE };
-    layer.attribute(path, "scales", "half3[]", Value::Vec3hVec(vec![one; clip.rest().len()]))?;
+    layer.attribute(path, "scales", "half3[]", Value::Vec3hVec(vec![one; clip.skeleton().len()]))?;
     Ok(())
 }
 

@@ -66,7 +66,7 @@ pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> 
     let mut joints: Vec<RigidTransform> = Vec::new();
     let sample = |frame: usize| {
         clip.pose_into(frame, &mut pose);
-        model_from_joints(clip.rest().parents(), &pose.locals, &mut joints);
+        model_from_joints(clip.skeleton().parents(), &pose.locals, &mut joints);
         let mut bounds = Bounds::EMPTY;
         for (moved, at) in boxes.iter().zip(&joints) {
             if moved.low.cmple(moved.high).all() {

@@ -124,7 +124,7 @@ fn extents_hold_the_skinned_vertices() {
             within(p.x, x0, x1) && within(p.y, y0, y1) && within(p.z, z0, z1)
         };
         let mut joints = Vec::new();
-        model_from_joints(clip.rest().parents(), &clip.pose(frame).locals, &mut joints);
+        model_from_joints(clip.skeleton().parents(), &clip.pose(frame).locals, &mut joints);
         for mesh in &scene.meshes {
             for (vertex, position) in mesh.positions.iter().enumerate() {
                 let moved = mesh.influences(vertex).filter(|slot| slot.1 > 0.0).map(|(joint, weight)| {

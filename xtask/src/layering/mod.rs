@@ -1,0 +1,158 @@
+//! Who may use whom inside the library: the table, held against the paths that the code really names.
+//!
+//! A room is a folder or a file directly under `core/src`. Every path that starts at the crate's root is looked at,
+//! wherever it stands: `use crate::mesh::…`, `crate::mesh::…` in an expression, `use crate::{mesh, rig::…}`, and
+//! chains of `super` that climb as far. Names that the root re-exports count as the room they come from.
+
+mod paths;
+mod table;
+
+use crate::tools::{self, Outcome};
+use std::collections::BTreeMap;
+use std::path::Path;
+use syn::{Item, ItemMod, Meta};
+
+/// Where the table is, for whom it has nothing.
+const TABLE: &str = "the table of xtask/src/layering/table.rs";
+
+/// One line per use of a room that the table does not grant: `path:line: …`.
+pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {
+    let lib = source.join("lib.rs");
+    let shown = |path: &Path| path.strip_prefix(tools::root()).unwrap_or(path).display().to_string();
+    let broken = |path: &Path, e: &syn::Error| format!("{}:{}: {e}", shown(path), e.span().start().line);
+    let root = syn::parse_file(&tools::read(&lib)?).map_err(|e| broken(&lib, &e))?;
+    let root_names: BTreeMap<String, String> = paths::root_names(&root).into_iter().collect();
+    let mut violations = Vec::new();
+    if let Some(line) = open_beyond_tests(&root) {
+        violations.push(format!(
+            "{}:{line}: `{}` is for tests alone: it needs `#[cfg(test)]`",
+            shown(&lib),
+            table::TESTING
+        ));
+    }
+    let mut files = Vec::new();
+    rust_files(source, &mut Vec::new(), &mut files)?;
+    for modules in files {
+        let Some(room) = modules.first() else { continue };
+        let path = file_of(source, &modules);
+        if !table::is_room(room) {
+            violations.push(format!("{}:1: the room `{room}` is not in {TABLE}", shown(&path)));
+            continue;
+        }
+        let uses = paths::root_uses(&tools::read(&path)?, modules.len()).map_err(|e| broken(&path, &e))?;
+        for (line, name) in uses {
+            let used = root_names.get(&name).unwrap_or(&name);
+            let why = match (table::is_room(used), table::may_use(room, used)) {
+                (true, true) => continue,
+                (true, false) => format!("`{room}` may not use `{used}`"),
+                (false, _) => format!("`{name}` is neither a room in {TABLE} nor one's name"),
+            };
+            violations.push(format!("{}:{line}: {why}", shown(&path)));
+        }
+    }
+    Ok(violations)
+}
+
+/// The line at which the root declares the room of the tests without leaving it to tests.
+fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
+    let for_tests = |module: &ItemMod| {
+        module.attrs.iter().any(|attribute| match &attribute.meta {
+            Meta::List(list) => list.path.is_ident("cfg") && list.tokens.to_string() == "test",
+            _ => false,
+        })
+    };
+    lib.items.iter().find_map(|item| match item {
+        Item::Mod(module) if module.ident == table::TESTING && !for_tests(module) => {
+            Some(module.ident.span().start().line)
+        }
+        _ => None,
+    })
+}
+
+/// Collects the module paths of all files below a folder, in order: `mesh/mod.rs` and `mesh.rs` are `[mesh]`.
+fn rust_files(folder: &Path, modules: &mut Vec<String>, files: &mut Vec<Vec<String>>) -> Outcome {
+    let complain = |e: std::io::Error| format!("{}: cannot read: {e}", folder.display());
+    let mut entries =
+        std::fs::read_dir(folder).map_err(complain)?.collect::<Result<Vec<_>, _>>().map_err(complain)?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let path = entry.path();
+        let Some(stem) = path.file_stem().map(|s| s.to_string_lossy().into_owned()) else { continue };
+        if path.is_dir() {
+            modules.push(stem);
+            rust_files(&path, modules, files)?;
+            modules.pop();
+        } else if path.extension().is_some_and(|e| e == "rs") && !(modules.is_empty() && stem == "lib") {
+            let mut own = modules.clone();
+            if stem != "mod" {
+                own.push(stem);
+            }
+            files.push(own);
+        }
+    }
+    Ok(())
+}
+
+/// The file of a module path.
+fn file_of(source: &Path, modules: &[String]) -> std::path::PathBuf {
+    let base = modules.iter().fold(source.to_path_buf(), |path, module| path.join(module));
+    let file = base.with_extension("rs");
+    if file.is_file() { file } else { base.join("mod.rs") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The complaints about a library of these files.
+    fn complaints(files: &[(&str, &str)]) -> Vec<String> {
+        let folder = tempfile::tempdir().unwrap();
+        for (path, text) in files {
+            tools::write(&folder.path().join(path), text).unwrap();
+        }
+        let found = violations(folder.path()).unwrap();
+        let start = format!("{}/", folder.path().display());
+        found.into_iter().map(|line| line.replace(&start, "")).collect()
+    }
+
+    #[test]
+    fn the_library_keeps_to_the_table() {
+        let violations = violations(&tools::root().join("core/src")).unwrap();
+        assert!(violations.is_empty(), "\n{}", violations.join("\n"));
+    }
+
+    #[test]
+    fn what_the_table_does_not_grant_is_told_with_its_line() {
+        let found = complaints(&[
+            ("lib.rs", "pub use error::Error;\npub use body::Body;"),
+            ("error.rs", "fn f() {}"),
+            ("attic/mod.rs", ""),
+            ("mesh/mod.rs", "use crate::Error;\nuse crate::{Body, rig::Rig};"),
+            (
+                "mesh/deep/down.rs",
+                "\nuse super::super::super::pose;\nuse crate::nothing;\nuse super::super::body;",
+            ),
+        ]);
+        let expected = [
+            "attic/mod.rs:1: the room `attic` is not in the table of xtask/src/layering/table.rs",
+            "mesh/deep/down.rs:2: `mesh` may not use `pose`",
+            "mesh/deep/down.rs:3: `nothing` is neither a room in the table of xtask/src/layering/table.rs nor one's name",
+            "mesh/mod.rs:2: `mesh` may not use `body`",
+            "mesh/mod.rs:2: `mesh` may not use `rig`",
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn the_room_of_the_tests_is_for_tests_alone() {
+        let rest = [
+            ("testing/mod.rs", "use crate::export::Scene;"),
+            ("mesh.rs", "#[cfg(test)]\nmod tests { use crate::testing::body; }"),
+        ];
+        let with = |lib| complaints(&[&[("lib.rs", lib)], &rest[..]].concat());
+        assert!(with("#[cfg(test)]\nmod testing;").is_empty());
+        let told = "lib.rs:2: `testing` is for tests alone: it needs `#[cfg(test)]`";
+        assert_eq!(with("\npub mod testing;"), [told]);
+        assert_eq!(with("#[cfg(any(test, unix))]\nmod testing;"), [told]);
+    }
+}
