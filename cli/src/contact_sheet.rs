@@ -197,6 +197,7 @@ fn people(count: usize, seed: u64, typical: &[Typical; 2]) -> Vec<Request> {
 #[cfg(test)]
 mod tests {
     use anthronet::condition::QUANTILE_COUNT;
+    use anthronet::measure::MEASURE_COUNT;
 
     use super::*;
 
@@ -224,7 +225,7 @@ mod tests {
 
     #[test]
     fn typical_reads_the_covariance() {
-        let count = MeasureId::all().count();
+        let count = MEASURE_COUNT;
         let [h, w] = [MeasureId::HEIGHT, MeasureId::WAIST].map(MeasureId::index);
         let mut mean = vec![1.0; count];
         let mut covariance: Vec<f64> = vec![0.0; count * count];

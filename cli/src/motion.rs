@@ -148,10 +148,10 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     if arguments.clips.is_empty() {
         return Ok(());
     }
-    let rest = Arc::new(scene.skeleton(|name| native_name(name).into_owned())?);
+    let skeleton = Arc::new(scene.skeleton(|name| native_name(name).into_owned())?);
     let mut reports = Vec::new();
     for source in &arguments.clips {
-        let (clips, report) = load(source, &rest, arguments)?;
+        let (clips, report) = load(source, &skeleton, arguments)?;
         clips.into_iter().for_each(|clip| scene.add_clip(clip));
         reports.push(report);
     }
@@ -161,14 +161,14 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     files::write_text(path, &(text + "\n"))
 }
 
-/// The clips of one `--clip`, retargeted to the rest pose, with their report.
+/// The clips of one `--clip`, retargeted to the skeleton, with their report.
 fn load(
     source: &str,
-    rest: &Arc<Skeleton>,
+    skeleton: &Arc<Skeleton>,
     arguments: &MotionArguments,
 ) -> Result<(Vec<Clip>, serde_json::Value)> {
     if BUILTIN.contains(&source) {
-        let clip = clip::builtin(source, rest)?;
+        let clip = clip::builtin(source, skeleton)?;
         let clip = match arguments.fps {
             Some(rate) => clip::resample(&clip, rate)?,
             None => clip,
@@ -195,7 +195,7 @@ fn load(
     }
     let in_file = |error| Failure::failed(format!("{source}: {error}"));
     let (clips, report) =
-        retarget::retarget(&motion.clips, rest, &retarget_options(arguments)?).map_err(in_file)?;
+        retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?).map_err(in_file)?;
     if !report.joints.unmatched.is_empty() {
         let joints = report.joints.unmatched.join(", ");
         eprintln!("note: {source}: unmatched joints: {joints}");

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anthronet::Error;
 use anthronet::condition::{Fill, Request};
 use anthronet::measure::Sex;
+use anthronet::{Error, Side};
 use clap::Args;
 
 use crate::choice;

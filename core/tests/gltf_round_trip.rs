@@ -1,6 +1,5 @@
 //! Bodies to glTF and back.
 
-
 use anthronet::clip::Clip;
 use anthronet::condition::Request;
 use anthronet::format::gltf::to_glb;

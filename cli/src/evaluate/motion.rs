@@ -62,7 +62,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// What of a body the evaluation needs.
 struct Target {
-    rest: Arc<Skeleton>,
+    skeleton: Arc<Skeleton>,
     soles: Soles,
 }
 
@@ -75,8 +75,8 @@ fn bodies_of(count: usize) -> Result<Vec<Target>> {
             let mut request = Request::default();
             request.set("height", STATURES[0] + (STATURES[1] - STATURES[0]) * t)?;
             let body = model.generate(&request)?;
-            let rest = body.skeleton().clone();
-            Ok(Target { soles: Soles::of(&body, &rest)?, rest })
+            let skeleton = body.skeleton().clone();
+            Ok(Target { soles: Soles::of(&body, &skeleton)?, skeleton })
         })
         .collect()
 }
@@ -86,7 +86,7 @@ fn row(path: &Path, motion: &Motion, bodies: &[Target]) -> Result<Row> {
     let mut row = Row::new(name);
     for body in bodies {
         let retarget = |options: &RetargetOptions| {
-            retarget::retarget(&motion.clips, &body.rest, options).map_err(|e| Failure::in_file(path, &e))
+            retarget::retarget(&motion.clips, &body.skeleton, options).map_err(|e| Failure::in_file(path, &e))
         };
         let (clips, report) = retarget(&RetargetOptions::default())?;
         let (unplanted, _) = retarget(&RetargetOptions { feet: None, ..RetargetOptions::default() })?;
@@ -107,15 +107,15 @@ fn row(path: &Path, motion: &Motion, bodies: &[Target]) -> Result<Row> {
 
 fn builtin_row(name: &str, bodies: &[Target]) -> Result<Row> {
     let mut row = Row::new(name.to_owned());
-    for Target { rest, soles } in bodies {
-        let clip = clip::builtin(name, rest)?;
+    for Target { skeleton, soles } in bodies {
+        let clip = clip::builtin(name, skeleton)?;
         row.frames = clip.frame_count();
         let options = feet::FeetOptions { find_floor: false, ..feet::FeetOptions::default() };
         let contacts = feet::contacts(&clip, &options)?;
         let measured = soles.measure(&clip, &contacts)?;
         row.add_feet(&contacts, &measured, &measured, 1.0 / bodies.len() as f64);
-        let (excess, joint) = retarget::worst_limit_excess(&JointLimits::of_rig(rest), &clip);
-        let name = joint.and_then(|j| rest.names().get(j)).map(String::as_str);
+        let (excess, joint) = retarget::worst_limit_excess(&JointLimits::of_rig(skeleton), &clip);
+        let name = joint.and_then(|j| skeleton.names().get(j)).map(String::as_str);
         row.add_limit_excess(f64::from(excess).to_degrees(), name);
     }
     Ok(row)

@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use anthronet::Body;
-use anthronet::Side;
 use anthronet::clip::Clip;
 use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::{Influences, Pose, SidedJoint, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
+use anthronet::{Body, Side};
 use glam::Vec3;
 
 use crate::failure::{Failure, Result};
@@ -49,17 +48,15 @@ pub(super) struct SkinMeasure {
 }
 
 impl Soles {
-    pub(super) fn of(body: &Body, rest: &Skeleton) -> Result<Self> {
+    pub(super) fn of(body: &Body, skeleton: &Skeleton) -> Result<Self> {
         let scene = Scene::from_body(body, &SceneOptions { lod: Lod::Lod1, ..SceneOptions::default() })?;
         let mesh = scene.meshes.first().ok_or_else(|| Failure::failed("the scene has no body"))?;
-        let model = rest.model_from_joints();
+        let model = skeleton.model_from_joints();
         let mut feet = Vec::new();
         let mut kept: Vec<usize> = Vec::new();
         for side in Side::ALL {
-            let joints = [
-                rest.require_rig_joint(SidedJoint::Foot.on(side))?,
-                rest.require_rig_joint(SidedJoint::Ball.on(side))?,
-            ];
+            let joint = |joint: SidedJoint| skeleton.require_rig_joint(joint.on(side));
+            let joints = [joint(SidedJoint::Foot)?, joint(SidedJoint::Ball)?];
             let follows = |v: &usize| {
                 mesh.influences(*v).any(|(joint, w)| w > 0.0 && joints.contains(&usize::from(joint)))
             };

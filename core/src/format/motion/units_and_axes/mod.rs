@@ -10,7 +10,7 @@ use super::raw::RawMotion;
 use super::{Found, Motion, ReadOptions, ReadReport};
 use crate::clip::Clip;
 use crate::error::Outcome;
-use crate::skeleton::{Skeleton};
+use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
