@@ -11,7 +11,6 @@ use crate::choice;
 use crate::failure::{Failure, Result};
 use crate::files::read_text;
 use crate::units::parse_measure;
-use anthronet::Side;
 
 /// Options that describe a person. They override the request file.
 #[derive(Args, Clone, Debug, Default)]
