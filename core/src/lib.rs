@@ -2,10 +2,11 @@
 //!
 //! ```
 //! use anthronet::condition::Request;
-//! use anthronet::export::{Scene, SceneOptions, gltf::to_glb};
+//! use anthronet::format::gltf::to_glb;
 //! use anthronet::measure::Sex;
 //! use anthronet::mesh::Lod;
 //! use anthronet::model::Model;
+//! use anthronet::scene::{Scene, SceneOptions};
 //!
 //! let model = Model::embedded()?;
 //! let request = Request { sex: Some(Sex::Female), ..Request::default() }
@@ -30,14 +31,13 @@
 //! | [`condition::Request`] | what is asked: any subset of the measures, sex, seed or z | plain data |
 //! | [`Body`] | one person in the bind pose, with joints and [`condition::Report`] | immutable; owns about 2 MB of vertices and normals, shares the character |
 //! | [`measure::Definitions`] | where each measure lies, as data | inside the model |
-//! | [`pose::Skeleton`] | the joints at rest | plain data of a few kilobytes |
-//! | [`pose::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
+//! | [`skeleton::Skeleton`] | a joint tree in the pose it rests in | immutable, some kilobytes; shared by a body and its clips |
+//! | [`skeleton::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
 //! | [`clip::Clip`], [`clip::Sampler`] | a motion; reads poses off it | a clip is immutable and shared, a sampler is two words |
 //! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one skinning of it | a skinner is immutable and shared, a job borrows the caller's buffers |
-//! | [`export::Scene`] | meshes, skeleton, materials, clips; knows nothing of bodies | plain data, what every file format is written from |
-//! | [`import::ImportedScene`] | what was read back of a character file | plain data |
+//! | [`scene::Scene`] | meshes, joints, materials, clips; knows nothing of bodies | plain data, what every file format is read into and written from |
 //!
-//! Data flows one way: `condition` → `model` → [`Body`] → `pose`, `clip`, `skin` → `export`. ARCHITECTURE.md has the rooms
+//! Data flows one way: `condition` → `model` → [`Body`] → `skeleton`, `clip`, `skin` → `scene` → `format`. ARCHITECTURE.md has the rooms
 //! and which may use which.
 //!
 //! # Conventions

@@ -13,8 +13,8 @@
 //! # One folder per format
 //!
 //! A folder has as many of these as apply: `document` (bytes to a parsed document, every size checked), `motion` (document
-//! to [`RawMotion`](motion::raw::RawMotion)), `character` and `meshes` (document to scene), `write` (scene to bytes). What the
-//! folder offers is in one [`Description`](kind::Description), which [`Format`] lists: a new format is a folder and a line
+//! to `motion::raw::RawMotion`), `character` and `meshes` (document to scene), `write` (scene to bytes). What the
+//! folder offers is in one `kind::Description`, which [`Format`] lists: a new format is a folder and a line
 //! there.
 
 mod bvh;

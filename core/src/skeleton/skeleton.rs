@@ -163,7 +163,6 @@ impl Skeleton {
 }
 
 /// Checks what stands beside a hierarchy, and brings rotations to unit length.
-#[expect(clippy::type_complexity, reason = "the two arguments that it was given")]
 fn checked(
     tree: &JointTree,
     mut locals: Vec<RigidTransform>,

@@ -330,7 +330,7 @@ mod tests {
         };
         let names: Vec<&str> = order().flat_map(with_twists).map(RigJoint::name).collect();
         let model = anthronet::model::Model::embedded().unwrap();
-        assert_eq!(names, model.character().skeleton().names());
+        assert_eq!(names, model.character().joint_tree().names());
     }
 
     #[test]

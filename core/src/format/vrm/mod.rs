@@ -59,7 +59,7 @@ impl Default for VrmMeta {
 /// [`JointNames`](crate::skeleton::humanoid::JointNames).
 ///
 /// # Errors
-/// [`Error::Invalid`] as for [`to_glb`](super::to_glb); for a scene with clips, without one of the bones that VRM
+/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips, without one of the bones that VRM
 /// requires; for a figure without author or with an empty name.
 pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
     if let Some(clip) = scene.clips.first() {

@@ -125,7 +125,8 @@ pub struct RetargetReport {
     pub clips: Vec<ClipReport>,
 }
 
-/// Retargets every clip of a motion, which share a rest pose, to a body; `target` is the rest pose of its joints, see [`Skeleton::of_joints`].
+/// Retargets every clip of a motion, which share a rest pose, to a body; `target` is the body's
+/// own skeleton, see [`Body::skeleton`](crate::Body::skeleton).
 ///
 /// # Errors
 /// As [`JointMap::find`], [`Retargeter::new`] and [`plant`].

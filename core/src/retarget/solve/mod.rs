@@ -165,7 +165,7 @@ pub struct Retargeter {
 }
 
 impl Retargeter {
-    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`Skeleton::of_joints`].
+    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`Body::skeleton`](crate::Body::skeleton).
     ///
     /// # Errors
     /// [`Error::Invalid`] when the target lacks pelvis or thighs, `map` is of another source, or the scale is not
