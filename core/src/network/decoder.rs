@@ -40,8 +40,9 @@ impl Decoder {
     /// Builds the network from its arrays.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for an absurd configuration, [`Error::Model`] naming the tensor that is missing, of
-    /// another shape or not finite. Tensors of other networks in the set are ignored.
+    /// [`Error::Invalid`](crate::Error::Invalid) for an absurd configuration,
+    /// [`Error::Model`](crate::Error::Model) naming the tensor that is missing, of another shape or not finite. Tensors of
+    /// other networks in the set are ignored.
     pub fn from_tensors(config: &GeneratorConfig, tensors: &Tensors) -> Result<Self> {
         config.validate()?;
         let shapes = decoder_shapes(config);

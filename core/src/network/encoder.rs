@@ -45,7 +45,7 @@ impl Encoder {
     /// Builds the network from its arrays.
     ///
     /// # Errors
-    /// As [`Decoder::from_tensors`].
+    /// As [`Decoder::from_tensors`](super::Decoder::from_tensors).
     pub fn from_tensors(config: &GeneratorConfig, tensors: &Tensors) -> Result<Self> {
         config.validate()?;
         let shapes = encoder_shapes(config);

@@ -213,7 +213,7 @@ fn every_joint_of_every_program_drives_what_it_should() {
             let shares = map.spine().contains(&joint) || map.neck().contains(&joint);
             match part {
                 Part::Drives(ours) => {
-                    assert_eq!(driven.get(&joint), Some(&ours.as_str()), "{}: {name}", list.0)
+                    assert_eq!(driven.get(&joint), Some(&ours.as_str()), "{}: {name}", list.0);
                 }
                 Part::Shares => assert!(shares, "{}: {name}", list.0),
                 Part::Nothing => {
