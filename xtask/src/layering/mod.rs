@@ -127,7 +127,7 @@ mod tests {
             ("lib.rs", "pub use error::Error;\npub use body::Body;"),
             ("error.rs", "fn f() {}"),
             ("attic/mod.rs", ""),
-            ("mesh/mod.rs", "use crate::Error;\nuse crate::{Body, rig::Rig};"),
+            ("mesh/mod.rs", "use crate::Error;\nuse crate::{Body, skin::Skinner};"),
             (
                 "mesh/deep/down.rs",
                 "\nuse super::super::super::pose;\nuse crate::nothing;\nuse super::super::body;",
@@ -138,7 +138,7 @@ mod tests {
             "mesh/deep/down.rs:2: `mesh` may not use `pose`",
             "mesh/deep/down.rs:3: `nothing` is neither a room in the table of xtask/src/layering/table.rs nor one's name",
             "mesh/mod.rs:2: `mesh` may not use `body`",
-            "mesh/mod.rs:2: `mesh` may not use `rig`",
+            "mesh/mod.rs:2: `mesh` may not use `skin`",
         ];
         assert_eq!(found, expected);
     }
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn the_room_of_the_tests_is_for_tests_alone() {
         let rest = [
-            ("testing/mod.rs", "use crate::export::Scene;"),
+            ("testing/mod.rs", "use crate::scene::Scene;"),
             ("mesh.rs", "#[cfg(test)]\nmod tests { use crate::testing::body; }"),
         ];
         let with = |lib| complaints(&[&[("lib.rs", lib)], &rest[..]].concat());
