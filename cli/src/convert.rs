@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     if !backend::moving_endings().contains(&ending(&arguments.output).as_str()) && !scene.clips.is_empty() {
         eprintln!("warning: {}: the format holds no motion, left out", arguments.output.display());
-        scene.clips.clear();
+        scene.clear_clips();
     }
     backend::write_scene(&scene, &arguments.output, arguments.compress)
 }
