@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             "warning: {}: the format holds no motion, the clips are left out",
             arguments.output.display()
         );
-        scene.clips.clear();
+        scene.clear_clips();
     }
     write_scene(&scene, &arguments.output, arguments.compress)
 }

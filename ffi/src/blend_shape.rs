@@ -2,7 +2,7 @@
 
 use std::ffi::{c_char, c_void};
 
-use anthronet::scene::BlendShape;
+use anthronet::scene::MorphTarget;
 
 use crate::body::anthronet_body;
 use crate::mesh::{
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn anthronet_mesh_read_blend_shape(
     })
 }
 
-fn array(shape: &BlendShape, attribute: u32) -> Outcome<Array<'_>> {
+fn array(shape: &MorphTarget, attribute: u32) -> Outcome<Array<'_>> {
     const KNOWN: [u32; 2] = [ANTHRONET_ATTRIBUTE_POSITIONS, ANTHRONET_ATTRIBUTE_NORMALS];
     let vectors = match choice(&KNOWN, attribute, "attribute")? {
         ANTHRONET_ATTRIBUTE_NORMALS => &shape.normals,

@@ -3,7 +3,7 @@
 use std::ffi::c_void;
 
 use anthronet::math::RigidTransform;
-use anthronet::scene::{BlendShape, Layout, MeshBuffers, Scene, SceneOptions, SkinTone};
+use anthronet::scene::{Layout, MeshBuffers, MorphTarget, Scene, SceneOptions, SkinTone};
 
 use crate::body::anthronet_body;
 use crate::options::{Descriptor, DescriptorOut, choice, described, flag, joint_names, lod, space};
@@ -115,7 +115,7 @@ pub struct anthronet_mesh {
     pub(crate) parts: Vec<MeshBuffers>,
     pub(crate) bind: Vec<RigidTransform>,
     /// By shape, then by part.
-    pub(crate) blend_shapes: Vec<Vec<BlendShape>>,
+    pub(crate) blend_shapes: Vec<Vec<MorphTarget>>,
     pub(crate) options: anthronet_mesh_options,
 }
 

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::morph::MorphTarget;
 use super::scene::{Corners, Scene, SceneMaterial, SceneMesh, flip_v};
 use super::split::SplitMesh;
 use crate::skeleton::Influences;
@@ -44,17 +45,8 @@ pub struct MeshBuffers {
     pub sources: Vec<u32>,
     /// Which joints each vertex follows.
     pub influences: Influences,
-}
-
-/// A surface's way to another shape. A share of it is added to the bind pose, before skinning.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BlendShape {
-    /// Its name.
-    pub name: String,
-    /// `(V, 3)`, metres, to be added to the positions.
-    pub positions: Vec<[f32; 3]>,
-    /// `(V, 3)`, to be added to the normals, whose sum is then to be brought to unit length.
-    pub normals: Vec<[f32; 3]>,
+    /// Other shapes of the surface, `(V, 3)` each.
+    pub morph_targets: Vec<MorphTarget>,
 }
 
 impl Scene {
@@ -87,7 +79,7 @@ impl MeshBuffers {
     ///
     /// # Errors
     /// [`Error::Invalid`] when the two do not have the same vertices.
-    pub fn blend_shape(&self, name: impl Into<String>, other: &Self) -> Result<BlendShape> {
+    pub fn blend_shape(&self, name: impl Into<String>, other: &Self) -> Result<MorphTarget> {
         if self.sources != other.sources {
             let (ours, theirs) = (self.positions.len(), other.positions.len());
             let message = format!("`{}`: expected the same {ours} vertices, got {theirs}", self.name);
@@ -97,7 +89,7 @@ impl MeshBuffers {
             let difference = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| b[i] - a[i]);
             from.iter().zip(to).map(difference).collect()
         };
-        Ok(BlendShape {
+        Ok(MorphTarget {
             name: name.into(),
             positions: way(&self.positions, &other.positions),
             normals: way(&self.normals, &other.normals),
@@ -109,7 +101,14 @@ impl MeshBuffers {
         let per_vertex = mesh.influences_per_vertex;
         let source = || split.source.iter().map(|v| *v as usize);
         let rows = || source().map(|v| v * per_vertex..(v + 1) * per_vertex);
+        let of_sources = |rows: &[[f32; 3]]| source().filter_map(|v| rows.get(v).copied()).collect();
+        let target = |target: &MorphTarget| MorphTarget {
+            name: target.name.clone(),
+            positions: of_sources(&target.positions),
+            normals: of_sources(&target.normals),
+        };
         Self {
+            morph_targets: mesh.morph_targets.iter().map(target).collect(),
             positions: source().map(|v| mesh.positions[v]).collect(),
             normals: source().filter_map(|v| mesh.normals.get(v).copied()).collect(),
             uvs: split.uvs(&mesh),
@@ -135,6 +134,7 @@ impl MeshBuffers {
             sources: (0..mesh.positions.len() as u32).collect(),
             positions: mesh.positions,
             normals: mesh.normals,
+            morph_targets: mesh.morph_targets,
             uvs: mesh.uvs,
             triangles,
             triangle_uvs,
@@ -155,7 +155,9 @@ impl MeshBuffers {
         if space == Space::YUp {
             return;
         }
-        for vector in self.positions.iter_mut().chain(&mut self.normals) {
+        let offsets =
+            self.morph_targets.iter_mut().flat_map(|t| t.positions.iter_mut().chain(&mut t.normals));
+        for vector in self.positions.iter_mut().chain(&mut self.normals).chain(offsets) {
             *vector = space.from_ours(Vec3::from_array(*vector)).to_array();
         }
         self.uvs.iter_mut().for_each(|uv| *uv = flip_v(*uv));
@@ -169,7 +171,7 @@ impl MeshBuffers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::scene::arm;
+    use crate::testing::scene::{arm, bulging};
 
     /// Six times the volume of the tetrahedra from the origin, with the sign of the winding.
     fn signed_volume(buffers: &MeshBuffers) -> f32 {
@@ -216,6 +218,22 @@ mod tests {
         let mut fewer = other;
         fewer.sources.pop();
         assert!(one.blend_shape("wide", &fewer).is_err());
+    }
+
+    #[test]
+    fn morph_targets_go_along() {
+        for layout in [Layout::Render, Layout::Model] {
+            let meshes = bulging(arm(4)).into_buffers(layout, Space::ZUp).unwrap();
+            let (cushion, scene) = (&meshes[2], bulging(arm(4)));
+            assert_eq!(cushion.sources.len(), if layout == Layout::Render { 8 } else { 6 });
+            for (there, ours) in cushion.morph_targets.iter().zip(&scene.meshes[2].morph_targets) {
+                assert_eq!(there.name, ours.name);
+                for (offset, source) in there.positions.iter().zip(&cushion.sources) {
+                    let back = Space::ZUp.to_ours(Vec3::from_array(*offset));
+                    assert_eq!(back.to_array(), ours.positions[*source as usize]);
+                }
+            }
+        }
     }
 
     #[test]

@@ -97,7 +97,7 @@ impl Scene {
                 "seed": report.seed,
             }
         });
-        Ok(Self { name: "Character".into(), joints, meshes, materials, clips: Vec::new(), extras })
+        Ok(Self { name: "Character".into(), joints, meshes, materials, extras, ..Self::default() })
     }
 }
 

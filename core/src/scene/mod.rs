@@ -2,14 +2,16 @@
 
 mod buffers;
 mod character;
+mod morph;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod scene;
 pub mod skin_tone;
 mod split;
 pub(crate) mod titles;
 
-pub use buffers::{BlendShape, Layout, MeshBuffers};
+pub use buffers::{Layout, MeshBuffers};
 pub use character::SceneOptions;
+pub use morph::{MorphTarget, MorphTrack};
 pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
 pub use skin_tone::SkinTone;
 pub use split::SplitMesh;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
+use super::morph::{MorphTarget, MorphTrack, validate_targets};
 use super::titles::Titles;
 use crate::clip::Clip;
 use crate::scene::SkinTone;
@@ -40,6 +41,8 @@ pub struct Scene {
     /// Motions of the joint tree: the joints of each clip are [`Scene::joints`] in their order, and rest in the bind
     /// pose; what the clips call them does not matter. Names are unique: [`add_clip`](Scene::add_clip) sees to it.
     pub clips: Vec<Clip>,
+    /// How much of the meshes' morph targets there is over the clips, in any order.
+    pub morph_tracks: Vec<MorphTrack>,
     /// Anything to be kept with the file, such as the report: an object, or `null` for nothing.
     pub extras: serde_json::Value,
 }
@@ -80,6 +83,8 @@ pub struct SceneMesh {
     pub joint_weights: Vec<f32>,
     /// Place in [`Scene::materials`].
     pub material: u32,
+    /// Other shapes of the surface.
+    pub morph_targets: Vec<MorphTarget>,
 }
 
 /// Faces of `N` corners each.
@@ -182,7 +187,8 @@ pub fn flip_v([u, v]: [f32; 2]) -> [f32; 2] {
 
 impl Scene {
     /// Checks all that the writers rely on: every index in range, every number finite, names unique, parents first
-    /// with one root, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1.
+    /// with one root, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1,
+    /// morph targets of as many rows as their mesh, one weight per frame of a clip.
     ///
     /// # Errors
     /// [`Error::Invalid`] names the joint, mesh or material and the first value that is wrong.
@@ -197,6 +203,7 @@ impl Scene {
         }
         unique("mesh", self.meshes.iter().map(|m| m.name.as_str()))?;
         self.validate_clips()?;
+        self.validate_morph_tracks()?;
         self.meshes.iter().try_for_each(|mesh| {
             self.validate_mesh(mesh)
                 .map_err(|message| Error::invalid("mesh", format!("`{}`: {message}", mesh.name)))
@@ -341,6 +348,7 @@ impl Scene {
         }
         validate_corners(&mesh.quads, mesh)?;
         validate_corners(&mesh.triangles, mesh)?;
+        validate_targets(mesh)?;
         self.validate_influences(mesh)
     }
 

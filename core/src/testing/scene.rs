@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::clip::{Clip, TranslationTrack};
-use crate::scene::{AlphaMode, SkinTone};
+use crate::scene::{AlphaMode, MorphTarget, MorphTrack, SkinTone};
 use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
 
 /// Sides of the sleeve.
@@ -50,8 +50,8 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
         joints,
         meshes: vec![tube(influences, rings), cap(influences)],
         materials,
-        clips: Vec::new(),
         extras: serde_json::json!({"asked": {"arm_length": 0.6}}),
+        ..Scene::default()
     }
 }
 
@@ -68,6 +68,73 @@ pub(crate) fn bent(scene: &Scene) -> Clip {
     let start = rest.rest_pose().locals[0].translation;
     let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
     Clip::new("bent".into(), rest, 25.0, rotations, vec![TranslationTrack { joint: 0, values }]).unwrap()
+}
+
+/// The scene with one mesh more that has two morph targets: a cushion of two quads with a texture seam between them. Where
+/// the scene has clips, the targets have weights over the first; one more clip, of joints at rest, moves the second alone.
+pub(crate) fn bulging(mut scene: Scene) -> Scene {
+    let mesh = scene.meshes.len() as u32;
+    scene.meshes.push(cushion(scene.meshes[0].influences_per_vertex));
+    if let Some(clip) = scene.clips.first() {
+        let frames = clip.frame_count();
+        let rest = Arc::clone(clip.skeleton());
+        let rotations = (0..frames).flat_map(|_| rest.rest_rotations().collect::<Vec<_>>()).collect();
+        let still = Clip::new("still".into(), rest, clip.frames_per_second(), rotations, vec![]).unwrap();
+        let track = |clip: usize, target, weight: fn(f32) -> f32| MorphTrack {
+            clip: clip as u32,
+            mesh,
+            target,
+            weights: (0..frames).map(|frame| weight(frame as f32)).collect(),
+        };
+        let last = scene.clips.len();
+        scene.morph_tracks.push(track(0, 0, |frame| 0.5 * frame));
+        scene.morph_tracks.push(track(0, 1, |frame| 1.0 - 0.25 * frame));
+        scene.morph_tracks.push(track(last, 1, |frame| 0.125 * frame));
+        scene.clips.push(still);
+    }
+    scene
+}
+
+/// Six vertices in two rows of three; `bulge` lifts the middle column, `lean` moves two vertices sideways and has no
+/// normals.
+fn cushion(influences: usize) -> SceneMesh {
+    let mut mesh = SceneMesh {
+        name: "Cushion".into(),
+        influences_per_vertex: influences,
+        normals: vec![[0.0, 0.0, 1.0]; 6],
+        quads: Corners { positions: vec![[0, 1, 4, 3], [1, 2, 5, 4]], uvs: vec![[0, 1, 3, 2], [4, 5, 7, 6]] },
+        ..SceneMesh::default()
+    };
+    for row in 0..2 {
+        for column in 0..3 {
+            mesh.positions.push([0.2 + 0.1 * column as f32, 1.3 + 0.1 * row as f32, 0.05]);
+            let t = column as f32 / 2.0;
+            push_influences(&mut mesh, [1.0 - t, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], influences);
+        }
+    }
+    for island in [0.0, 0.5] {
+        for (u, v) in [(0.0, 0.0), (0.4, 0.0), (0.0, 1.0), (0.4, 1.0)] {
+            mesh.uvs.push(flip_v([island + u, v]));
+        }
+    }
+    let offsets = |rows: [(usize, [f32; 3]); 2]| {
+        let mut offsets = vec![[0.0; 3]; 6];
+        rows.into_iter().for_each(|(vertex, offset)| offsets[vertex] = offset);
+        offsets
+    };
+    mesh.morph_targets = vec![
+        MorphTarget {
+            name: "bulge".into(),
+            positions: offsets([(1, [0.0, 0.01, 0.04]), (4, [0.0, -0.01, 0.04])]),
+            normals: offsets([(0, [-0.25, 0.0, -0.125]), (2, [0.25, 0.0, -0.125])]),
+        },
+        MorphTarget {
+            name: "lean 1".into(),
+            positions: offsets([(3, [0.03, 0.0, 0.0]), (5, [0.02, 0.005, 0.0])]),
+            normals: Vec::new(),
+        },
+    ];
+    mesh
 }
 
 fn tube(influences: usize, rings: u32) -> SceneMesh {

@@ -8,6 +8,7 @@ mod animation;
 mod blender;
 mod c;
 mod cpp;
+mod morph;
 mod motion;
 mod python;
 mod skin;
@@ -41,6 +42,7 @@ pub(crate) fn run() -> Outcome {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    morph::run(&environment, &folder, &mut tally)?;
     motion::run(&anthronet, &mut tally);
     c::run(&environment.c, &folder, &mut tally)?;
     cpp::run(&anthronet, &environment, &folder, &mut tally)?;

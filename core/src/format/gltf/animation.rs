@@ -1,9 +1,9 @@
 //! Animations: keys of one property of one node, how they are interpolated (glTF 2.0, sections 3.11 and C), and the frames
 //! that they lie on. What moves with them, a skeleton of any kind or a character, is for the readers of those.
 
-use gltf_json::animation::{Interpolation, Property};
+use gltf_json::animation::{Interpolation, Property, Sampler};
 use gltf_json::validation::Checked;
-use gltf_json::{Animation, Value};
+use gltf_json::{Accessor, Animation, Index, Value};
 
 use glam::DQuat;
 
@@ -20,13 +20,79 @@ pub(super) const ON_FRAME: f64 = 5e-3;
 /// Most numbers of all keys of a document.
 pub(super) const MAX_NUMBERS: usize = 1 << 26;
 
+/// When keys are, and what is between them.
+pub(super) struct Keys {
+    /// Seconds, rising, at least one.
+    pub(super) times: Vec<f64>,
+    pub(super) interpolation: Interpolation,
+}
+
+/// Where a time lies among keys.
+pub(super) enum Place {
+    /// On this key, before the first or after the last.
+    At(usize),
+    /// A share of the way from this key to the next, which is so many seconds long.
+    After(usize, f64, f64),
+}
+
+impl Keys {
+    /// The keys of a sampler, and the accessor of their values.
+    pub(super) fn read(
+        document: &Document,
+        animation: &Animation,
+        sampler: Index<Sampler>,
+    ) -> Outcome<(Self, Index<Accessor>)> {
+        let of_sampler = animation.samplers.get(sampler.value());
+        let sampler = of_sampler
+            .ok_or_else(|| format!("sampler {} of {}", sampler.value(), animation.samplers.len()))?;
+        let Checked::Valid(interpolation) = sampler.interpolation else {
+            return Err("interpolation: expected LINEAR, STEP or CUBICSPLINE".to_owned());
+        };
+        let times = document.numbers::<1>(sampler.input).map_err(|e| format!("input: {e}"))?;
+        let times: Vec<f64> = times.iter().map(|[time]| f64::from(*time)).collect();
+        if times.is_empty() || !times.windows(2).all(|pair| pair[0] < pair[1]) {
+            return Err("input: expected times of keys that rise".to_owned());
+        }
+        Ok((Self { times, interpolation }, sampler.output))
+    }
+
+    /// How many values there are for each key: an in-tangent, the value and an out-tangent, or the value alone.
+    pub(super) fn each(&self) -> usize {
+        if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
+    }
+
+    /// Where the value of a key is among the values.
+    pub(super) fn value_at(&self, key: usize) -> usize {
+        if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key }
+    }
+
+    /// Where a time lies. A key that is up to `near` seconds away counts as reached.
+    pub(super) fn place(&self, time: f64, near: f64) -> Place {
+        let times = &self.times;
+        let next = times.partition_point(|t| *t <= time + near);
+        let on_key = next > 0 && time - times[next - 1] <= near;
+        if next == 0 || next == times.len() || on_key {
+            return Place::At(next.saturating_sub(1));
+        }
+        let span = times[next] - times[next - 1];
+        Place::After(next - 1, (time - times[next - 1]) / span, span)
+    }
+}
+
+/// A cubic from one value and the tangent out of it to the tangent into the next and that value (section C.5).
+pub(super) fn hermite(t: f64, span: f64, [from, out, into, to]: [f64; 4]) -> f64 {
+    let (t2, t3) = (t * t, t * t * t);
+    (2.0 * t3 - 3.0 * t2 + 1.0) * from
+        + span * (t3 - 2.0 * t2 + t) * out
+        + (3.0 * t2 - 2.0 * t3) * to
+        + span * (t3 - t2) * into
+}
+
 /// Keys of one property of one node.
 pub(super) struct Track {
     pub(super) node: usize,
     pub(super) property: Property,
-    interpolation: Interpolation,
-    /// Seconds, rising.
-    times: Vec<f64>,
+    pub(super) keys: Keys,
     /// Values, or in-tangent, value and out-tangent of each key; the fourth number is of rotations alone.
     values: Vec<[f32; 4]>,
 }
@@ -56,79 +122,50 @@ fn read_channel(document: &Document, animation: &Animation, i: usize, property: 
     if node >= nodes {
         return Err(format!("target.node: {node} of {nodes}"));
     }
-    let sampler = animation.samplers.get(channel.sampler.value());
-    let sampler = sampler
-        .ok_or_else(|| format!("sampler {} of {}", channel.sampler.value(), animation.samplers.len()))?;
-    let Checked::Valid(interpolation) = sampler.interpolation else {
-        return Err("interpolation: expected LINEAR, STEP or CUBICSPLINE".to_owned());
-    };
-    let times = document.numbers::<1>(sampler.input).map_err(|e| format!("input: {e}"))?;
-    let times: Vec<f64> = times.iter().map(|[time]| f64::from(*time)).collect();
-    if times.is_empty() || !times.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err("input: expected times of keys that rise".to_owned());
-    }
+    let (keys, output) = Keys::read(document, animation, channel.sampler)?;
     let values: Outcome<Vec<[f32; 4]>> = match property {
-        Property::Rotation => document.numbers::<4>(sampler.output),
-        _ => document
-            .numbers::<3>(sampler.output)
-            .map(|v| v.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()),
+        Property::Rotation => document.numbers::<4>(output),
+        _ => document.numbers::<3>(output).map(|v| v.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()),
     };
     let values = values.map_err(|e| format!("output: {e}"))?;
-    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-    if values.len() != each * times.len() {
-        return Err(format!(
-            "output: expected {} values for {} keys, got {}",
-            each * times.len(),
-            times.len(),
-            values.len()
-        ));
+    let (count, expected) = (keys.times.len(), keys.each() * keys.times.len());
+    if values.len() != expected {
+        let got = values.len();
+        return Err(format!("output: expected {expected} values for {count} keys, got {got}"));
     }
-    Ok(Track { node, property, interpolation, times, values })
+    Ok(Track { node, property, keys, values })
 }
 
 impl Track {
     /// The value of every key; the fourth number is of rotations alone.
-    pub(super) fn keys(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
-        (0..self.times.len()).map(|i| self.key(i))
-    }
-
-    fn key(&self, i: usize) -> [f32; 4] {
-        self.values[if self.interpolation == Interpolation::CubicSpline { 3 * i + 1 } else { i }]
+    pub(super) fn key_values(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        (0..self.keys.times.len()).map(|key| self.values[self.keys.value_at(key)])
     }
 
     /// Whether it has a single key.
     pub(super) fn is_still(&self) -> bool {
-        self.times.len() == 1
+        self.keys.times.len() == 1
     }
 
     /// What the property is at a time; before the first key and after the last it is held. On a key, and up to `near` seconds
     /// away from one, it is the file's own numbers.
     pub(super) fn value(&self, time: f64, near: f64) -> [f64; 4] {
-        let key = |i: usize| self.key(i).map(f64::from);
-        let next = self.times.partition_point(|t| *t <= time + near);
-        let on_key = next > 0 && time - self.times[next - 1] <= near;
-        if next == 0 || next == self.times.len() || on_key {
-            return key(next.saturating_sub(1));
-        }
-        let (from, to) = (key(next - 1), key(next));
-        let span = self.times[next] - self.times[next - 1];
-        let t = (time - self.times[next - 1]) / span;
-        match self.interpolation {
+        let value = |i: usize| self.values[i].map(f64::from);
+        let key = |i: usize| value(self.keys.value_at(i));
+        let (i, t, span) = match self.keys.place(time, near) {
+            Place::At(i) => return key(i),
+            Place::After(i, t, span) => (i, t, span),
+        };
+        let (from, to) = (key(i), key(i + 1));
+        match self.keys.interpolation {
             Interpolation::Step => from,
             Interpolation::Linear if self.property == Property::Rotation => {
                 unit(DQuat::from_array(from)).slerp(unit(DQuat::from_array(to)), t).to_array()
             }
-            Interpolation::Linear => std::array::from_fn(|i| from[i] + (to[i] - from[i]) * t),
+            Interpolation::Linear => std::array::from_fn(|n| from[n] + (to[n] - from[n]) * t),
             Interpolation::CubicSpline => {
-                let tangent = |i: usize| self.values[i].map(f64::from);
-                let (out, into) = (tangent(3 * (next - 1) + 2), tangent(3 * next));
-                let (t2, t3) = (t * t, t * t * t);
-                std::array::from_fn(|i| {
-                    (2.0 * t3 - 3.0 * t2 + 1.0) * from[i]
-                        + span * (t3 - 2.0 * t2 + t) * out[i]
-                        + (3.0 * t2 - 2.0 * t3) * to[i]
-                        + span * (t3 - t2) * into[i]
-                })
+                let (out, into) = (value(3 * i + 2), value(3 * i + 3));
+                std::array::from_fn(|n| hermite(t, span, [from[n], out[n], into[n], to[n]]))
             }
         }
     }
@@ -157,15 +194,15 @@ pub(super) struct Timing {
 impl Timing {
     /// From the first key to the last, or as long as our own files say; at the rate that is asked for, else that our own
     /// files say, else that on whose frames all keys lie, else [`FALLBACK_RATE`].
-    pub(super) fn of(animation: &Animation, tracks: &[Track], asked: Option<f64>) -> Self {
+    pub(super) fn of(animation: &Animation, keys: &[&Keys], asked: Option<f64>) -> Self {
         let told = told(animation);
-        let (start, end) = told.map_or_else(|| span(tracks), |(rate, frames)| (0.0, (frames - 1.0) / rate));
+        let (start, end) = told.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
         let timing =
             |rate: f64, found| Self { start, end, rate, found, frames: 1.0 + ((end - start) * rate).round() };
         match (asked, told) {
             (Some(rate), _) => timing(rate, Found::Asked),
             (None, Some((rate, frames))) => Self { frames, ..timing(rate, Found::File) },
-            (None, None) => match rate(tracks) {
+            (None, None) => match rate(keys) {
                 Some(rate) => timing(rate, Found::Detected),
                 None => timing(FALLBACK_RATE, Found::Assumed),
             },
@@ -182,21 +219,21 @@ fn told(animation: &Animation) -> Option<(f64, f64)> {
 }
 
 /// From the first to the last key of all.
-fn span(tracks: &[Track]) -> (f64, f64) {
-    let firsts = tracks.iter().filter_map(|track| track.times.first());
-    let lasts = tracks.iter().filter_map(|track| track.times.last());
+fn span(keys: &[&Keys]) -> (f64, f64) {
+    let firsts = keys.iter().filter_map(|keys| keys.times.first());
+    let lasts = keys.iter().filter_map(|keys| keys.times.last());
     (firsts.copied().fold(f64::INFINITY, f64::min), lasts.copied().fold(f64::NEG_INFINITY, f64::max))
 }
 
 /// The rate on whose frames all keys lie: that of evenly spaced keys, else the lowest usual one.
-fn rate(tracks: &[Track]) -> Option<f64> {
-    let (start, _) = span(tracks);
-    let steps = tracks.iter().flat_map(|track| track.times.windows(2).map(|pair| pair[1] - pair[0]));
+fn rate(keys: &[&Keys]) -> Option<f64> {
+    let (start, _) = span(keys);
+    let steps = keys.iter().flat_map(|keys| keys.times.windows(2).map(|pair| pair[1] - pair[0]));
     let shortest = steps.fold(f64::INFINITY, f64::min);
     // Slower keys are poses to interpolate, not frames.
     let even = Some(snapped_rate(1.0 / shortest)).filter(|rate| (10.0..=1000.0).contains(rate));
     even.into_iter().chain(USUAL_RATES).find(|rate| {
-        tracks.iter().flat_map(|track| &track.times).all(|time| {
+        keys.iter().flat_map(|keys| &keys.times).all(|time| {
             let frames = (time - start) * rate;
             (frames - frames.round()).abs() < ON_FRAME
         })

@@ -5,6 +5,7 @@ mod character;
 pub(crate) mod document;
 mod meshes;
 mod motion;
+mod weights;
 pub(crate) mod write;
 
 use std::path::Path;

@@ -37,6 +37,16 @@ pub(crate) struct Take {
     /// Frames × joints.
     pub(crate) rotations: Vec<Quat>,
     pub(crate) tracks: Vec<TranslationTrack>,
+    /// Weights of morph targets, for characters that have such targets.
+    pub(crate) weights: Vec<WeightTrack>,
+}
+
+/// The weight of what a file calls by a token.
+#[derive(Debug)]
+pub(crate) struct WeightTrack {
+    pub(crate) token: String,
+    /// One per frame.
+    pub(crate) weights: Vec<f32>,
 }
 
 /// Gives the second and later joints of a name another one, and says so.
@@ -142,7 +152,13 @@ impl Recorder {
     }
 
     pub(crate) fn take(self, name: String, frames_per_second: f64, rest: &[RigidTransform]) -> Take {
-        Take { name, frames_per_second, rotations: self.rotations, tracks: moving(rest, self.columns) }
+        Take {
+            name,
+            frames_per_second,
+            rotations: self.rotations,
+            tracks: moving(rest, self.columns),
+            weights: Vec::new(),
+        }
     }
 }
 

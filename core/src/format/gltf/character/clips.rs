@@ -13,8 +13,9 @@ use gltf_json::{Animation, animation::Property};
 use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
 use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
 use crate::error::Outcome;
-use crate::format::gltf::animation::{self, MAX_NUMBERS, ON_FRAME, Timing, Track};
+use crate::format::gltf::animation::{self, Keys, MAX_NUMBERS, ON_FRAME, Timing, Track};
 use crate::format::gltf::document::Document;
+use crate::format::gltf::weights::{self, WeightKeys};
 use crate::math::RigidTransform;
 use crate::scene::titles::Titles;
 use crate::skeleton::Skeleton as RestSkeleton;
@@ -24,8 +25,21 @@ const SCALE_TOLERANCE: f32 = 1e-4;
 /// Most rotations of all clips of a document together.
 const MAX_ROTATIONS: usize = 1 << 25;
 
-/// All animations that move a joint.
-pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Clip>> {
+/// A clip, and the weights of morph targets over it.
+pub(super) struct Read {
+    pub(super) clip: Clip,
+    pub(super) weights: Vec<NodeWeights>,
+}
+
+/// The weights of the meshes of one node.
+pub(super) struct NodeWeights {
+    pub(super) node: usize,
+    /// For each target one per frame.
+    pub(super) of_targets: Vec<Vec<f32>>,
+}
+
+/// All animations that move a joint or weigh a morph target.
+pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Read>> {
     if document.root.animations.is_empty() {
         return Ok(Vec::new());
     }
@@ -44,7 +58,9 @@ pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Clip
             continue;
         };
         let (frames, joints) = (motion.frames, skeleton.joints.len());
-        let rotations = frames.checked_mul(joints).and_then(|rotations| left.checked_sub(rotations));
+        // A weight costs less than a rotation.
+        let numbers = joints + motion.weights.iter().map(|keys| keys.targets).sum::<usize>();
+        let rotations = frames.checked_mul(numbers).and_then(|rotations| left.checked_sub(rotations));
         left = rotations.ok_or_else(|| fault(format!("{frames} frames of {joints} joints are too many")))?;
         motions.push((i, animation, motion));
     }
@@ -53,7 +69,8 @@ pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Clip
     for (i, animation, motion) in motions {
         let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));
         let clip = motion.clip(document, skeleton, &rest, name);
-        clips.push(clip.map_err(|m| format!("animations[{i}]: {m}"))?);
+        let clip = clip.map_err(|m| format!("animations[{i}]: {m}"))?;
+        clips.push(Read { clip, weights: motion.node_weights() });
     }
     Ok(clips)
 }
@@ -67,13 +84,14 @@ struct NodeTracks {
 
 struct Motion {
     nodes: BTreeMap<usize, NodeTracks>,
+    weights: Vec<WeightKeys>,
     start: f64,
     rate: f64,
     frames: usize,
 }
 
 impl Motion {
-    /// `None` if no joint moves.
+    /// `None` if no joint moves and no target is weighed.
     fn read(
         document: &Document,
         skeleton: &Skeleton,
@@ -86,10 +104,16 @@ impl Motion {
         }
         let mut tracks = animation::read(document, animation, left)?;
         tracks.retain(|track| nodes.contains_key(&track.node));
-        if tracks.is_empty() {
+        let weights = weights::read(document, animation, left)?;
+        // Joints tell the frames where there are any.
+        let keys: Vec<&Keys> = match tracks.is_empty() {
+            true => weights.iter().map(|weights| &weights.keys).collect(),
+            false => tracks.iter().map(|track| &track.keys).collect(),
+        };
+        if keys.is_empty() {
             return Ok(None);
         }
-        let Timing { start, rate, frames, .. } = Timing::of(animation, &tracks, None);
+        let Timing { start, rate, frames, .. } = Timing::of(animation, &keys, None);
         for track in tracks {
             let node = track.node;
             let Some(of_node) = nodes.get_mut(&node) else { continue };
@@ -97,7 +121,7 @@ impl Motion {
                 Property::Translation => &mut of_node.translation,
                 Property::Rotation => &mut of_node.rotation,
                 _ => {
-                    let mut scale = track.keys().flat_map(|[x, y, z, _]| [x, y, z]);
+                    let mut scale = track.key_values().flat_map(|[x, y, z, _]| [x, y, z]);
                     if let Some(scale) = scale.find(|s| (s - 1.0).abs() > SCALE_TOLERANCE) {
                         let node = named(document, node);
                         return Err(format!("{node} is scaled by {scale}, expected a rigid skeleton"));
@@ -112,7 +136,7 @@ impl Motion {
         if !(1.0..=MAX_FRAMES as f64).contains(&frames) {
             return Err(format!("expected 1 to {MAX_FRAMES} frames, got {frames} at {rate} a second"));
         }
-        Ok(Some(Self { nodes, start, rate, frames: frames as usize }))
+        Ok(Some(Self { nodes, weights, start, rate, frames: frames as usize }))
     }
 
     fn clip(
@@ -140,6 +164,18 @@ impl Motion {
             }
         }
         Clip::new(name, rest.clone(), self.rate, rotations, translations).map_err(|e| e.to_string())
+    }
+
+    /// The weights at the frames.
+    fn node_weights(&self) -> Vec<NodeWeights> {
+        let at = |frame: usize| self.start + frame as f64 / self.rate;
+        let near = ON_FRAME / self.rate;
+        let of_node = |keys: &WeightKeys| {
+            let of_target =
+                |target| (0..self.frames).map(|frame| keys.value(target, at(frame), near)).collect();
+            NodeWeights { node: keys.node, of_targets: (0..keys.targets).map(of_target).collect() }
+        };
+        self.weights.iter().map(of_node).collect()
     }
 
     /// A joint in its parent.

@@ -8,11 +8,12 @@ use gltf_json::{
     mesh::{Primitive, Semantic},
 };
 
+use self::clips::NodeWeights;
 use self::skeleton::{Skeleton, hung_on};
 use super::document::{Document, Tree};
 use super::meshes::{Part, attribute, bring_normals_to_length, merge_copies, parts, place, with_materials};
 use crate::error::Outcome;
-use crate::scene::{Scene, SceneMesh};
+use crate::scene::{MorphTrack, Scene, SceneMesh};
 
 /// How far weights may sum away from 1 to be taken as they are; those of others are made to.
 const SUM_TOLERANCE: f64 = 1e-6;
@@ -22,7 +23,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
     let tree = document.tree()?;
     let skeleton = Skeleton::read(document, &tree)?;
     let world = document.world_from_nodes(&tree);
-    let mut meshes = Vec::new();
+    let (mut meshes, mut nodes) = (Vec::new(), Vec::new());
     for part in parts(document)? {
         let node = part.node;
         let mesh = match &skeleton {
@@ -31,14 +32,33 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
             None => still(part, &world[node]),
         };
         meshes.push(mesh.map_err(|m| format!("nodes[{node}].mesh: {m}"))?);
+        nodes.push(node);
     }
     let mut scene = with_materials(document, meshes)?;
     if let Some(skeleton) = skeleton {
-        scene.clips = clips::read(document, &skeleton)?;
+        for (clip, read) in (0u32..).zip(clips::read(document, &skeleton)?) {
+            scene.clips.push(read.clip);
+            add_morph_tracks(&mut scene, clip, read.weights, &nodes);
+        }
         scene.joints = skeleton.joints;
     }
     scene.validate().map_err(|e| e.to_string())?;
     Ok(scene)
+}
+
+/// Adds the weights over a clip to the meshes of their nodes; those of targets that keep to 0 are left out.
+fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<NodeWeights>, nodes: &[usize]) {
+    for NodeWeights { node, of_targets } in weights {
+        for (mesh, _) in (0u32..).zip(nodes).filter(|(_, of_mesh)| **of_mesh == node) {
+            // Primitives of one mesh are to have the same targets; those of a broken one may not.
+            let targets = scene.meshes[mesh as usize].morph_targets.len();
+            for (target, weights) in (0u32..).zip(&of_targets).take(targets) {
+                if weights.iter().any(|weight| *weight != 0.0) {
+                    scene.morph_tracks.push(MorphTrack { clip, mesh, target, weights: weights.clone() });
+                }
+            }
+        }
+    }
 }
 
 fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Outcome<SceneMesh> {

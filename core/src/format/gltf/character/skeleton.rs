@@ -75,20 +75,7 @@ impl Skeleton {
         let places: BTreeMap<usize, u16> = (0u16..).zip(&nodes).map(|(i, n)| (*n, i)).collect();
         let parent = |node: &usize| above[*node].and_then(|a| places.get(&a)).map(|p| u32::from(*p));
         let parents: Vec<Option<u32>> = nodes.iter().map(parent).collect();
-        let mut chains = Vec::with_capacity(nodes.len());
-        let mut links = 0;
-        for &node in &nodes {
-            let mut chain: Vec<usize> =
-                std::iter::successors(Some(node), |n| tree.parents[*n].filter(|p| !binds.contains_key(p)))
-                    .take(MAX_LINKS)
-                    .collect();
-            chain.reverse();
-            links += chain.len();
-            if links > MAX_LINKS {
-                return Err(format!("more than {MAX_LINKS} nodes between the joints"));
-            }
-            chains.push(chain);
-        }
+        let chains = chains(&nodes, tree, |node| binds.contains_key(&node))?;
 
         let mut names = Titles::default();
         let mut rest: Vec<DAffine3> = Vec::with_capacity(nodes.len());
@@ -139,6 +126,23 @@ impl Skeleton {
         }
         Ok(())
     }
+}
+
+/// For each joint the nodes from below the joint above it, or from the top of the scene, down to its own.
+fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Outcome<Vec<Vec<usize>>> {
+    let mut chains = Vec::with_capacity(joints.len());
+    let mut links = 0;
+    for &joint in joints {
+        let above = |node: &usize| tree.parents[*node].filter(|parent| !is_joint(*parent));
+        let mut chain: Vec<usize> = std::iter::successors(Some(joint), above).take(MAX_LINKS).collect();
+        chain.reverse();
+        links += chain.len();
+        if links > MAX_LINKS {
+            return Err(format!("more than {MAX_LINKS} nodes between the joints"));
+        }
+        chains.push(chain);
+    }
+    Ok(chains)
 }
 
 /// What our own files say of the length of a joint's bone.

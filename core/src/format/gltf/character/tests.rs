@@ -9,7 +9,7 @@ use super::super::meshes::tests::{changed_of, pointers};
 use super::*;
 use crate::format::gltf::{GltfOptions, to_glb, to_glb_with};
 use crate::format::read_scene_from_bytes;
-use crate::testing::scene::{arm, bent, sleeve};
+use crate::testing::scene::{arm, bent, bulging, sleeve};
 
 /// The arm in motion, moved and still.
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
@@ -42,6 +42,104 @@ fn written_again_a_file_is_the_same() {
         }
     }
     assert!(to_glb(&read(&GLB).unwrap()).unwrap() == *GLB);
+}
+
+fn morphing() -> Scene {
+    let mut scene = arm(4);
+    scene.clips.push(bent(&scene));
+    bulging(scene)
+}
+
+#[test]
+fn morph_targets_and_their_weights_come_back() {
+    let scene = morphing();
+    let first = to_glb(&scene).unwrap();
+    let back = read(&first).unwrap();
+    assert_eq!(back.meshes[2].morph_targets, scene.meshes[2].morph_targets);
+    assert_eq!(back.morph_tracks, scene.morph_tracks);
+    assert_eq!(back.clips[1].frame_count(), 3);
+    assert!(to_glb(&back).unwrap() == first);
+    let alone = crate::format::read_meshes_from_bytes(&first, "a.glb").unwrap();
+    assert_eq!(alone.meshes[2].morph_targets, scene.meshes[2].morph_targets);
+
+    let compressed = to_glb_with(&scene, &GltfOptions { compress: true }).unwrap();
+    let back = read(&compressed).unwrap();
+    assert_eq!(back.morph_tracks, scene.morph_tracks);
+    for (a, b) in back.meshes[2].morph_targets.iter().zip(&scene.meshes[2].morph_targets) {
+        let far = |a: &[[f32; 3]], b: &[[f32; 3]]| {
+            a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        };
+        assert!(far(&a.positions, &b.positions) < 1e-7 && far(&a.normals, &b.normals) < 1e-4);
+    }
+}
+
+#[test]
+fn targets_of_others_are_sparse_nameless_and_animated_alone() {
+    let glb = to_glb(&morphing()).unwrap();
+    let others = changed_of(&glb, |json| {
+        let mesh = &mut json["meshes"][2];
+        mesh["extras"].as_object_mut().unwrap().remove("targetNames");
+        let target = mesh["primitives"][0]["targets"][1]["POSITION"].as_u64().unwrap() as usize;
+        mesh["primitives"][0]["targets"][0] = json!({});
+        // The first rows of other views: corners of triangles as places, positions as values.
+        let indices = mesh["primitives"][0]["indices"].as_u64().unwrap() as usize;
+        let positions = mesh["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap() as usize;
+        let view = |json: &Value, accessor: usize| json["accessors"][accessor]["bufferView"].clone();
+        let (indices, values) = (view(json, indices), view(json, positions));
+        let accessor = json["accessors"][target].as_object_mut().unwrap();
+        accessor.remove("bufferView");
+        accessor.insert(
+            "sparse".into(),
+            json!({
+                "count": 2,
+                "indices": {"bufferView": indices, "componentType": 5123},
+                "values": {"bufferView": values, "byteOffset": 12},
+            }),
+        );
+        // Weights alone, of which nothing says how many frames there are.
+        let animation = json["animations"][1].as_object_mut().unwrap();
+        animation.remove("extras");
+        animation["channels"].as_array_mut().unwrap().remove(0);
+        json["meshes"][2]["extras"] = Value::Null;
+    });
+    let scene = read(&others).unwrap();
+    let targets = &scene.meshes[2].morph_targets;
+    assert_eq!((targets[0].name.as_str(), targets[1].name.as_str()), ("target0", "target1"));
+    assert!(targets[0].positions.iter().all(|offset| *offset == [0.0; 3]));
+    let [first, second] = [1, 2].map(|v| morphing().meshes[2].positions[v]);
+    assert_eq!(targets[1].positions[..3], [first, second, [0.0; 3]]);
+    assert_eq!(scene.clips[1].frame_count(), 3);
+    let track = scene.morph_tracks.last().unwrap();
+    assert_eq!((track.clip, track.target, &track.weights[..]), (1, 1, &[0.0, 0.125, 0.25][..]));
+}
+
+#[test]
+fn names_what_is_wrong_with_morph_targets() {
+    type Case = (&'static str, fn(&mut Value));
+    let cases: &[Case] = &[
+        ("nodes[5].mesh: targets[0]: POSITION: expected 8 of them, got 7", |j| {
+            let target = j["meshes"][2]["primitives"][0]["targets"][0]["POSITION"].as_u64().unwrap();
+            j["accessors"][target as usize]["count"] = json!(7);
+        }),
+        ("targets[0]: NORMAL: accessor 999 does not exist", |j| {
+            j["meshes"][2]["primitives"][0]["targets"][0]["NORMAL"] = json!(999);
+        }),
+        ("output: expected 6 weights of 2 targets for 3 keys, got 5", |j| {
+            let channels = j["animations"][0]["channels"].as_array().unwrap();
+            let sampler = channels.last().unwrap()["sampler"].as_u64().unwrap() as usize;
+            let output = j["animations"][0]["samplers"][sampler]["output"].as_u64().unwrap() as usize;
+            j["accessors"][output]["count"] = json!(5);
+        }),
+        ("in all targets of the file", |j| {
+            let targets = j["meshes"][2]["primitives"][0]["targets"].as_array_mut().unwrap();
+            *targets = vec![json!({}); 5_000_000];
+        }),
+    ];
+    let glb = to_glb(&morphing()).unwrap();
+    for (expected, change) in cases {
+        let message = read(&changed_of(&glb, change)).expect_err(expected);
+        assert!(message.contains(expected), "`{expected}` in `{message}`");
+    }
 }
 
 #[test]

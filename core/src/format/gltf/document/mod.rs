@@ -3,6 +3,7 @@
 //! document.
 
 mod meshopt;
+mod offsets;
 mod uri;
 
 use std::path::Path;

@@ -33,6 +33,10 @@ pub(super) fn merge(mesh: &mut SceneMesh, vertices: usize, originals: &[u32]) {
     corners.for_each(|corner| *corner = originals.get(*corner as usize).copied().unwrap_or(*corner));
     mesh.positions.truncate(vertices);
     mesh.normals.truncate(vertices);
+    for target in &mut mesh.morph_targets {
+        target.positions.truncate(vertices);
+        target.normals.truncate(vertices);
+    }
     mesh.joint_indices.truncate(vertices * mesh.influences_per_vertex);
     mesh.joint_weights.truncate(vertices * mesh.influences_per_vertex);
 }

@@ -3,6 +3,7 @@
 
 mod copies;
 mod material;
+mod targets;
 
 use glam::{Affine3A, Vec3};
 use gltf_json::{
@@ -12,6 +13,7 @@ use gltf_json::{
 };
 
 use self::copies::{merge, originals};
+use self::targets::Targets;
 use super::document::Document;
 use crate::error::Outcome;
 use crate::format::limits::{MAX_ELEMENTS, MAX_MESHES};
@@ -75,7 +77,7 @@ pub(super) struct Part<'a> {
 /// The primitives of all nodes, in the file's order; at least one.
 pub(super) fn parts(document: &Document) -> Outcome<Vec<Part<'_>>> {
     let root = &document.root;
-    let mut names = Titles::default();
+    let (mut names, mut targets) = (Titles::default(), Targets::of(document));
     let mut parts = Vec::new();
     let (mut vertices, mut triangles) = (0, 0);
     for (node, of_node) in root.nodes.iter().enumerate() {
@@ -86,6 +88,7 @@ pub(super) fn parts(document: &Document) -> Outcome<Vec<Part<'_>>> {
         for primitive in &of_mesh.primitives {
             let fault = |message: String| format!("nodes[{node}].mesh: {message}");
             let mut mesh = surface(document, primitive).map_err(fault)?;
+            mesh.morph_targets = targets.read(of_mesh, primitive, &mesh).map_err(fault)?;
             let name = of_mesh.name.as_deref().or(of_node.name.as_deref()).unwrap_or_default();
             mesh.name = names.unique(name);
             vertices += mesh.positions.len();
@@ -119,7 +122,7 @@ pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Ind
     primitive.attributes.get(&Checked::Valid(semantic)).copied()
 }
 
-/// Positions, normals, texture coordinates, triangles and the place of the material.
+/// All but name and morph targets: positions, normals, texture coordinates, triangles, the place of the material.
 fn surface(document: &Document, primitive: &Primitive) -> Outcome<SceneMesh> {
     if primitive.mode != Checked::Valid(Mode::Triangles) {
         return Err("expected triangles, got another kind of primitive".into());
@@ -175,13 +178,15 @@ pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Outcome<()> {
         return Err("its transform is not finite or flattens space".into());
     }
     let normal_matrix = inverse.transpose();
+    targets::place(mesh, world.matrix3, normal_matrix);
     for position in &mut mesh.positions {
         *position = world.transform_point3(Vec3::from_array(*position)).to_array();
     }
     for normal in &mut mesh.normals {
         *normal = (normal_matrix * Vec3::from_array(*normal)).normalize_or_zero().to_array();
     }
-    if !mesh.positions.as_flattened().iter().all(|v| v.is_finite()) {
+    let targets = mesh.morph_targets.iter().flat_map(|t| t.positions.iter().chain(&t.normals));
+    if !mesh.positions.iter().chain(targets).flatten().all(|v| v.is_finite()) {
         return Err("its transform moves vertices to infinity".into());
     }
     if world.matrix3.determinant() < 0.0 {
@@ -206,7 +211,9 @@ pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Outcome<()>
     let per_vertex = mesh.influences_per_vertex;
     let slots = |v: usize| v * per_vertex..(v + 1) * per_vertex;
     let same = |a: usize, b: usize| {
+        let mut targets = mesh.morph_targets.iter();
         mesh.normals.get(a) == mesh.normals.get(b)
+            && targets.all(|t| t.positions[a] == t.positions[b] && t.normals.get(a) == t.normals.get(b))
             && mesh.joint_indices[slots(a)] == mesh.joint_indices[slots(b)]
             && mesh.joint_weights[slots(a)] == mesh.joint_weights[slots(b)]
     };

@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf_json::Node;
 use gltf_json::animation::Property;
 
-use super::animation::{self, FALLBACK_RATE, ON_FRAME, Timing, Track, unit};
+use super::animation::{self, FALLBACK_RATE, Keys, ON_FRAME, Timing, Track, unit};
 use super::document::{Document, Tree};
 use crate::error::Outcome;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
@@ -50,7 +50,8 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMot
         let animation = &document.root.animations[i];
         let title =
             animation.name.clone().filter(|t| !t.is_empty()).unwrap_or_else(|| format!("animation{i}"));
-        let timing = Timing::of(animation, tracks, options.frames_per_second);
+        let keys: Vec<&Keys> = tracks.iter().map(|track| &track.keys).collect();
+        let timing = Timing::of(animation, &keys, options.frames_per_second);
         if timing.found == Found::Assumed {
             warnings.push(format!(
                 "`{title}`: keys lie on the frames of no usual rate: sampled at {FALLBACK_RATE}"

@@ -3,7 +3,8 @@
 //! Keys lie on frames: key `f` at `f / frames per second`, rounded once to `f32`. One accessor of times serves all
 //! channels of a clip. Where a joint keeps still, it has one key, and none where it stays at rest. Interpolation is
 //! LINEAR, quaternions are of unit length and keep to one sign. `animation.extras.anthronet` holds
-//! `frames_per_second` and `frames`.
+//! `frames_per_second` and `frames`. The weights of a mesh's morph targets are one channel of its node, with a key in every
+//! frame.
 
 use glam::{Quat, Vec3};
 use gltf_json::{
@@ -17,14 +18,21 @@ use super::accessor::{DocumentBuilder, Usage};
 use super::raw;
 use crate::Result;
 use crate::clip::Clip;
+use crate::scene::Scene;
 use crate::skeleton::written::{ParentFromJoint, WrittenJoint};
 
 /// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
 /// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
 const REST_TOLERANCE: f32 = 5e-7;
 
-/// Appends a clip whose joints are nodes `0..joints`.
-pub(super) fn push(builder: &mut DocumentBuilder, clip: &Clip, transforms: &[WrittenJoint]) -> Result<()> {
+/// Appends a clip of the scene. Joints are nodes `0..joints`, and each mesh has one of the nodes after them.
+pub(super) fn push(
+    builder: &mut DocumentBuilder,
+    scene: &Scene,
+    place: usize,
+    transforms: &[WrittenJoint],
+) -> Result<()> {
+    let clip = &scene.clips[place];
     let (frames, rate) = (clip.frame_count(), clip.frames_per_second());
     let rests: Vec<ParentFromJoint> = transforms.iter().map(|t| t.parent_from_joint).collect();
     let mut rotations: Vec<Vec<[f32; 4]>> = (0..rests.len()).map(|j| joint_rotations(clip, j)).collect();
@@ -49,10 +57,13 @@ pub(super) fn push(builder: &mut DocumentBuilder, clip: &Clip, transforms: &[Wri
         *root = joint_rotations(clip, 0);
     }
 
-    let mut tracks = Tracks { builder, rate, times: [None; 2], samplers: vec![], channels: vec![] };
+    let mut tracks = Tracks { builder, rate, frames, times: [None; 2], samplers: vec![], channels: vec![] };
     for (joint, (rotations, translations)) in (0u32..).zip(rotations.iter().zip(&translations)) {
         tracks.push(joint, Property::Rotation, rotations);
         tracks.push(joint, Property::Translation, translations);
+    }
+    for (mesh, weights) in (0u32..).zip(weights(scene, place)) {
+        tracks.push(rests.len() as u32 + mesh, Property::MorphTargetWeights, &weights);
     }
     let (samplers, channels) = (tracks.samplers, tracks.channels);
     builder.root.push(Animation {
@@ -63,6 +74,24 @@ pub(super) fn push(builder: &mut DocumentBuilder, clip: &Clip, transforms: &[Wri
         samplers,
     });
     Ok(())
+}
+
+/// For each mesh the weights of all its targets, frame by frame; none for a mesh that keeps to its own shape.
+fn weights(scene: &Scene, clip: usize) -> Vec<Vec<[f32; 1]>> {
+    let frames = scene.clips[clip].frame_count();
+    let mut weights = vec![Vec::new(); scene.meshes.len()];
+    for track in scene.morph_tracks_of(clip) {
+        let mesh = track.mesh as usize;
+        let targets = scene.meshes[mesh].morph_targets.len();
+        weights[mesh].resize(frames * targets, [0.0]);
+        for (frame, weight) in track.weights.iter().enumerate() {
+            weights[mesh][frame * targets + track.target as usize] = [*weight];
+        }
+    }
+    for weights in weights.iter_mut().filter(|weights| weights.iter().all(|[weight]| *weight == 0.0)) {
+        weights.clear();
+    }
+    weights
 }
 
 /// One rotation per frame.
@@ -100,6 +129,7 @@ fn near<const N: usize>(a: &[f32; N], b: &[f32; N]) -> bool {
 struct Tracks<'a> {
     builder: &'a mut DocumentBuilder,
     rate: f64,
+    frames: usize,
     /// Times of a single key, and of all frames.
     times: [Option<Index<Accessor>>; 2],
     samplers: Vec<Sampler>,
@@ -107,17 +137,19 @@ struct Tracks<'a> {
 }
 
 impl Tracks<'_> {
-    /// A track of one value per frame, of one for all, or of none, which is left out.
-    fn push<const N: usize>(&mut self, joint: u32, path: Property, keys: &[[f32; N]]) {
+    /// A track of one value per frame, or of as many as the node's mesh has targets; of one for all frames; or of none,
+    /// which is left out.
+    fn push<const N: usize>(&mut self, node: u32, path: Property, keys: &[[f32; N]]) {
         if keys.is_empty() {
             return;
         }
-        let input = self.times(keys.len());
+        let frames = if path == Property::MorphTargetWeights { self.frames } else { keys.len() };
+        let input = self.times(frames);
         let output = self.builder.push_accessor(keys.iter().copied(), Usage::Other);
         let sampler = Index::new(self.samplers.len() as u32);
         let interpolation = Checked::Valid(Interpolation::Linear);
         self.samplers.push(Sampler { extensions: None, extras: None, input, interpolation, output });
-        let (node, path) = (Index::new(joint), Checked::Valid(path));
+        let (node, path) = (Index::new(node), Checked::Valid(path));
         let target = Target { extensions: None, extras: None, node, path };
         self.channels.push(Channel { sampler, target, extensions: None, extras: None });
     }

@@ -2,7 +2,7 @@
 //!
 //! Every buffer view is encoded by itself. Floating-point numbers of geometry and motion go through the EXPONENTIAL
 //! filter: integers times one power of two per component, still `f32` for who reads them, so that no other extension is
-//! needed. Key times, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the codec may
+//! needed. Key times, weights of morph targets, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the codec may
 //! turn the corners of a triangle round. The views lie in a buffer that does not exist: a reader needs the extension.
 
 use gltf_json::{
@@ -116,13 +116,24 @@ fn filter_bits(builder: &DocumentBuilder) -> Vec<Option<i32>> {
                 };
             }
         }
+        for target in primitive.targets.iter().flatten() {
+            for (accessor, rounded_to) in [(target.positions, POSITION_BITS), (target.normals, NORMAL_BITS)] {
+                if let Some(bits) = accessor.and_then(|accessor| bits.get_mut(accessor.value())) {
+                    *bits = Some(rounded_to);
+                }
+            }
+        }
     }
     for animation in &root.animations {
         for channel in &animation.channels {
             let sampler = animation.samplers.get(channel.sampler.value());
             if let Some(bits) = sampler.and_then(|s| bits.get_mut(s.output.value())) {
-                let rotation = channel.target.path == Checked::Valid(Property::Rotation);
-                *bits = Some(if rotation { UNIT_BITS } else { POSITION_BITS });
+                *bits = match channel.target.path {
+                    Checked::Valid(Property::Rotation) => Some(UNIT_BITS),
+                    // Few numbers, whose rows the filter does not know.
+                    Checked::Valid(Property::MorphTargetWeights) => None,
+                    _ => Some(POSITION_BITS),
+                };
             }
         }
     }

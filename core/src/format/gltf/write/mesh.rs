@@ -3,7 +3,7 @@
 use gltf_json::{
     Index, Mesh,
     accessor::Accessor,
-    mesh::{Mode, Primitive, Semantic},
+    mesh::{Mode, MorphTarget, Primitive, Semantic},
     validation::Checked,
 };
 use serde_json::json;
@@ -41,9 +41,14 @@ pub(super) fn push(builder: &mut DocumentBuilder, mesh: &SceneMesh, joints: usiz
         attributes.push((Semantic::Weights(set as u32), weight_accessor));
     }
     let indices = push_indices(builder, &split);
+    let targets = push_targets(builder, mesh, &split);
+    let mut extras = json!({"anthronet": {"vertices": mesh.positions.len()}});
+    if !mesh.morph_targets.is_empty() {
+        extras["targetNames"] = mesh.morph_targets.iter().map(|target| target.name.as_str()).collect();
+    }
     Ok(builder.root.push(Mesh {
         extensions: None,
-        extras: raw(&json!({"anthronet": {"vertices": mesh.positions.len()}}))?,
+        extras: raw(&extras)?,
         name: Some(mesh.name.clone()),
         primitives: vec![Primitive {
             attributes: attributes
@@ -55,10 +60,29 @@ pub(super) fn push(builder: &mut DocumentBuilder, mesh: &SceneMesh, joints: usiz
             indices: Some(indices),
             material: Some(Index::new(mesh.material)),
             mode: Checked::Valid(Mode::Triangles),
-            targets: None,
+            targets,
         }],
-        weights: None,
+        weights: (!mesh.morph_targets.is_empty()).then(|| vec![0.0; mesh.morph_targets.len()]),
     }))
+}
+
+/// The offsets of every morph target; `None` for a mesh without.
+fn push_targets(
+    builder: &mut DocumentBuilder,
+    mesh: &SceneMesh,
+    split: &SplitMesh,
+) -> Option<Vec<MorphTarget>> {
+    let of_written = |rows: &[[f32; 3]]| -> Vec<[f32; 3]> {
+        split.source.iter().filter_map(|vertex| rows.get(*vertex as usize).copied()).collect()
+    };
+    let target = |target: &crate::scene::MorphTarget| MorphTarget {
+        positions: Some(builder.push_positions(&of_written(&target.positions))),
+        normals: (!target.normals.is_empty())
+            .then(|| builder.push_accessor(of_written(&target.normals), Usage::Vertices)),
+        tangents: None,
+    };
+    let targets: Vec<MorphTarget> = mesh.morph_targets.iter().map(target).collect();
+    (!targets.is_empty()).then_some(targets)
 }
 
 fn push_indices(builder: &mut DocumentBuilder, split: &SplitMesh) -> Index<Accessor> {

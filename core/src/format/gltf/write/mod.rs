@@ -8,6 +8,8 @@
 //! - **Skeleton.** Nodes `0..joints` are the joint tree, in the scene's order; then one node per mesh at the root of
 //!   the scene, without a transform, the body first. All meshes share one skin whose `skeleton` is the root joint.
 //!   The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
+//! - **Morph targets** are dense, with the copies of texture seams moving as what they are copies of. Their names are in
+//!   `mesh.extras.targetNames`; at rest all weights are 0.
 //! - **Weights** are `f32`, exact, their sum made 1 to the last bit that `f32` has; unused slots hold joint 0, weight 0.
 //! - **Clips** are animations of the joint nodes, with all keys on frames; see `animation.rs`.
 //! - The same scene gives the same bytes, and so does the scene that [`read_scene`](crate::format::read_scene)
@@ -127,8 +129,8 @@ pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
         let name = builder.root.meshes.get(mesh.value()).and_then(|m| m.name.clone());
         builder.root.push(Node { name, mesh: Some(mesh), skin, ..Node::default() });
     }
-    for clip in &scene.clips {
-        animation::push(&mut builder, clip, &transforms)?;
+    for clip in 0..scene.clips.len() {
+        animation::push(&mut builder, scene, clip, &transforms)?;
     }
     builder.root.materials = scene.materials.iter().map(material::material).collect();
     builder.root.extensions_used = material::extensions_used(&scene.materials);

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat4, DVec3};
 use openusd::sdf::{Path, Value};
 
+use super::blend_shape;
 use crate::error::Outcome;
 use crate::format::limits::MAX_ELEMENTS;
 use crate::format::usd::document::layer::Layer;
@@ -23,6 +24,8 @@ pub(super) struct Skin<'a> {
 pub(super) struct Read {
     pub(super) mesh: SceneMesh,
     pub(super) double_sided: bool,
+    /// What the weights of its morph targets go by.
+    pub(super) tokens: Vec<String>,
 }
 
 /// The mesh at this path, in the bind pose where it is skinned.
@@ -66,6 +69,7 @@ pub(super) fn read(
         mesh.normals = normals.iter().map(|n| single(normal(n))).collect();
     }
     faces(layer, prim, &mut mesh)?;
+    let tokens = blend_shape::read(layer, prim, &mut mesh, &normals, &ours_from_mesh)?;
 
     if let Some(skin) = skin {
         let rigid =
@@ -74,7 +78,7 @@ pub(super) fn read(
         influences.unwrap_or_else(rigid).into_mesh(&mut mesh, count).map_err(|m| format!("{prim}: {m}"))?;
     }
     let double_sided = layer.default(prim, "doubleSided")? == Some(Value::Bool(true));
-    Ok(Read { mesh, double_sided })
+    Ok(Read { mesh, double_sided, tokens })
 }
 
 fn integers(layer: &Layer, prim: &Path, name: &str) -> Outcome<Option<Vec<i32>>> {

@@ -4,6 +4,7 @@
 //! back: display names, joint names, extras. Characters of other programs come in the bind pose, without scale; faces
 //! of more than four corners as fans of triangles, materials that are no UsdPreviewSurface in grey.
 
+mod blend_shape;
 mod material;
 mod mesh;
 
@@ -23,9 +24,10 @@ use crate::Result;
 use crate::clip::{Clip, TranslationTrack};
 use crate::error::Outcome;
 use crate::format::limits::MAX_MESHES;
+use crate::format::motion::raw::WeightTrack;
 use crate::format::motion::{ReadOptions, clip_name, units_and_axes};
 use crate::scene::titles::Titles;
-use crate::scene::{Scene, SceneJoint};
+use crate::scene::{MorphTrack, Scene, SceneJoint};
 use crate::skeleton::written::rounded;
 use crate::space::{Axis, Unit};
 
@@ -35,7 +37,7 @@ const REST_TOLERANCE: f32 = 1e-6;
 /// The meshes alone: those with a skin in the bind pose, the others where the file puts them.
 pub(super) fn meshes(document: &Document) -> Outcome<Scene> {
     let space = Space::read(&document.layer)?;
-    let mut scene = still(document, &space, document.skeleton()?.as_ref())?;
+    let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;
     scene.joints.clear();
     for mesh in &mut scene.meshes {
         mesh.influences_per_vertex = 0;
@@ -49,15 +51,32 @@ pub(super) fn meshes(document: &Document) -> Outcome<Scene> {
 pub(super) fn scene(document: &Document, path: &Path) -> Outcome<Scene> {
     let space = Space::read(&document.layer)?;
     let skeleton = document.skeleton()?;
-    let mut scene = still(document, &space, skeleton.as_ref())?;
+    let (mut scene, tokens) = still(document, &space, skeleton.as_ref())?;
     if let (Some(skeleton), false) = (&skeleton, document.animations.is_empty()) {
         let options = ReadOptions { unit: Some(space.unit), up: Some(space.up), frames_per_second: None };
-        let raw = motion::of_skeleton(document, skeleton, &clip_name(path), &options)?;
+        let mut raw = motion::of_skeleton(document, skeleton, &clip_name(path), &options)?;
+        for (clip, take) in (0u32..).zip(&mut raw.takes) {
+            add_morph_tracks(&mut scene, clip, std::mem::take(&mut take.weights), &tokens);
+        }
         let clips = units_and_axes::resolve(raw, &options)?.clips;
         scene.clips = in_bind_pose(&scene, clips).map_err(|error| error.to_string())?;
     }
     scene.validate().map_err(|error| error.to_string())?;
     Ok(scene)
+}
+
+/// Adds the weights over a clip to all targets that go by their tokens; those that keep to 0 are left out.
+fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<WeightTrack>, tokens: &[Vec<String>]) {
+    for WeightTrack { token, weights } in weights {
+        if weights.iter().all(|weight| *weight == 0.0) {
+            continue;
+        }
+        for (mesh, tokens) in (0u32..).zip(tokens) {
+            for (target, _) in (0u32..).zip(tokens).filter(|(_, of_target)| **of_target == token) {
+                scene.morph_tracks.push(MorphTrack { clip, mesh, target, weights: weights.clone() });
+            }
+        }
+    }
 }
 
 /// Units and axes of a file.
@@ -87,8 +106,12 @@ impl Space {
     }
 }
 
-/// Everything but the clips.
-fn still(document: &Document, space: &Space, skeleton: Option<&Skeleton>) -> Outcome<Scene> {
+/// Everything but the clips; and for each mesh what the weights of its morph targets go by.
+fn still(
+    document: &Document,
+    space: &Space,
+    skeleton: Option<&Skeleton>,
+) -> Outcome<(Scene, Vec<Vec<String>>)> {
     let Document { layer, prims, meshes, .. } = document;
     let ours_from_file = space.ours_from_file();
     if meshes.is_empty() || meshes.len() > MAX_MESHES {
@@ -119,15 +142,17 @@ fn still(document: &Document, space: &Space, skeleton: Option<&Skeleton>) -> Out
         }
     };
     let (mut materials, mut titles) = (material::Materials::default(), Titles::default());
+    let mut tokens = Vec::with_capacity(meshes.len());
     for prim in meshes {
         let mut read = mesh::read(layer, prim, skin.as_ref(), &ours_from_file)?;
         read.mesh.name = titles.unique(&title(layer, prim)?);
         read.mesh.material = materials.of(layer, prim, read.double_sided)?;
         // The body of our own files is the first already.
         scene.meshes.push(read.mesh);
+        tokens.push(read.tokens);
     }
     scene.materials = materials.into_list();
-    Ok(scene)
+    Ok((scene, tokens))
 }
 
 fn scene_joints(joints: &Joints, bind: &[DAffine3]) -> Vec<SceneJoint> {

@@ -3,7 +3,7 @@ use std::path::Path;
 use super::super::{to_usda, to_usdc, to_usdz};
 use super::*;
 use crate::format::{read_meshes_from_bytes, read_motion_from_bytes, read_scene_from_bytes};
-use crate::testing::scene::{arm, bent};
+use crate::testing::scene::{arm, bent, bulging};
 
 fn moving(influences: usize) -> Scene {
     let mut scene = arm(influences);
@@ -88,6 +88,67 @@ fn meshes_alone_are_those_of_the_character_and_do_without_clips() {
             (&of_whole.quads, &of_whole.triangles, &of_whole.uvs)
         );
         assert!(alone.joint_indices.is_empty() && alone.influences_per_vertex == 0);
+    }
+}
+
+#[test]
+fn morph_targets_and_their_weights_come_back() {
+    let scene = bulging(moving(8));
+    for (name, write) in WRITERS {
+        let back = read_scene_from_bytes(&write(&scene).unwrap(), name).unwrap();
+        for (b, s) in back.meshes[2].morph_targets.iter().zip(&scene.meshes[2].morph_targets) {
+            assert_eq!(b, s, "{name}");
+        }
+        assert_eq!(back.morph_tracks, scene.morph_tracks, "{name}");
+    }
+}
+
+#[test]
+fn blend_shapes_of_others_are_dense_turned_and_of_one_token() {
+    let mut scene = bulging(moving(4));
+    scene.meshes[1].morph_targets = vec![crate::scene::MorphTarget {
+        name: "bulge".into(),
+        positions: vec![[0.0; 3], [0.0, 0.0, 0.5], [0.0; 3]],
+        normals: Vec::new(),
+    }];
+    let text = String::from_utf8(to_usda(&scene).unwrap()).unwrap();
+    // The nail comes first and has the plain token, the cushion another.
+    assert!(text.contains("skel:blendShapes = [\"bulge_2\", \"lean_1\"]"), "{text}");
+    let others = text.replace("bulge_2", "bulge").replace("upAxis = \"Y\"", "upAxis = \"Z\"");
+    let others = others.replacen("uniform int[] pointIndices = [1]", "", 1).replacen(
+        "(0.0, 0.0, 0.5)]",
+        "(0, 0, 0), (0, 0, 0.5), (0, 0, 0)]",
+        1,
+    );
+    let back = read_scene_from_bytes(others.as_bytes(), "a.usda").unwrap();
+    let offset = back.meshes[1].morph_targets[0].positions[1];
+    assert!(glam::Vec3::from(offset).distance(glam::Vec3::Y * 0.5) < 1e-6, "{offset:?}");
+    let of_first: Vec<_> =
+        back.morph_tracks.iter().filter(|t| t.clip == 0).map(|t| (t.mesh, t.target)).collect();
+    assert_eq!(of_first, [(1, 0), (2, 0), (2, 1)]);
+}
+
+#[test]
+fn names_what_is_wrong_with_blend_shapes() {
+    let text = String::from_utf8(to_usda(&bulging(moving(4))).unwrap()).unwrap();
+    for (from, to, expected) in [
+        (
+            "pointIndices = [0, 1, 2, 4]",
+            "pointIndices = [0, 1, 2, 6]",
+            "bulge.pointIndices: expected places among 6",
+        ),
+        ("pointIndices = [3, 5]", "pointIndices = [3]", "lean_1.offsets: expected 1 vectors, got 2"),
+        ("vector3f[] offsets", "vector3f[] shifts", "bulge.offsets: expected a value, found none"),
+        (
+            "skel:blendShapes = [\"bulge\", ",
+            "skel:blendShapes = [",
+            "blendShapeTargets: expected 1, one per token, got 2",
+        ),
+    ] {
+        assert!(text.contains(from), "{from} in {text}");
+        let error =
+            read_scene_from_bytes(text.replacen(from, to, 1).as_bytes(), "a.usda").unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
     }
 }
 

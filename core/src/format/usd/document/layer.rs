@@ -164,6 +164,15 @@ impl Layer {
         self.first_path(prim, attribute, FieldKey::ConnectionPaths.as_str())
     }
 
+    /// All targets of a relationship, in order.
+    pub(crate) fn targets(&self, prim: &Path, relationship: &str) -> Outcome<Vec<Path>> {
+        let path = prim.append_property(relationship).map_err(|e| format!("{prim}.{relationship}: {e}"))?;
+        Ok(match self.field(&path, FieldKey::TargetPaths.as_str())? {
+            Some(Value::PathListOp(list)) => list.iter().map(|target| prim.make_absolute(target)).collect(),
+            _ => Vec::new(),
+        })
+    }
+
     fn first_path(&self, prim: &Path, property: &str, field: &str) -> Outcome<Option<Path>> {
         let path = prim.append_property(property).map_err(|e| format!("{prim}.{property}: {e}"))?;
         Ok(match self.field(&path, field)? {

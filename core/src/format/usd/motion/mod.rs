@@ -14,7 +14,9 @@ use super::document::layer::Layer;
 use super::document::skeleton::{Joints, Skeleton};
 use super::document::xform::Xforms;
 use crate::error::Outcome;
-use crate::format::motion::raw::{RawMotion, Recorder, Rigid, Take, frame_count, make_unique, snapped_rate};
+use crate::format::motion::raw::{
+    RawMotion, Recorder, Rigid, Take, WeightTrack, frame_count, make_unique, snapped_rate,
+};
 use crate::format::motion::{Found, ReadOptions};
 use crate::space::{Axis, Unit};
 
@@ -112,6 +114,9 @@ struct Animation {
     rotations: Track<4>,
     translations: Track<3>,
     scales: Track<3>,
+    /// What weights of morph targets go by, and those weights.
+    tokens: Vec<String>,
+    weights: Track<1>,
 }
 
 impl Animation {
@@ -122,7 +127,13 @@ impl Animation {
         }
         let place: std::collections::BTreeMap<&str, usize> =
             own.iter().enumerate().map(|(i, joint)| (joint.as_str(), i)).collect();
+        let tokens = layer.tokens(path, "blendShapes")?.unwrap_or_default();
         Ok(Self {
+            weights: match tokens.len() {
+                0 => Track::none(),
+                count => Track::read(layer, path, "blendShapeWeights", count)?,
+            },
+            tokens,
             joints: skeleton.paths.iter().map(|joint| place.get(joint.as_str()).copied()).collect(),
             rotations: Track::read(layer, path, "rotations", own.len())?,
             translations: Track::read(layer, path, "translations", own.len())?,
@@ -143,6 +154,8 @@ impl Animation {
                 .into_iter()
                 .chain(above.times()),
         );
+        // Joints tell the frames where any moves.
+        let times = if times.is_empty() { self.weights.times() } else { times };
         let (start, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
         let seconds = (end - start) / rate.per_second;
         let frames_per_second =
@@ -153,8 +166,8 @@ impl Animation {
         let rest = joints.locals(&above.at_start()?);
         let mut recorder = Recorder::new(joints.parents.len());
         let mut world: Vec<DAffine3> = Vec::with_capacity(joints.parents.len());
-        for frame in 0..frames {
-            let time = start + frame as f64 / frames_per_second * rate.per_second;
+        let time = |frame: usize| start + frame as f64 / frames_per_second * rate.per_second;
+        for time in (0..frames).map(time) {
             let rotations = self.rotations.at(time);
             let (translations, scales) = (self.translations.at(time), self.scales.at(time));
             let root = above.at(time)?;
@@ -178,7 +191,16 @@ impl Animation {
             let rigid: Vec<Rigid> = world.iter().map(Rigid::of).collect();
             recorder.push(&Rigid::locals(&rigid, &joints.parents));
         }
-        Ok(recorder.take(name, frames_per_second, &rest))
+        let mut take = recorder.take(name, frames_per_second, &rest);
+        let weights: Vec<Vec<[f64; 1]>> = (0..frames).map(|frame| self.weights.at(time(frame))).collect();
+        let of_token = |(i, token): (usize, &String)| WeightTrack {
+            token: token.clone(),
+            weights: weights.iter().filter_map(|row| row.get(i)).map(|[weight]| *weight as f32).collect(),
+        };
+        if self.weights.has_values() {
+            take.weights = self.tokens.iter().enumerate().map(of_token).collect();
+        }
+        Ok(take)
     }
 }
 

@@ -7,10 +7,10 @@ use crate::error::Outcome;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::values;
 
-/// One row of `N` numbers per joint.
+/// One row of `N` numbers per joint or blend shape.
 type Rows<const N: usize> = Vec<[f64; N]>;
 
-/// Samples of vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint.
+/// Samples of numbers (`N` = 1), vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint or blend shape.
 pub(super) struct Track<const N: usize> {
     /// In order of time; one at time 0 stands for a value that does not change, none for no value.
     samples: Vec<(f64, Rows<N>)>,
@@ -18,10 +18,11 @@ pub(super) struct Track<const N: usize> {
 }
 
 impl<const N: usize> Track<N> {
-    /// An attribute with a value for each of `count` joints, or without any.
+    /// An attribute with a value for each of `count` joints or blend shapes, or without any.
     pub(super) fn read(layer: &Layer, prim: &Path, attribute: &str, count: usize) -> Outcome<Self> {
         let rows = |value: &Value| {
-            let rows = values::rows::<N>(value).ok_or("holds no vectors or quaternions".to_owned())?;
+            let rows =
+                values::rows::<N>(value).ok_or("holds no numbers, vectors or quaternions".to_owned())?;
             if rows.len() != count {
                 return Err(format!("expected {count} values, one per joint, got {}", rows.len()));
             }
@@ -43,6 +44,16 @@ impl<const N: usize> Track<N> {
             }
         }
         Ok(Self { samples, animated })
+    }
+
+    /// Without a value at any time.
+    pub(super) fn none() -> Self {
+        Self { samples: Vec::new(), animated: false }
+    }
+
+    /// Whether there is a value at any time.
+    pub(super) fn has_values(&self) -> bool {
+        !self.samples.is_empty()
     }
 
     /// Time codes of the samples.

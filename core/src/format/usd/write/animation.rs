@@ -9,18 +9,11 @@ use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::skeleton::Pose;
 
-/// The clip at this path. `joints` is the skeleton's own list of joints.
-pub(super) fn write(
-    layer: &mut Layer,
-    path: &str,
-    clip: &Clip,
-    joints: &Value,
-    time_codes_per_second: f64,
-) -> Result<()> {
+/// The clip at this path. `joints` is the skeleton's own list of joints, `pace` how many time codes a frame takes.
+pub(super) fn write(layer: &mut Layer, path: &str, clip: &Clip, joints: &Value, pace: f64) -> Result<()> {
     layer.prim(path, clip.name(), "SkelAnimation")?;
     layer.uniform(path, "joints", "token[]", joints.clone())?;
 
-    let pace = time_codes_per_second / clip.frames_per_second();
     let samples = |value: &dyn Fn(&Pose) -> Value| {
         let mut pose = Pose::default();
         let sample = |frame: usize| {

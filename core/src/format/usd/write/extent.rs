@@ -11,7 +11,7 @@ use openusd::sdf::{FieldKey, Value};
 use super::layer::Layer;
 use crate::Result;
 use crate::math::RigidTransform;
-use crate::scene::{Scene, SceneMesh};
+use crate::scene::{MorphTrack, Scene, SceneMesh};
 use crate::skeleton::model_from_joints;
 
 /// Metres added on every side for the rounding of single precision.
@@ -84,14 +84,46 @@ fn joint_boxes(scene: &Scene) -> Vec<Bounds> {
     let joint_from_model: Vec<Affine3A> =
         scene.joints.iter().map(|joint| joint.model_from_joint.inverse()).collect();
     let mut boxes = vec![Bounds::EMPTY; scene.joints.len()];
-    for mesh in &scene.meshes {
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        let shares = shares(scene, index);
         for (vertex, position) in mesh.positions.iter().enumerate() {
             let position = Vec3A::from_array(*position);
             for (joint, _) in mesh.influences(vertex).take_while(|(_, weight)| *weight > 0.0) {
                 let joint = usize::from(joint);
-                boxes[joint].add(joint_from_model[joint].transform_point3a(position));
+                let (moved, joint_from_model) = (&mut boxes[joint], &joint_from_model[joint]);
+                if shares.is_empty() {
+                    moved.add(joint_from_model.transform_point3a(position));
+                } else {
+                    moved.add_moved(&reach(mesh, vertex, &shares), joint_from_model);
+                }
             }
         }
     }
     boxes
+}
+
+/// A morph target of a mesh and the least and the largest weight that it has over the first clip or at rest.
+type Share = (usize, f32, f32);
+
+/// Those of the targets that have any.
+fn shares(scene: &Scene, mesh: usize) -> Vec<Share> {
+    let tracks = scene.morph_tracks_of(0).filter(|track| track.mesh as usize == mesh);
+    let share = |track: &MorphTrack| {
+        let (low, high) = track.weights.iter().fold((0.0_f32, 0.0_f32), |(a, b), w| (a.min(*w), b.max(*w)));
+        (track.target as usize, low, high)
+    };
+    tracks.map(share).collect()
+}
+
+/// Where morph targets may put a vertex in the bind pose.
+fn reach(mesh: &SceneMesh, vertex: usize, shares: &[Share]) -> Bounds {
+    let position = Vec3A::from_array(mesh.positions[vertex]);
+    let mut bounds = Bounds { low: position, high: position };
+    for (target, least, most) in shares {
+        let offset = Vec3A::from_array(mesh.morph_targets[*target].positions[vertex]);
+        let (a, b) = (offset * *least, offset * *most);
+        bounds.low += a.min(b);
+        bounds.high += a.max(b);
+    }
+    bounds
 }

@@ -105,10 +105,15 @@ impl Layer {
 
     /// A relationship with one target.
     pub(super) fn relate(&mut self, prim: &str, name: &str, target: &str) -> Result<()> {
+        self.relate_all(prim, name, &[target])
+    }
+
+    /// A relationship with these targets.
+    pub(super) fn relate_all<T: AsRef<str>>(&mut self, prim: &str, name: &str, targets: &[T]) -> Result<()> {
         let path = format!("{prim}.{name}");
         RelationshipSpecMut::new(&mut self.0, path, Variability::Uniform, false)
             .map_err(fault)?
-            .set_target_paths([target])
+            .set_target_paths(targets.iter().map(AsRef::as_ref))
             .map_err(fault)
     }
 }

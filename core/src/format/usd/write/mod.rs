@@ -8,6 +8,7 @@
 //!     /Anim            SkelAnimation of the first clip, which is the one that plays
 //!     /<clip>          SkelAnimation of every further clip, bound to nothing
 //!   /<mesh>            Mesh: skin, normals per vertex, primvars:st per corner, material
+//!     /<target>        BlendShape of a morph target; its weights are in the SkelAnimations
 //!   /mtl/<material>    Material with a UsdPreviewSurface
 //! ```
 //!
@@ -19,6 +20,7 @@
 //! scene alone: nothing in a file tells when it was made.
 
 mod animation;
+mod blend_shape;
 mod extent;
 mod layer;
 mod material;
@@ -93,12 +95,13 @@ fn layer(scene: &Scene) -> Result<Layer> {
     layer_metadata(&mut layer, &root, scene)?;
 
     let mut names = Names::reserved(["Skel", "mtl"]);
+    let tokens = blend_shape::tokens(scene);
     if skinned {
         extent::write(&mut layer, &root, scene)?;
-        skeleton::write(&mut layer, &format!("{root}/Skel"), scene)?;
+        skeleton::write(&mut layer, &format!("{root}/Skel"), scene, &tokens)?;
     }
     let materials = material::paths(&format!("{root}/mtl"), &scene.materials);
-    for mesh in &scene.meshes {
+    for (mesh, tokens) in scene.meshes.iter().zip(&tokens) {
         let path = format!("{root}/{}", names.unique(&mesh.name));
         let skeleton = skinned.then(|| format!("{root}/Skel"));
         let material = mesh.material as usize;
@@ -108,6 +111,7 @@ fn layer(scene: &Scene) -> Result<Layer> {
             double_sided: scene.materials[material].double_sided,
         };
         mesh::write(&mut layer, &path, mesh, &binding)?;
+        blend_shape::write(&mut layer, &path, mesh, tokens)?;
     }
     layer.prim(&format!("{root}/mtl"), "mtl", "Scope")?;
     for (path, material) in materials.iter().zip(&scene.materials) {

@@ -4,17 +4,17 @@ use glam::{Affine3A, DAffine3, DMat3, DVec3};
 use openusd::gf::Matrix4d;
 use openusd::sdf::Value;
 
-use super::animation;
 use super::layer::Layer;
 use super::names::Names;
+use super::{animation, blend_shape};
 use crate::Result;
 use crate::scene::{Scene, SceneJoint};
 
 /// A custom attribute of the Skeleton: how far each joint's bone reaches along its +Y axis, metres.
 pub(crate) const BONE_LENGTHS: &str = "anthronet:boneLengths";
 
-/// The skeleton at this path and its animations.
-pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene) -> Result<()> {
+/// The skeleton at this path and its animations, in which weights of morph targets go by tokens.
+pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene, tokens: &[Vec<String>]) -> Result<()> {
     layer.prim(path, "Skel", "Skeleton")?;
     let joints = joint_tokens(&scene.joints);
     let bind: Vec<DAffine3> = scene.joints.iter().map(|j| in_double(&j.model_from_joint)).collect();
@@ -38,7 +38,9 @@ pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene) -> Result<()> 
     let mut names = Names::reserved(["Anim"]);
     for (i, clip) in scene.clips.iter().enumerate() {
         let name = if i == 0 { "Anim".to_owned() } else { names.unique(clip.name()) };
-        animation::write(layer, &format!("{path}/{name}"), clip, &joints, time_codes_per_second)?;
+        let (path, pace) = (format!("{path}/{name}"), time_codes_per_second / clip.frames_per_second());
+        animation::write(layer, &path, clip, &joints, pace)?;
+        blend_shape::animate(layer, &path, (scene, i), tokens, pace)?;
     }
     layer.apply(path, "SkelBindingAPI")?;
     layer.relate(path, "skel:animationSource", &format!("{path}/Anim"))

@@ -3,7 +3,7 @@ use openusd::sdf::{AbstractData, Path};
 
 use super::*;
 use crate::skeleton::model_from_joints;
-use crate::testing::scene::{arm, bent};
+use crate::testing::scene::{arm, bent, bulging};
 
 fn moving(influences: usize) -> Scene {
     let mut scene = arm(influences);
@@ -107,8 +107,19 @@ fn names_are_narrowed_and_kept() {
 
 #[test]
 fn extents_hold_the_skinned_vertices() {
-    let scene = moving(8);
-    let Some(Value::TimeSamples(samples)) = field(&scene, "/Arm.extent", "timeSamples") else {
+    extents_hold(&moving(8));
+}
+
+#[test]
+fn extents_hold_what_morph_targets_move() {
+    let mut scene = bulging(moving(4));
+    // The cushion alone, blown up beyond all.
+    scene.meshes[2].morph_targets[0].positions[1] = [0.0, 3.0, 2.0];
+    extents_hold(&scene);
+}
+
+fn extents_hold(scene: &Scene) {
+    let Some(Value::TimeSamples(samples)) = field(scene, "/Arm.extent", "timeSamples") else {
         panic!("no samples");
     };
     let clip = &scene.clips[0];
@@ -125,17 +136,40 @@ fn extents_hold_the_skinned_vertices() {
         };
         let mut joints = Vec::new();
         model_from_joints(clip.skeleton().parents(), &clip.pose(frame).locals, &mut joints);
-        for mesh in &scene.meshes {
+        for (index, mesh) in scene.meshes.iter().enumerate() {
             for (vertex, position) in mesh.positions.iter().enumerate() {
+                let mut position = glam::Vec3A::from(*position);
+                for track in scene.morph_tracks_of(0).filter(|track| track.mesh as usize == index) {
+                    let target = &mesh.morph_targets[track.target as usize];
+                    position += glam::Vec3A::from(target.positions[vertex]) * track.weights[frame];
+                }
                 let moved = mesh.influences(vertex).filter(|slot| slot.1 > 0.0).map(|(joint, weight)| {
                     let bind = scene.joints[usize::from(joint)].model_from_joint;
                     let matrix = joints[usize::from(joint)].to_affine() * bind.inverse();
-                    matrix.transform_point3a((*position).into()) * weight
+                    matrix.transform_point3a(position) * weight
                 });
                 assert!(inside(moved.sum()), "frame {frame}, {} {vertex}", mesh.name);
             }
         }
     }
+}
+
+#[test]
+fn targets_of_one_name_share_a_token_where_their_weights_are_the_same() {
+    let mut scene = bulging(moving(4));
+    let target = |vertices: usize| crate::scene::MorphTarget {
+        name: "bulge".into(),
+        positions: vec![[0.1; 3]; vertices],
+        normals: Vec::new(),
+    };
+    scene.meshes[0].morph_targets = vec![target(15)];
+    scene.meshes[1].morph_targets = vec![target(3)];
+    let of_cushion = scene.morph_tracks[0].clone();
+    scene.morph_tracks.insert(1, crate::scene::MorphTrack { mesh: 0, target: 0, ..of_cushion });
+    let tokens: Vec<_> = blend_shape::tokens(&scene).concat();
+    assert_eq!(tokens, ["bulge", "bulge_2", "bulge", "lean_1"]);
+    let text = text(&scene);
+    assert!(text.contains("blendShapes = [\"bulge\", \"lean_1\"]"), "{text}");
 }
 
 #[test]

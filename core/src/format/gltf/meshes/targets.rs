@@ -1,0 +1,87 @@
+//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are passed over, and so are default weights: a scene
+//! rests without its targets.
+
+use glam::{Mat3A, Vec3};
+use gltf_json::mesh::Primitive;
+use gltf_json::{Mesh, Value};
+
+use crate::error::Outcome;
+use crate::format::gltf::document::Document;
+use crate::scene::titles::Titles;
+use crate::scene::{MorphTarget, SceneMesh};
+
+/// Most vertices of all targets of a document together: a few bytes must not ask for all memory.
+const MAX_TARGET_VERTICES: usize = 1 << 25;
+
+/// Reads targets of one document.
+pub(super) struct Targets<'a> {
+    document: &'a Document,
+    /// How many vertices targets may still have.
+    left: usize,
+}
+
+impl<'a> Targets<'a> {
+    pub(super) fn of(document: &'a Document) -> Self {
+        Self { document, left: MAX_TARGET_VERTICES }
+    }
+
+    /// The targets of a primitive, whose surface was read already.
+    pub(super) fn read(
+        &mut self,
+        mesh: &Mesh,
+        primitive: &Primitive,
+        surface: &SceneMesh,
+    ) -> Outcome<Vec<MorphTarget>> {
+        let Some(targets) = primitive.targets.as_ref().filter(|targets| !targets.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let count = surface.positions.len();
+        let left = targets.len().checked_mul(count).and_then(|vertices| self.left.checked_sub(vertices));
+        self.left = left.ok_or_else(|| {
+            format!("targets: expected at most {MAX_TARGET_VERTICES} vertices in all targets of the file")
+        })?;
+        let (named, mut names) = (names(mesh), Titles::default());
+        let mut read = Vec::with_capacity(targets.len());
+        for (i, target) in targets.iter().enumerate() {
+            let fault = |message: String| format!("targets[{i}]: {message}");
+            let positions = match target.positions {
+                Some(index) => {
+                    self.document.offsets(index, count).map_err(|m| fault(format!("POSITION: {m}")))?
+                }
+                None => vec![[0.0; 3]; count],
+            };
+            let normals = match target.normals {
+                Some(index) if !surface.normals.is_empty() => {
+                    self.document.offsets(index, count).map_err(|m| fault(format!("NORMAL: {m}")))?
+                }
+                _ => Vec::new(),
+            };
+            let name = named.get(i).cloned().filter(|name| !name.is_empty());
+            let name = names.unique(&name.unwrap_or_else(|| format!("target{i}")));
+            read.push(MorphTarget { name, positions, normals });
+        }
+        Ok(read)
+    }
+}
+
+/// What the mesh calls its targets: no part of the standard, but what everybody writes.
+fn names(mesh: &Mesh) -> Vec<String> {
+    let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
+    let names = extras.as_ref().and_then(|e| e.get("targetNames")).and_then(Value::as_array);
+    let text = |name: &Value| name.as_str().unwrap_or_default().to_owned();
+    names.map(|names| names.iter().map(text).collect()).unwrap_or_default()
+}
+
+/// Turns offsets as the surface is turned, whose normals are still those of the file.
+pub(super) fn place(mesh: &mut SceneMesh, matrix: Mat3A, normal_matrix: Mat3A) {
+    for target in &mut mesh.morph_targets {
+        for offset in &mut target.positions {
+            *offset = (matrix * Vec3::from_array(*offset)).to_array();
+        }
+        for (offset, normal) in target.normals.iter_mut().zip(&mesh.normals) {
+            let length = (normal_matrix * Vec3::from_array(*normal)).length();
+            let share = if length > 0.0 { length.recip() } else { 0.0 };
+            *offset = (normal_matrix * Vec3::from_array(*offset) * share).to_array();
+        }
+    }
+}

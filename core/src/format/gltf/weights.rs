@@ -1,0 +1,72 @@
+//! Keys of the weights of a node's morph targets (glTF 2.0, section 3.11).
+
+use gltf_json::Animation;
+use gltf_json::animation::{Interpolation, Property};
+use gltf_json::validation::Checked;
+
+use super::animation::{Keys, Place, hermite};
+use super::document::Document;
+use crate::error::Outcome;
+
+/// Keys of the weights of one node.
+pub(super) struct WeightKeys {
+    pub(super) node: usize,
+    /// How many targets its mesh has, at least one.
+    pub(super) targets: usize,
+    pub(super) keys: Keys,
+    /// Per key a weight of each target; of splines in-tangents, values and out-tangents.
+    values: Vec<f32>,
+}
+
+/// What an animation says of weights. `left` is how many numbers the document may still have.
+pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Outcome<Vec<WeightKeys>> {
+    let mut read = Vec::new();
+    for (i, channel) in animation.channels.iter().enumerate() {
+        if channel.target.path != Checked::Valid(Property::MorphTargetWeights) {
+            continue;
+        }
+        let node = channel.target.node.value();
+        let of_mesh = document.root.nodes.get(node).and_then(|node| document.root.get(node.mesh?));
+        let primitive = of_mesh.and_then(|mesh| mesh.primitives.first());
+        let targets = primitive.and_then(|primitive| primitive.targets.as_ref()).map_or(0, Vec::len);
+        if targets == 0 {
+            // Weights of nothing are nobody's.
+            continue;
+        }
+        let fault = |message: String| format!("channels[{i}]: {message}");
+        let (keys, output) = Keys::read(document, animation, channel.sampler).map_err(fault)?;
+        let values = document.numbers::<1>(output).map_err(|m| fault(format!("output: {m}")))?;
+        let expected = keys.each() * keys.times.len() * targets;
+        if values.len() != expected {
+            let (keys, got) = (keys.times.len(), values.len());
+            return Err(fault(format!(
+                "output: expected {expected} weights of {targets} targets for {keys} keys, got {got}"
+            )));
+        }
+        *left = left.checked_sub(values.len()).ok_or_else(|| fault("too many numbers of keys".into()))?;
+        read.push(WeightKeys { node, targets, keys, values: values.into_iter().flatten().collect() });
+    }
+    Ok(read)
+}
+
+impl WeightKeys {
+    /// The weight of a target at a time; on a key, and up to `near` seconds away from one, the file's own number.
+    pub(super) fn value(&self, target: usize, time: f64, near: f64) -> f32 {
+        let value = |i: usize| self.values[i * self.targets + target];
+        let key = |i: usize| value(self.keys.value_at(i));
+        let (i, t, span) = match self.keys.place(time, near) {
+            Place::At(i) => return key(i),
+            Place::After(i, t, span) => (i, t, span),
+        };
+        let (from, to) = (f64::from(key(i)), f64::from(key(i + 1)));
+        let between = match self.keys.interpolation {
+            Interpolation::Step => from,
+            Interpolation::Linear => from + (to - from) * t,
+            Interpolation::CubicSpline => {
+                let [out, into] = [3 * i + 2, 3 * i + 3].map(|i| f64::from(value(i)));
+                hermite(t, span, [from, out, into, to])
+            }
+        };
+        between as f32
+    }
+}

@@ -1,0 +1,109 @@
+//! BlendShapes as morph targets. Shapes in between are passed over.
+
+use glam::{DAffine3, DMat3, DVec3};
+use openusd::sdf::{Path, Value};
+
+use super::title;
+use crate::error::Outcome;
+use crate::format::limits::MAX_ELEMENTS;
+use crate::format::usd::document::layer::Layer;
+use crate::format::usd::document::values;
+use crate::scene::titles::Titles;
+use crate::scene::{MorphTarget, SceneMesh};
+
+/// Most vertices of all targets of a mesh together: a few bytes must not ask for all memory.
+const MAX_TARGET_VERTICES: usize = 8 * MAX_ELEMENTS;
+/// How far the length of a normal may be from 1 to be taken for it.
+const UNIT_TOLERANCE: f64 = 1e-6;
+
+/// Fills the targets of a mesh, whose normals are in our space; the tokens that their weights go by.
+pub(super) fn read(
+    layer: &Layer,
+    prim: &Path,
+    mesh: &mut SceneMesh,
+    file_normals: &[[f64; 3]],
+    ours_from_mesh: &DAffine3,
+) -> Outcome<Vec<String>> {
+    let tokens = layer.tokens(prim, "skel:blendShapes")?.unwrap_or_default();
+    let targets = layer.targets(prim, "skel:blendShapeTargets")?;
+    if tokens.len() != targets.len() {
+        let (expected, got) = (tokens.len(), targets.len());
+        return Err(format!("{prim}.skel:blendShapeTargets: expected {expected}, one per token, got {got}"));
+    }
+    let count = mesh.positions.len();
+    if tokens.len().checked_mul(count).is_none_or(|vertices| vertices > MAX_TARGET_VERTICES) {
+        return Err(format!("{prim}: {} blend shapes of {count} points are too many", tokens.len()));
+    }
+    let mut names = Titles::default();
+    let normal_matrix = ours_from_mesh.matrix3.inverse().transpose();
+    for shape in &targets {
+        let indices = indices(layer, shape, count)?;
+        let rows = |name: &str| dense(layer, shape, name, indices.as_deref(), count);
+        let offsets =
+            rows("offsets")?.ok_or_else(|| format!("{shape}.offsets: expected a value, found none"))?;
+        let normals = match rows("normalOffsets")? {
+            Some(normals) if mesh.normals.len() == count => turned(&normals, file_normals, normal_matrix),
+            _ => Vec::new(),
+        };
+        let ours = |offset: &DVec3| (ours_from_mesh.matrix3 * *offset).as_vec3().to_array();
+        mesh.morph_targets.push(MorphTarget {
+            name: names.unique(&title(layer, shape)?),
+            positions: offsets.iter().map(ours).collect(),
+            normals,
+        });
+    }
+    Ok(tokens)
+}
+
+/// Offsets of normals, turned as the normals that they are added to, which are made to unit length there.
+fn turned(offsets: &[DVec3], normals: &[[f64; 3]], normal_matrix: DMat3) -> Vec<[f32; 3]> {
+    let turn = |(offset, normal): (&DVec3, &[f64; 3])| {
+        let length = (normal_matrix * DVec3::from_array(*normal)).length();
+        let share = if (length - 1.0).abs() < UNIT_TOLERANCE { 1.0 } else { length.max(1e-12).recip() };
+        (normal_matrix * *offset * share).as_vec3().to_array()
+    };
+    offsets.iter().zip(normals).map(turn).collect()
+}
+
+/// The points that a shape's offsets are of; `None` for all of them, in order.
+fn indices(layer: &Layer, shape: &Path, count: usize) -> Outcome<Option<Vec<usize>>> {
+    let numbers = match layer.default(shape, "pointIndices")? {
+        Some(Value::IntVec(numbers)) => numbers,
+        Some(_) => return Err(format!("{shape}.pointIndices: expected integers")),
+        None => return Ok(None),
+    };
+    if numbers.is_empty() {
+        return Ok(None);
+    }
+    let place = |number: &i32| usize::try_from(*number).ok().filter(|place| *place < count);
+    let places: Option<Vec<usize>> = numbers.iter().map(place).collect();
+    places.map(Some).ok_or_else(|| format!("{shape}.pointIndices: expected places among {count} points"))
+}
+
+/// An attribute of offsets with a row for every point; `None` where the shape has none.
+fn dense(
+    layer: &Layer,
+    shape: &Path,
+    name: &str,
+    indices: Option<&[usize]>,
+    count: usize,
+) -> Outcome<Option<Vec<DVec3>>> {
+    let Some(value) = layer.default(shape, name)? else { return Ok(None) };
+    let rows = values::rows::<3>(&value).ok_or_else(|| format!("{shape}.{name}: expected vectors"))?;
+    if rows.is_empty() && name == "normalOffsets" {
+        return Ok(None);
+    }
+    let expected = indices.map_or(count, <[usize]>::len);
+    if rows.len() != expected {
+        return Err(format!("{shape}.{name}: expected {expected} vectors, got {}", rows.len()));
+    }
+    let mut dense = vec![DVec3::ZERO; count];
+    for (i, row) in rows.iter().enumerate() {
+        let row = DVec3::from_array(*row);
+        if !row.is_finite() {
+            return Err(format!("{shape}.{name}: vector {i} is not finite: {row}"));
+        }
+        dense[indices.map_or(i, |indices| indices[i])] = row;
+    }
+    Ok(Some(dense))
+}
