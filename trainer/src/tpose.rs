@@ -31,7 +31,7 @@ impl TPose {
     /// Finds the arms in the rig.
     ///
     /// # Errors
-    /// [`Error::Source`] when a joint is missing.
+    /// [`Error::Source`](crate::Error::Source) when a joint is missing.
     pub fn new(assets: &Assets) -> Result<Self> {
         let joint = |joint: RigJoint| assets.rig.require(joint.name());
         let heads = assets.mesh.raw_of_surface.len();
