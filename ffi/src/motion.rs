@@ -285,7 +285,7 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
             retarget::retarget_clip(at(&motion.clips, clip, "clip")?, body.body.skeleton(), &options)?;
         let report_json = json(&report)?;
         if !report.joints.unmatched.is_empty() {
-            crate::log::info(&format!("joints that drive nothing: {}", report.joints.unmatched.join(", ")));
+            crate::log::info(&format!("unmatched joints: {}", report.joints.unmatched.join(", ")));
         }
         out.give(anthronet_clip(clip));
         if let Some(out) = out_report {

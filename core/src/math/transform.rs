@@ -4,12 +4,13 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::space::Space;
 
-/// A joint's transform to its parent: `parent_from_joint`, a rigid motion.
+/// A rotation followed by a translation, without scale. It takes points of one space to another; the name of the variable says
+/// which, as in `parent_from_joint` or `model_from_joint`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidTransform {
     /// Unit quaternion.
     pub rotation: Quat,
-    /// Metres, in the parent's space.
+    /// Metres, in the space that it leads to.
     pub translation: Vec3,
 }
 
@@ -22,7 +23,7 @@ impl RigidTransform {
         Affine3A::from_rotation_translation(self.rotation, self.translation)
     }
 
-    /// `self` after `inner`: `parent_from_joint · joint_from_inner`.
+    /// `self` after `inner`: `a_from_b.then(b_from_c)` is `a_from_c`.
     pub fn then(self, inner: Self) -> Self {
         Self {
             rotation: self.rotation * inner.rotation,
@@ -30,7 +31,7 @@ impl RigidTransform {
         }
     }
 
-    /// The motion back: `joint_from_parent`.
+    /// The motion back: of `a_from_b`, `b_from_a`.
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.conjugate();
         Self { rotation, translation: rotation * -self.translation }

@@ -3,8 +3,8 @@
 use super::scene::{Scene, SceneMesh};
 use crate::{Error, Result};
 
-/// A surface's way to another shape, also called shape key or blend shape. A share of it, the target's weight, is added to
-/// the bind pose, before skinning; at rest all weights are 0.
+/// Displacements of a surface to another shape, also called shape key or blend shape. Times the target's weight, they are
+/// added to the bind pose, before skinning; at rest all weights are 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
     /// Name, unique among those of the mesh.
