@@ -2,7 +2,7 @@
 
 use anthronet::Result;
 use anthronet::condition::Request;
-use anthronet::math::RigidTransform;
+use anthronet::math::{RigidTransform, Rotation};
 use anthronet::measure::Sex;
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
@@ -10,7 +10,7 @@ use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
 use anthronet::skin::{SkinJob, SkinMethod, Skinner, SurfaceMut, skin_many};
 use divan::Bencher;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 fn main() {
     divan::main();
@@ -35,7 +35,7 @@ fn posed(lod: Lod, influences: usize) -> Result<(Skinner, Vec<RigidTransform>)> 
         &rest.model_from_joints(),
     )?;
     let mut pose = rest.rest_pose().clone();
-    pose.locals.iter_mut().for_each(|l| l.rotation *= Quat::from_rotation_x(0.2));
+    pose.locals.iter_mut().for_each(|l| l.rotation *= Rotation::from_rotation_x(0.2));
     Ok((skinner, pose.model_from_joints(rest.parents())))
 }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anthronet::condition::Request;
-use anthronet::math::RigidTransform;
+use anthronet::math::{RigidTransform, Rotation};
 use anthronet::measure::Sex;
 use anthronet::model::Model;
 use anthronet::random::Random;
@@ -19,7 +19,7 @@ use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
 use anthronet::skeleton::{Pose, Skeleton};
 use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -95,7 +95,7 @@ fn random_pose(rest: &Skeleton, seed: u64) -> Pose {
     for local in &mut pose.locals {
         let axis = Vec3::from_array(std::array::from_fn(|_| random.normal() as f32)).normalize_or(Vec3::X);
         local.rotation =
-            (local.rotation * Quat::from_axis_angle(axis, 0.5 * random.normal() as f32)).normalize();
+            (local.rotation * Rotation::from_axis_angle(axis, 0.5 * random.normal() as f32)).normalize();
     }
     pose
 }

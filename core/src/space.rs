@@ -11,9 +11,10 @@
 
 use std::{f32::consts::FRAC_1_SQRT_2, fmt, str::FromStr};
 
-use glam::{Mat3, Mat4, Quat, Vec3};
+use glam::{Mat3, Mat4, Vec3};
 use serde::{Serialize, Serializer};
 
+use crate::math::{RigidTransform, Rotation};
 use crate::{Error, Result};
 
 /// A unit of length.
@@ -128,9 +129,9 @@ impl Axis {
     /// The rotation that stands a file with this axis up on our floor: identity, or −90° about X.
     ///
     /// As the left factor of a root's transform it moves everything below; joint spaces stay as they are.
-    pub fn ours_from_file(self) -> Quat {
+    pub fn ours_from_file(self) -> Rotation {
         match self {
-            Self::Y => Quat::IDENTITY,
+            Self::Y => Rotation::IDENTITY,
             Self::Z => STAND_UP,
         }
     }
@@ -158,11 +159,11 @@ impl Axis {
 }
 
 /// −90° about X: what lies along +Z stands along +Y.
-const STAND_UP: Quat = Quat::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
+const STAND_UP: Rotation = Rotation::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
 
 /// A rotation as seen in a mirror across X.
-fn mirrored(q: Quat) -> Quat {
-    Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
+fn mirrored(q: Rotation) -> Rotation {
+    Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
 
 impl fmt::Display for Axis {
@@ -218,33 +219,36 @@ impl Space {
         }
     }
 
-    /// A joint's rotation and translation to the model, ours, in this space: the model's axes change, the joint's own stay,
-    /// so that +Y runs along its bone everywhere; a mirror mirrors them too.
-    pub fn model_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+    /// A joint's transform to the model, ours, in this space: the model's axes change, the joint's own stay, so that +Y runs
+    /// along its bone everywhere; a mirror mirrors them too.
+    pub fn model_from_joint(self, ours: RigidTransform) -> RigidTransform {
         let rotation = match self {
-            Self::YUp => rotation,
-            Self::ZUp => STAND_UP.conjugate() * rotation,
-            Self::Unity => mirrored(rotation),
+            Self::YUp => ours.rotation,
+            Self::ZUp => STAND_UP.conjugate() * ours.rotation,
+            Self::Unity => mirrored(ours.rotation),
         };
-        (rotation, self.from_ours(translation))
+        RigidTransform { rotation, translation: self.from_ours(ours.translation) }
     }
 
-    /// A joint's rotation and translation to the model, in this space, as ours.
-    pub fn model_from_joint_to_ours(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+    /// A joint's transform to the model, in this space, as ours.
+    pub fn model_from_joint_to_ours(self, theirs: RigidTransform) -> RigidTransform {
         let rotation = match self {
-            Self::YUp => rotation,
-            Self::ZUp => STAND_UP * rotation,
-            Self::Unity => mirrored(rotation),
+            Self::YUp => theirs.rotation,
+            Self::ZUp => STAND_UP * theirs.rotation,
+            Self::Unity => mirrored(theirs.rotation),
         };
-        (rotation, self.to_ours(translation))
+        RigidTransform { rotation, translation: self.to_ours(theirs.translation) }
     }
 
-    /// A joint's rotation and translation to another joint: the same in every right-handed space, mirrored in the other;
-    /// from ours to this space and back alike.
-    pub fn parent_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
+    /// A joint's transform to another joint: the same in every right-handed space, mirrored in the other; from ours to this
+    /// space and back alike.
+    pub fn parent_from_joint(self, transform: RigidTransform) -> RigidTransform {
         match self {
-            Self::YUp | Self::ZUp => (rotation, translation),
-            Self::Unity => (mirrored(rotation), self.from_ours(translation)),
+            Self::YUp | Self::ZUp => transform,
+            Self::Unity => RigidTransform {
+                rotation: mirrored(transform.rotation),
+                translation: self.from_ours(transform.translation),
+            },
         }
     }
 
@@ -273,6 +277,29 @@ impl Space {
     }
 }
 
+impl RigidTransform {
+    /// A joint's transform to the model, ours, in a space: see [`Space::model_from_joint`].
+    pub fn model_from_joint_in(self, space: Space) -> Self {
+        space.model_from_joint(self)
+    }
+
+    /// A joint's transform to its parent, ours, in a space; the model is the parent of a joint without one.
+    pub fn parent_from_joint_in(self, space: Space, parent: Option<u32>) -> Self {
+        match parent {
+            None => space.model_from_joint(self),
+            Some(_) => space.parent_from_joint(self),
+        }
+    }
+
+    /// A joint's transform to its parent in a space, as ours.
+    pub fn parent_from_joint_out_of(self, space: Space, parent: Option<u32>) -> Self {
+        match parent {
+            None => space.model_from_joint_to_ours(self),
+            Some(_) => space.parent_from_joint(self),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -290,30 +317,30 @@ mod tests {
 
     #[test]
     fn there_and_back_is_exact_but_for_rotations() {
-        let (v, q) = (Vec3::new(0.1, -2.0, 3.0), Quat::from_xyzw(0.1, -0.3, 0.7, 0.64).normalize());
+        let (v, q) = (Vec3::new(0.1, -2.0, 3.0), Rotation::from_xyzw(0.1, -0.3, 0.7, 0.64).normalize());
         for space in SPACES {
             assert_eq!(space.to_ours(space.from_ours(v)), v);
-            let (turn, step) = space.parent_from_joint(q, v);
-            assert_eq!(space.parent_from_joint(turn, step), (q, v));
-            let (turn, step) = space.model_from_joint(q, v);
-            let (turn, step) = space.model_from_joint_to_ours(turn, step);
+            let ours = RigidTransform { rotation: q, translation: v };
+            assert_eq!(space.parent_from_joint(space.parent_from_joint(ours)), ours);
+            let back = space.model_from_joint_to_ours(space.model_from_joint(ours));
             // The products with a quarter turn round.
-            assert!(step == v && turn.dot(q) > 1.0 - 1e-6, "{space:?}");
+            assert!(back.translation == v && back.rotation.dot(q) > 1.0 - 1e-6, "{space:?}");
         }
     }
 
     #[test]
     fn what_hangs_on_a_joint_is_carried_along() {
-        let q = Quat::from_axis_angle(Vec3::new(0.48, -0.6, 0.64), 1.1);
+        let q = Rotation::from_axis_angle(Vec3::new(0.48, -0.6, 0.64), 1.1);
         let (step, point) = (Vec3::new(4.0, 5.0, -6.0), Vec3::new(0.3, 1.7, -0.2));
-        let matrix = Mat4::from_rotation_translation(q, step);
+        let ours = RigidTransform { rotation: q, translation: step };
+        let matrix = Mat4::from(ours.to_affine());
         for space in SPACES {
             // The joint's own axes, and what hangs on it, change only in a mirror.
             let hanging = if space == Space::Unity { space.from_ours(point) } else { point };
             let expected = space.from_ours(q * point + step);
-            let (turn, shift) = space.model_from_joint(q, step);
+            let there = space.model_from_joint(ours);
             // A few roundings of numbers near 8.
-            assert!((turn * hanging + shift).distance(expected) < 4e-6, "{space:?}");
+            assert!((there.rotation * hanging + there.translation).distance(expected) < 4e-6, "{space:?}");
             let model_from_joint = space.model_from_joint_matrix(matrix);
             assert!(model_from_joint.transform_point3(hanging).distance(expected) < 4e-6, "{space:?}");
             let joint_from_model = space.joint_from_model_matrix(matrix.inverse());
@@ -324,10 +351,10 @@ mod tests {
     #[test]
     fn bones_run_along_y_everywhere() {
         // An upper arm of the T-pose: its bone runs to the left.
-        let q = Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2);
+        let q = Rotation::from_rotation_z(-std::f32::consts::FRAC_PI_2);
         for space in SPACES {
-            let (turn, _) = space.model_from_joint(q, Vec3::ZERO);
-            assert!((turn * Vec3::Y).distance(space.from_ours(Vec3::X)) < 1e-6, "{space:?}");
+            let there = space.model_from_joint(RigidTransform { rotation: q, translation: Vec3::ZERO });
+            assert!((there.rotation * Vec3::Y).distance(space.from_ours(Vec3::X)) < 1e-6, "{space:?}");
         }
     }
 

@@ -4,10 +4,10 @@ use anthronet::clip::Clip;
 use anthronet::condition::Request;
 use anthronet::format::gltf::to_glb;
 use anthronet::format::read_scene_from_bytes;
+use anthronet::math::Rotation;
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::scene::{Scene, SceneOptions};
-use glam::Quat;
 
 #[test]
 fn a_body_in_motion_written_again_is_the_same_file() {
@@ -22,7 +22,7 @@ fn a_body_in_motion_written_again_is_the_same_file() {
             let angle = |j: usize| if j.is_multiple_of(3) { 0.0 } else { 0.01 * (frame * j) as f32 };
             rest.rest_rotations()
                 .enumerate()
-                .map(move |(j, q)| q * Quat::from_rotation_x(angle(j)))
+                .map(move |(j, q)| q * Rotation::from_rotation_x(angle(j)))
                 .collect::<Vec<_>>()
         });
         let turns = turns.collect();

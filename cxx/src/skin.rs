@@ -1,10 +1,10 @@
 //! Posed surfaces, into the caller's buffers.
 
 use anthronet::Error;
-use anthronet::math::RigidTransform;
+use anthronet::math::{RigidTransform, Rotation};
 use anthronet::skin::{BytesMut, SkinJob, StridedMut, SurfaceMut};
 use bytemuck::cast_slice_mut;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use crate::Result;
 use crate::bridge::ffi;
@@ -132,7 +132,7 @@ fn surface<'a>(positions: &'a mut [f32], normals: &'a mut [f32]) -> SurfaceMut<'
 
 fn locals(pose: &[ffi::Transform]) -> Vec<RigidTransform> {
     let local = |joint: &ffi::Transform| RigidTransform {
-        rotation: Quat::from_array(joint.rotation),
+        rotation: Rotation::from_array(joint.rotation),
         translation: Vec3::from_array(joint.translation),
     };
     pose.iter().map(local).collect()

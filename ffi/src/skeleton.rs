@@ -155,7 +155,7 @@ impl From<anthronet::math::RigidTransform> for anthronet_transform {
 impl From<&anthronet_transform> for anthronet::math::RigidTransform {
     fn from(transform: &anthronet_transform) -> Self {
         Self {
-            rotation: glam::Quat::from_array(transform.rotation),
+            rotation: anthronet::math::Rotation::from_array(transform.rotation),
             translation: glam::Vec3::from_array(transform.translation),
         }
     }

@@ -5,8 +5,9 @@
 //! bodies would leave the arms up to several millimetres off. Vertices follow by linear blend skinning.
 
 use anthronet::Side;
+use anthronet::math::Rotation;
 use anthronet::skeleton::{RigJoint, SidedJoint};
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use crate::Result;
 use crate::assets::Assets;
@@ -84,9 +85,9 @@ impl Arm {
     fn apply(&self, points: &mut [Vec3]) {
         let [shoulder, elbow, wrist, knuckle] = self.chain.map(|p| points[p]);
         let direction = |from: Vec3, to: Vec3| (to - from).normalize_or(self.outward);
-        let upper = Quat::from_rotation_arc(direction(shoulder, elbow), self.outward);
-        let lower = Quat::from_rotation_arc(upper * direction(elbow, wrist), self.outward) * upper;
-        let hand = Quat::from_rotation_arc(lower * direction(wrist, knuckle), self.outward) * lower;
+        let upper = Rotation::from_rotation_arc(direction(shoulder, elbow), self.outward);
+        let lower = Rotation::from_rotation_arc(upper * direction(elbow, wrist), self.outward) * upper;
+        let hand = Rotation::from_rotation_arc(lower * direction(wrist, knuckle), self.outward) * lower;
         let new_elbow = shoulder + self.outward * (elbow - shoulder).length();
         let new_wrist = new_elbow + self.outward * (wrist - elbow).length();
         for &(p, [u, l, h]) in &self.weights {

@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::Quat;
-
 use super::Clip;
 use super::edit::clip_of_poses;
 use super::sample::{Sampler, Wrap, mix};
-use crate::math::{RigidTransform, smoothstep};
+use crate::math::{RigidTransform, Rotation, smoothstep};
 use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
@@ -79,7 +77,7 @@ pub fn add_pose(base: &mut Pose, layer: &Pose, reference: &Pose, weight: f32, ma
         let by = reference.rotation.conjugate() * layer.rotation;
         let by = if by.w < 0.0 { -by } else { by };
         *base = RigidTransform {
-            rotation: (base.rotation * Quat::IDENTITY.slerp(by, weight)).normalize(),
+            rotation: (base.rotation * Rotation::IDENTITY.slerp(by, weight)).normalize(),
             translation: base.translation + (layer.translation - reference.translation) * weight,
         };
     }

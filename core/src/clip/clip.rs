@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
-use crate::math::{RigidTransform, unit};
+use crate::math::{RigidTransform, Rotation, unit};
 use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
@@ -29,7 +29,7 @@ pub struct Clip {
     rest: Arc<Skeleton>,
     frames_per_second: f64,
     frame_count: usize,
-    rotations: Vec<Quat>,
+    rotations: Vec<Rotation>,
     translations: Vec<TranslationTrack>,
 }
 
@@ -45,7 +45,7 @@ impl Clip {
         name: String,
         rest: Arc<Skeleton>,
         frames_per_second: f64,
-        mut rotations: Vec<Quat>,
+        mut rotations: Vec<Rotation>,
         mut translations: Vec<TranslationTrack>,
     ) -> Result<Self> {
         let fail = |message: String| Err(Error::invalid("clip", format!("`{name}`: {message}")));
@@ -67,7 +67,7 @@ impl Clip {
                 return fail(format!("frame {frame}, joint `{joint}`: rotation {rotation} is none"));
             }
             let rotation = unit(rotation);
-            let before = if i < joints { Quat::IDENTITY } else { rotations[i - joints] };
+            let before = if i < joints { Rotation::IDENTITY } else { rotations[i - joints] };
             rotations[i] = if rotation.dot(before) < 0.0 { -rotation } else { rotation };
         }
         translations.sort_by_key(|track| track.joint);
@@ -146,7 +146,7 @@ impl Clip {
     }
 
     /// Rotations of a frame, one per joint, `parent_from_joint`; empty beyond the last frame.
-    pub fn rotations(&self, frame: usize) -> &[Quat] {
+    pub fn rotations(&self, frame: usize) -> &[Rotation] {
         let joints = self.rest.len();
         self.rotations.get(frame * joints..(frame + 1) * joints).unwrap_or(&[])
     }
@@ -186,16 +186,16 @@ mod tests {
 
     fn rest() -> Arc<Skeleton> {
         let names = ["hips", "leg"].map(String::from).to_vec();
-        let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y };
+        let step = RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::NEG_Y };
         Arc::new(Skeleton::new(names, vec![None, Some(0)], vec![step; 2], vec![None; 2]).unwrap())
     }
 
     #[test]
     fn a_pose_takes_rotations_of_its_frame_and_translations_where_there_are_tracks() {
-        let turn = Quat::from_rotation_x(1.0);
+        let turn = Rotation::from_rotation_x(1.0);
         let track = TranslationTrack { joint: 0, values: vec![Vec3::ZERO, Vec3::X] };
         let clip =
-            Clip::new("walk".into(), rest(), 30.0, vec![Quat::IDENTITY, turn, turn, -turn], vec![track])
+            Clip::new("walk".into(), rest(), 30.0, vec![Rotation::IDENTITY, turn, turn, -turn], vec![track])
                 .unwrap();
         assert_eq!((clip.frame_count(), clip.duration()), (2, 1.0 / 30.0));
         let pose = clip.pose(1);
@@ -206,10 +206,10 @@ mod tests {
 
     #[test]
     fn poses_become_rotations_and_the_tracks_that_move() {
-        let turn = Quat::from_rotation_x(1.0);
+        let turn = Rotation::from_rotation_x(1.0);
         let frame = |at: Vec3| {
             let hips = RigidTransform { rotation: turn, translation: at };
-            [hips, RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::NEG_Y }]
+            [hips, RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::NEG_Y }]
         };
         let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();
         let clip = Clip::of_poses("step".into(), rest(), 30.0, &poses).unwrap();
@@ -220,9 +220,9 @@ mod tests {
 
     #[test]
     fn names_what_is_wrong() {
-        let q = Quat::IDENTITY;
+        let q = Rotation::IDENTITY;
         let track = |joint, n| TranslationTrack { joint, values: vec![Vec3::ZERO; n] };
-        let nan = Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0);
+        let nan = Rotation::from_xyzw(f32::NAN, 0.0, 0.0, 1.0);
         let cases = [
             ("frames a second, got 0", 0.0, vec![q; 2], vec![]),
             ("got 0 of 2 joints", 30.0, vec![], vec![]),

@@ -102,17 +102,18 @@ pub(super) fn mix(a: RigidTransform, b: RigidTransform, share: f32) -> RigidTran
 mod tests {
     use std::sync::Arc;
 
-    use glam::{Quat, Vec3};
+    use glam::Vec3;
 
     use super::*;
     use crate::clip::TranslationTrack;
+    use crate::math::Rotation;
     use crate::skeleton::Skeleton;
 
     /// One joint that turns from 0 to 1 radian about X and moves a metre ahead and up, in two frames at 10 a second.
     fn clip() -> Clip {
         let rest = Skeleton::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
             .unwrap();
-        let turn = |angle| Quat::from_rotation_x(angle);
+        let turn = |angle| Rotation::from_rotation_x(angle);
         let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];
         let tracks = vec![TranslationTrack { joint: 0, values }];
         Clip::new("c".into(), Arc::new(rest), 10.0, vec![turn(0.0), turn(0.5), turn(1.0)], tracks).unwrap()
@@ -122,7 +123,7 @@ mod tests {
     fn between_frames_it_turns_evenly() {
         let clip = clip();
         let local = Sampler::new(&clip, Wrap::Once).sample(0.025).locals[0];
-        assert!(local.rotation.angle_between(Quat::from_rotation_x(0.125)) < 1e-3);
+        assert!(local.rotation.angle_between(Rotation::from_rotation_x(0.125)) < 1e-3);
         assert!(local.translation.distance(Vec3::new(0.0, 0.125, 0.125)) < 1e-6);
     }
 

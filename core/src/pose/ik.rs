@@ -4,9 +4,9 @@
 //! the limb bends swings with it and is otherwise kept. A limb that is straight, or bent the wrong way, bends the way
 //! its middle joint does.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Pose, RigJoint, Skeleton};
 use crate::{Error, Result};
 
@@ -106,7 +106,7 @@ impl Limb {
 
     /// Where the middle joint shall stand off the line from end to end: where it does, and a little towards where it
     /// bends, which decides when it is on the line or on its wrong side.
-    fn pole(&self, upper: Quat, line: Vec3, first: Vec3) -> Vec3 {
+    fn pole(&self, upper: Rotation, line: Vec3, first: Vec3) -> Vec3 {
         let across = |v: Vec3| v - line * v.dot(line);
         // By the hinge and not by where the front is: a folded leg's line runs along its front, or past it.
         let hinge = match self.bend {
@@ -136,10 +136,10 @@ fn soften(distance: f32, length: f32, softness: f32) -> f32 {
 }
 
 /// The shortest turn from one direction to another; none when one of them has no length.
-fn arc(from: Vec3, to: Vec3) -> Quat {
+fn arc(from: Vec3, to: Vec3) -> Rotation {
     match (from.try_normalize(), to.try_normalize()) {
-        (Some(from), Some(to)) => Quat::from_rotation_arc(from, to),
-        _ => Quat::IDENTITY,
+        (Some(from), Some(to)) => Rotation::from_rotation_arc(from, to),
+        _ => Rotation::IDENTITY,
     }
 }
 
@@ -156,12 +156,13 @@ mod tests {
 
     /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
     fn leg() -> (Skeleton, Limb) {
-        let down = Quat::from_rotation_x(std::f32::consts::PI) * Quat::from_rotation_y(std::f32::consts::PI);
+        let down =
+            Rotation::from_rotation_x(std::f32::consts::PI) * Rotation::from_rotation_y(std::f32::consts::PI);
         let local = |rotation, translation| RigidTransform { rotation, translation };
         let locals = vec![
             local(down, Vec3::ZERO),
-            local(Quat::IDENTITY, Vec3::Y * 0.5),
-            local(Quat::IDENTITY, Vec3::Y * 0.4),
+            local(Rotation::IDENTITY, Vec3::Y * 0.5),
+            local(Rotation::IDENTITY, Vec3::Y * 0.4),
         ];
         let parents = vec![None, Some(0), Some(1)];
         let names = LEG.map(|joint| joint.name().to_owned()).to_vec();
@@ -173,7 +174,7 @@ mod tests {
     fn reached(target: Vec3, softness: f32) -> [RigidTransform; 3] {
         let (rest, limb) = leg();
         let mut pose = rest.rest_pose().clone();
-        let target = RigidTransform { rotation: Quat::from_rotation_y(0.3), translation: target };
+        let target = RigidTransform { rotation: Rotation::from_rotation_y(0.3), translation: target };
         limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
         limb.model_from_joints(&pose, RigidTransform::IDENTITY)
     }
@@ -184,7 +185,7 @@ mod tests {
         let [_, knee, ankle] = reached(Vec3::new(0.0, -0.7, 0.0), 0.0);
         assert!(ankle.translation.distance(Vec3::new(0.0, -0.7, 0.0)) < 1e-5);
         assert!(knee.translation.z > 0.2 && knee.translation.x.abs() < 1e-4, "{knee:?}");
-        assert!(ankle.rotation.angle_between(Quat::from_rotation_y(0.3)) < 1e-3);
+        assert!(ankle.rotation.angle_between(Rotation::from_rotation_y(0.3)) < 1e-3);
     }
 
     #[test]
@@ -216,11 +217,11 @@ mod tests {
         ) {
             let (rest, limb) = leg();
             let mut pose = rest.rest_pose().clone();
-            pose.locals[0].rotation *= Quat::from_rotation_z(turn);
-            pose.locals[1].rotation *= Quat::from_rotation_x(bend);
-            let parent = RigidTransform { rotation: Quat::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
+            pose.locals[0].rotation *= Rotation::from_rotation_z(turn);
+            pose.locals[1].rotation *= Rotation::from_rotation_x(bend);
+            let parent = RigidTransform { rotation: Rotation::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
             let translation = parent.translation + Vec3::new(x, y, z);
-            let target = RigidTransform { rotation: Quat::from_rotation_x(turn), translation };
+            let target = RigidTransform { rotation: Rotation::from_rotation_x(turn), translation };
             limb.reach(&mut pose, parent, &Reach { target, softness: 0.0 });
             let [upper, _, end] = limb.model_from_joints(&pose, parent);
             let asked = Vec3::new(x, y, z).length();

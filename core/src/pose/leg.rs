@@ -1,9 +1,9 @@
 //! A leg of our rig and the points on its sole.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::ik::{Bend, Limb};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{SidedJoint, Skeleton};
 use crate::{Result, Side};
 
@@ -32,7 +32,7 @@ pub(crate) struct Leg {
     /// From heel to ball along the floor at rest.
     pub(crate) sole: Vec3,
     /// The foot's rotation at rest, in model space.
-    pub(crate) flat: Quat,
+    pub(crate) flat: Rotation,
     /// From the ball joint straight down to the sole at rest, in the foot's and in the ball joint's space: the skin there
     /// follows both.
     pub(crate) under_ball: [Vec3; 2],
@@ -49,7 +49,7 @@ pub(crate) struct Sole {
     /// The ball joint, over the ball.
     pub(crate) joint: Vec3,
     /// How the foot is turned from how it rests, flat and ahead.
-    pub(crate) turn: Quat,
+    pub(crate) turn: Rotation,
 }
 
 impl Sole {

@@ -14,10 +14,11 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::SwingTwist;
 use crate::Side;
+use crate::math::Rotation;
 use crate::skeleton::{Pose, RigJoint, SidedJoint, Skeleton};
 
 /// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
@@ -133,8 +134,8 @@ impl JointLimit {
     }
 
     /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
-    fn clamped(&self, from_rest: Quat, before: &mut TwistBefore) -> Option<(Quat, f32)> {
-        let centre = Quat::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
+    fn clamped(&self, from_rest: Rotation, before: &mut TwistBefore) -> Option<(Rotation, f32)> {
+        let centre = Rotation::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
         let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), before);
         (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
     }

@@ -15,7 +15,7 @@ const NAMES: [&str; 8] = [
 ];
 
 fn rest() -> Skeleton {
-    let turned = RigidTransform { rotation: Quat::from_rotation_x(0.4), translation: Vec3::Y };
+    let turned = RigidTransform { rotation: Rotation::from_rotation_x(0.4), translation: Vec3::Y };
     let names = NAMES.map(String::from).to_vec();
     let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
     Skeleton::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
@@ -26,7 +26,7 @@ fn beyond(joint: &str, x: f32, y: f32, z: f32) -> f32 {
     let rest = rest();
     let mut pose = rest.rest_pose().clone();
     let turn = Vec3::new(x, y, z).map(f32::to_radians);
-    pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_scaled_axis(turn);
+    pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_scaled_axis(turn);
     JointLimits::of_rig(&rest).excess(&rest, &pose).into_iter().sum::<f32>().to_degrees()
 }
 
@@ -67,7 +67,7 @@ fn kept(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
     let joint = rest.find("lowerarm_l").unwrap();
     let frame = |twist: f32| {
         let mut pose = rest.rest_pose().clone();
-        pose.locals[joint].rotation *= Quat::from_rotation_y(twist.to_radians());
+        pose.locals[joint].rotation *= Rotation::from_rotation_y(twist.to_radians());
         limits.clamp_after(&rest, &mut pose, &mut before);
         assert!(limits.excess(&rest, &pose).iter().all(|e| *e == 0.0));
         let kept = rest.rest_pose().locals[joint].rotation.conjugate() * pose.locals[joint].rotation;
@@ -103,7 +103,7 @@ proptest! {
         let limits = JointLimits::of_rig(&rest);
         let mut pose = rest.rest_pose().clone();
         for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(turns) {
-            let turn = Quat::from_xyzw(x, y, z, w);
+            let turn = Rotation::from_xyzw(x, y, z, w);
             prop_assume!(turn.length_squared() > 1e-3);
             local.rotation *= turn.normalize();
         }

@@ -4,7 +4,9 @@
 //! +Y followed by a swing about an axis in the XZ plane (Dobrowolski, "Swing-twist decomposition in Clifford
 //! algebra", 2015).
 
-use glam::{Quat, Vec2};
+use glam::Vec2;
+
+use crate::math::Rotation;
 
 /// `rotation = swing · twist`: where the bone points, and how far it is turned about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +19,7 @@ pub struct SwingTwist {
 
 impl SwingTwist {
     /// Splits a unit quaternion. When the bone is turned by half a turn its twist is taken for none.
-    pub fn of(rotation: Quat) -> Self {
+    pub fn of(rotation: Rotation) -> Self {
         let q = if rotation.w < 0.0 { -rotation } else { rotation };
         let along = libm::sqrtf(q.y * q.y + q.w * q.w);
         if along < 1e-7 {
@@ -33,9 +35,9 @@ impl SwingTwist {
     }
 
     /// The rotation.
-    pub fn rotation(self) -> Quat {
-        Quat::from_scaled_axis(glam::Vec3::new(self.swing.x, 0.0, self.swing.y))
-            * Quat::from_rotation_y(self.twist)
+    pub fn rotation(self) -> Rotation {
+        Rotation::from_scaled_axis(glam::Vec3::new(self.swing.x, 0.0, self.swing.y))
+            * Rotation::from_rotation_y(self.twist)
     }
 }
 
@@ -48,7 +50,7 @@ mod tests {
     proptest! {
         #[test]
         fn parts_make_the_whole(x in -1.0f32..1.0, y in -1.0f32..1.0, z in -1.0f32..1.0, w in -1.0f32..1.0) {
-            let q = Quat::from_xyzw(x, y, z, w);
+            let q = Rotation::from_xyzw(x, y, z, w);
             prop_assume!(q.length_squared() > 1e-3);
             let q = q.normalize();
             let back = SwingTwist::of(q).rotation();
@@ -67,7 +69,7 @@ mod tests {
 
     #[test]
     fn half_turns_are_finite() {
-        for q in [Quat::from_xyzw(1.0, 0.0, 0.0, 0.0), Quat::from_xyzw(0.0, 1.0, 0.0, 0.0)] {
+        for q in [Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0), Rotation::from_xyzw(0.0, 1.0, 0.0, 0.0)] {
             let parts = SwingTwist::of(q);
             assert!(parts.swing.is_finite() && parts.twist.is_finite());
             assert!(parts.rotation().dot(q).abs() > 1.0 - 1e-5);

@@ -33,13 +33,14 @@ mod tests {
     use std::f32::consts::FRAC_PI_2;
 
     use super::*;
+    use crate::math::Rotation;
     use crate::space::Space;
-    use glam::{Quat, Vec3};
+    use glam::Vec3;
 
     #[test]
     fn a_chain_ends_at_the_same_place_in_every_space() {
         let step = |angle| RigidTransform {
-            rotation: Quat::from_rotation_x(angle),
+            rotation: Rotation::from_rotation_x(angle),
             translation: Vec3::new(1.0, 2.0, 3.0),
         };
         let (root, child) = (step(0.3), step(-1.1));
@@ -57,14 +58,14 @@ mod tests {
 
     #[test]
     fn an_elbow_bent_by_a_right_angle() {
-        let step = RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::X };
-        let bent = RigidTransform { rotation: Quat::from_rotation_z(FRAC_PI_2), ..step };
+        let step = RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::X };
+        let bent = RigidTransform { rotation: Rotation::from_rotation_z(FRAC_PI_2), ..step };
         let pose = Pose { locals: vec![step, bent, step] };
         let joints = pose.model_from_joints(&[None, Some(0), Some(1)]);
         assert!(joints[2].translation.distance(Vec3::new(2.0, 1.0, 0.0)) < 1e-6);
         let matrix = step.to_affine() * bent.to_affine() * step.to_affine();
         assert!((matrix.translation - joints[2].to_affine().translation).length() < 1e-6);
         let back = joints[2].inverse().then(joints[2]);
-        assert!(back.translation.length() < 1e-6 && back.rotation.angle_between(Quat::IDENTITY) < 1e-3);
+        assert!(back.translation.length() < 1e-6 && back.rotation.angle_between(Rotation::IDENTITY) < 1e-3);
     }
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Vec3};
 
 use super::{JointTree, Pose, model_from_joints};
-use crate::math::{RigidTransform, unit};
+use crate::math::{RigidTransform, Rotation, unit};
 use crate::{Error, Result};
 
 /// A joint hierarchy in the pose it rests in: of a body, of a character file, or of a motion file.
@@ -77,7 +77,7 @@ impl Skeleton {
             .iter()
             .map(|model_from_joint| {
                 let (_, rotation, translation) = model_from_joint.to_scale_rotation_translation();
-                RigidTransform { rotation, translation }
+                RigidTransform { rotation: rotation.into(), translation }
             })
             .collect();
         let local = |(&joint, parent): (&RigidTransform, &Option<u32>)| match parent
@@ -136,7 +136,7 @@ impl Skeleton {
     }
 
     /// The rotations at rest, `parent_from_joint`.
-    pub fn rest_rotations(&self) -> impl Iterator<Item = Quat> + '_ {
+    pub fn rest_rotations(&self) -> impl Iterator<Item = Rotation> + '_ {
         self.rest_pose.locals.iter().map(|l| l.rotation)
     }
 
@@ -207,7 +207,7 @@ mod tests {
             ("`hips` is empty or taken", |j| j.0[1] = "hips".into()),
             ("`leg`: parent Some(1)", |j| j.1[1] = Some(1)),
             ("`leg`: rest pose is not finite", |j| j.2[1].translation.y = f32::NAN),
-            ("`hips`: rest rotation is zero", |j| j.2[0].rotation = Quat::from_xyzw(0., 0., 0., 0.)),
+            ("`hips`: rest rotation is zero", |j| j.2[0].rotation = Rotation::from_xyzw(0., 0., 0., 0.)),
         ];
         for (expected, spoil) in cases {
             let mut parts = joints();
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_bind_pose_comes_back() {
         let bind = Affine3A::from_rotation_translation(
-            Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.0),
+            Rotation::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.0).into(),
             Vec3::new(0.1, 1.0, -0.3),
         );
         let (names, parents, ..) = joints();

@@ -258,7 +258,7 @@ impl Motion {
 /// Checked and normalised.
 fn motions(what: &'static str, locals: &[RigidTransform]) -> Result<Vec<Motion>> {
     let motion = |(j, local): (usize, &RigidTransform)| {
-        let (rotation, translation) = (local.rotation.as_dquat(), local.translation.as_dvec3());
+        let (rotation, translation) = (DQuat::from(local.rotation), local.translation.as_dvec3());
         // False for what is not a number, too.
         let unit = (rotation.length() - 1.0).abs() <= 1e-3;
         if unit && translation.is_finite() {

@@ -1,10 +1,10 @@
 //! Kernels against double precision, one vertex at a time.
 
-use glam::{DMat4, DQuat, DVec3, Quat, Vec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::random::Random;
 use crate::skeleton::Influences;
 
@@ -23,7 +23,7 @@ fn vector(random: &mut Random) -> DVec3 {
 
 fn local(random: &mut Random) -> RigidTransform {
     let turn = DQuat::from_vec4(vector(random).extend(random.normal())).normalize();
-    RigidTransform { rotation: turn.as_quat(), translation: (vector(random) * 0.5).as_vec3() }
+    RigidTransform { rotation: turn.into(), translation: (vector(random) * 0.5).as_vec3() }
 }
 
 impl Case {
@@ -70,7 +70,8 @@ impl Case {
 
     fn motion(&self, j: usize) -> (DQuat, DVec3) {
         let (bind, posed) = (self.bind[j], self.posed[j]);
-        let turn = posed.rotation.as_dquat().normalize() * bind.rotation.as_dquat().normalize().conjugate();
+        let turn =
+            DQuat::from(posed.rotation).normalize() * DQuat::from(bind.rotation).normalize().conjugate();
         (turn, posed.translation.as_dvec3() - turn * bind.translation.as_dvec3())
     }
 
@@ -170,8 +171,8 @@ fn what_follows_one_joint_moves_rigidly() {
 
 /// A ring of vertices half way between two joints, one of them twisted.
 fn twisted_ring(degrees: f32) -> Case {
-    let around = |i: usize| Quat::from_rotation_y(i as f32) * Vec3::X;
-    let joint = |turn| RigidTransform { rotation: Quat::from_rotation_y(turn), translation: Vec3::ZERO };
+    let around = |i: usize| Rotation::from_rotation_y(i as f32) * Vec3::X;
+    let joint = |turn| RigidTransform { rotation: Rotation::from_rotation_y(turn), translation: Vec3::ZERO };
     Case {
         positions: (0..8).map(|i| around(i) * 0.1).collect(),
         normals: (0..8).map(around).collect(),
@@ -201,7 +202,7 @@ fn a_half_turn_keeps_its_girth_by_dual_quaternions_alone() {
 #[test]
 fn a_collapsed_normal_is_zero_and_not_nan() {
     let mut ring = twisted_ring(180.0);
-    ring.posed[1].rotation = Quat::from_xyzw(0.0, 1.0, 0.0, 0.0);
+    ring.posed[1].rotation = Rotation::from_xyzw(0.0, 1.0, 0.0, 0.0);
     assert_eq!(ring.skin(SkinMethod::Linear, &ring.posed).1, [[0.0; 3]; 8]);
 }
 
@@ -316,7 +317,9 @@ fn a_surface_that_contradicts_itself_is_refused() {
         ("vertex 4: expected weights from 0", |c| c.influences.weights[16] = f32::NAN),
         ("vertex 0: expected weights from 0", |c| c.influences.weights[3] = -0.5),
         ("vertex 1: expected weights from 0", |c| c.influences.weights[4..8].fill(0.0)),
-        ("bind pose: joint 2: expected a unit", |c| c.bind[2].rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+        ("bind pose: joint 2: expected a unit", |c| {
+            c.bind[2].rotation = Rotation::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        }),
         ("vertex 0: expected joints below 0", |c| c.bind.clear()),
     ];
     for (expected, spoil) in cases {
@@ -337,7 +340,7 @@ fn a_pose_or_offsets_that_do_not_fit_are_refused_and_nothing_is_written() {
     let mut nan = case.posed.clone();
     nan[1].translation.x = f32::NAN;
     let mut long = case.posed.clone();
-    long[2].rotation *= 2.0;
+    long[2].rotation.w *= 2.0;
     let five = [Vec3::ZERO; 5];
     type Wrong<'a> = (&'a str, &'a [RigidTransform], Option<&'a [Vec3]>);
     let cases: [Wrong<'_>; 5] = [

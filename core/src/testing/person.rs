@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use crate::Side;
 use crate::clip::{Clip, TranslationTrack};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{BonePositions, JointTree, RigJoint, SidedJoint, Skeleton, model_from_joints};
 
 /// Name, parent and place of the joints in the middle.
@@ -109,7 +109,7 @@ pub(crate) fn posed(rest: &Skeleton, turns: &[(&str, [f32; 3])]) -> Vec<RigidTra
     let mut locals = rest.rest_pose().locals.clone();
     for (name, turn) in turns {
         let turn = Vec3::from_array(*turn).map(f32::to_radians);
-        locals[rest.find(name).unwrap()].rotation *= Quat::from_scaled_axis(turn);
+        locals[rest.find(name).unwrap()].rotation *= Rotation::from_scaled_axis(turn);
     }
     locals
 }
@@ -170,9 +170,9 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let parents: Vec<Option<u32>> = kept.iter().map(|&j| ours.parents()[j].and_then(place)).collect();
     let axes = |j: usize| {
         let turn = Vec3::new(1.3 * j as f32, 0.7 - j as f32, 0.4 * j as f32);
-        if style.frames { Quat::from_scaled_axis(turn) } else { Quat::IDENTITY }
+        if style.frames { Rotation::from_scaled_axis(turn) } else { Rotation::IDENTITY }
     };
-    let locals_of = |pose: &[RigidTransform], facing: Quat| -> Vec<RigidTransform> {
+    let locals_of = |pose: &[RigidTransform], facing: Rotation| -> Vec<RigidTransform> {
         let mut model = Vec::new();
         model_from_joints(ours.parents(), pose, &mut model);
         let model: Vec<RigidTransform> = kept
@@ -188,13 +188,13 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let names = kept.iter().filter_map(|&j| (style.rename)(&ours.names()[j])).collect();
     let ends =
         kept.iter().map(|&j| ours.ends()[j].map(|end| axes(j).conjugate() * end * style.scale)).collect();
-    let facing = Quat::from_rotation_y(style.facing);
+    let facing = Rotation::from_rotation_y(style.facing);
     let rest = Skeleton::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();
     let pelvis = place(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
     let mut values = Vec::new();
     for frame in 0..clip.frame_count() {
-        let locals = locals_of(&clip.pose(frame).locals, Quat::IDENTITY);
+        let locals = locals_of(&clip.pose(frame).locals, Rotation::IDENTITY);
         values.push(locals[pelvis as usize].translation);
         rotations.extend(locals.iter().map(|local| local.rotation));
     }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Vec3};
 
 use crate::clip::{Clip, TranslationTrack};
+use crate::math::Rotation;
 use crate::scene::{AlphaMode, MorphTarget, MorphTrack, SkinTone};
 use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
 
@@ -21,7 +22,7 @@ pub(crate) fn arm(influences: usize) -> Scene {
 pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
     let place = |axis: Vec3, angle: f32, at: [f32; 3]| {
         Affine3A::from_rotation_translation(
-            Quat::from_axis_angle(axis.normalize_or_zero(), angle),
+            Rotation::from_axis_angle(axis.normalize_or_zero(), angle).into(),
             Vec3::from(at),
         )
     };
@@ -60,7 +61,7 @@ pub(crate) fn bent(scene: &Scene) -> Clip {
     let rest = Arc::new(scene.skeleton(str::to_owned).unwrap());
     let turn = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
-        Quat::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
+        Rotation::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
     };
     let rotations = (0..3)
         .flat_map(|f| rest.rest_rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())

@@ -4,9 +4,9 @@
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
-    ("space", &[]),
     ("side", &[]),
-    ("math", &["space"]),
+    ("math", &[]),
+    ("space", &["math"]),
     ("mesh", &[]),
     ("measure", &["mesh"]),
     ("skeleton", &["math", "mesh", "space"]),

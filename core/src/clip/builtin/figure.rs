@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::pose::Leg;
 use crate::pose::ik::Reach;
 use crate::skeleton::{Finger, Pose, RigJoint, SidedJoint, Skeleton, model_from_joints};
@@ -193,10 +193,10 @@ impl Figure {
             target.translation += stance.root;
             // Bent on its own hinge, so that it is the knee that says where the knee goes.
             let outwards = -Side::ALL[f].sign() * stance.knees_out.to_radians();
-            pose.locals[leg.limb.upper].rotation *= Quat::from_rotation_y(outwards);
-            pose.locals[leg.limb.lower].rotation *= Quat::from_rotation_x(-0.5);
+            pose.locals[leg.limb.upper].rotation *= Rotation::from_rotation_y(outwards);
+            pose.locals[leg.limb.lower].rotation *= Rotation::from_rotation_x(-0.5);
             leg.limb.reach(&mut pose, leg.above(&model), &Reach { target, softness: 0.0 });
-            let toes = Quat::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
+            let toes = Rotation::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
             pose.locals[leg.ball].rotation *= toes;
         }
         pose
@@ -206,7 +206,7 @@ impl Figure {
         pose.locals[self.root].translation += stance.root;
         let local = &mut pose.locals[self.pelvis];
         let above =
-            self.rest.parents()[self.pelvis].map_or(Quat::IDENTITY, |p| self.model[p as usize].rotation);
+            self.rest.parents()[self.pelvis].map_or(Rotation::IDENTITY, |p| self.model[p as usize].rotation);
         let to_parent = above.conjugate();
         local.translation += to_parent * stance.pelvis;
         local.rotation = to_parent * euler(stance.pelvis_turn) * above * local.rotation;
@@ -219,10 +219,10 @@ impl Figure {
     }
 
     fn set_arm(&self, joints: &ArmJoints, arm: &Arm, side: Side, pose: &mut Pose) {
-        let x = |degrees: f32| Quat::from_rotation_x(degrees.to_radians());
-        let y = |degrees: f32| Quat::from_rotation_y(side.sign() * degrees.to_radians());
-        let z = |degrees: f32| Quat::from_rotation_z(side.sign() * degrees.to_radians());
-        let mut turn = |joint: usize, by: Quat| pose.locals[joint].rotation *= by;
+        let x = |degrees: f32| Rotation::from_rotation_x(degrees.to_radians());
+        let y = |degrees: f32| Rotation::from_rotation_y(side.sign() * degrees.to_radians());
+        let z = |degrees: f32| Rotation::from_rotation_z(side.sign() * degrees.to_radians());
+        let mut turn = |joint: usize, by: Rotation| pose.locals[joint].rotation *= by;
         turn(joints.clavicle, z(arm.shrug));
         turn(joints.upper, y(-arm.forward) * z(-arm.lowered - arm.shrug) * y(-arm.outward));
         turn(joints.lower, x(arm.elbow));
@@ -241,11 +241,11 @@ impl Figure {
         let (ankle, ball) = (self.model[leg.limb.end], self.model[leg.ball]);
         let heel = ankle.translation + ankle.rotation * leg.heel;
         let pivot = if foot.roll > 0.0 { ball.translation } else { heel };
-        let toe_out = Quat::from_rotation_y(Side::ALL[f].sign() * foot.toe_out.to_radians());
-        let turn = toe_out * Quat::from_rotation_x(foot.roll.to_radians());
+        let toe_out = Rotation::from_rotation_y(Side::ALL[f].sign() * foot.toe_out.to_radians());
+        let turn = toe_out * Rotation::from_rotation_x(foot.roll.to_radians());
         // Turned about the middle of the foot, rolled about its pivot.
         let middle = (0.5 * (heel + ball.translation)).with_y(0.0);
-        let rolled = pivot + Quat::from_rotation_x(foot.roll.to_radians()) * (ankle.translation - pivot);
+        let rolled = pivot + Rotation::from_rotation_x(foot.roll.to_radians()) * (ankle.translation - pivot);
         RigidTransform {
             rotation: turn * ankle.rotation,
             translation: middle + toe_out * (rolled - middle) + foot.shift,
@@ -262,7 +262,7 @@ impl Figure {
 }
 
 /// About Y, then about the new X, then about the new Z; degrees.
-fn euler(degrees: Vec3) -> Quat {
+fn euler(degrees: Vec3) -> Rotation {
     let [x, y, z] = degrees.to_array().map(f32::to_radians);
-    Quat::from_euler(glam::EulerRot::YXZ, y, x, z)
+    Rotation::from_euler(glam::EulerRot::YXZ, y, x, z)
 }

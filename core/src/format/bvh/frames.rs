@@ -1,13 +1,13 @@
 //! The second part of a BVH file: frames, one a line.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::hierarchy::{Channel, Hierarchy};
 use super::lexer::{Lexer, shown};
 use crate::clip::MAX_FRAMES;
 use crate::error::Outcome;
 use crate::format::motion::raw::{Recorder, Take, snapped_rate};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 
 /// Reads from after the word MOTION to the end of the file.
 pub(super) fn read(
@@ -81,7 +81,7 @@ fn transform<'a>(
     channels: &[Channel],
     numbers: &mut impl Iterator<Item = &'a f64>,
 ) -> RigidTransform {
-    let (mut translation, mut rotation) = (offset, Quat::IDENTITY);
+    let (mut translation, mut rotation) = (offset, Rotation::IDENTITY);
     for (channel, &number) in channels.iter().zip(numbers) {
         match *channel {
             Channel::Position(axis) => translation[axis] = number as f32,
@@ -89,7 +89,7 @@ fn transform<'a>(
                 let (sin, cos) = libm::sincos(number.to_radians() / 2.0);
                 let mut turn = [0.0, 0.0, 0.0, cos as f32];
                 turn[axis] = sin as f32;
-                rotation *= Quat::from_array(turn);
+                rotation *= Rotation::from_array(turn);
             }
         }
     }

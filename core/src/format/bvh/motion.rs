@@ -23,7 +23,7 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
     let rest: Vec<RigidTransform> = skeleton
         .offsets
         .iter()
-        .map(|&translation| RigidTransform { rotation: glam::Quat::IDENTITY, translation })
+        .map(|&translation| RigidTransform { rotation: crate::math::Rotation::IDENTITY, translation })
         .collect();
     let mut take = frames::read(&mut lexer, &skeleton, &rest, name)?;
     let mut rate_found = Found::File;

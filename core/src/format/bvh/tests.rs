@@ -1,8 +1,9 @@
 use std::path::Path;
 
-use glam::{EulerRot, Quat, Vec3};
+use glam::{EulerRot, Vec3};
 
 use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
+use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
 const SMALL: &str = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 1 0\n\tCHANNELS 6 Xposition Zposition Yposition Zrotation Xrotation Yrotation\n\
@@ -31,9 +32,9 @@ fn reads_joints_and_frames() {
     // Numbers go by the order of channels: x, z, y.
     assert_eq!(pose.locals[0].translation, Vec3::new(1.0, 3.0, 2.0));
     let radians = |degrees: f32| degrees.to_radians();
-    let expected = Quat::from_euler(EulerRot::ZXY, radians(10.0), radians(20.0), radians(30.0));
+    let expected = Rotation::from_euler(EulerRot::ZXY, radians(10.0), radians(20.0), radians(30.0));
     assert!(pose.locals[0].rotation.dot(expected).abs() > 1.0 - 1e-6);
-    assert!(pose.locals[1].rotation.dot(Quat::from_rotation_x(radians(40.0))).abs() > 1.0 - 1e-6);
+    assert!(pose.locals[1].rotation.dot(Rotation::from_rotation_x(radians(40.0))).abs() > 1.0 - 1e-6);
     assert_eq!(clip.translations().len(), 1, "a joint without position channels stays at its offset");
     assert_eq!(motion.report.rate_found, Found::File);
 }

@@ -1,10 +1,11 @@
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::binary::binary;
 use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
+use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
 /// Hips above a leg, in centimetres, +Y up, 30 frames a second: the hips rise by 20 cm in a second; the leg, which
@@ -141,12 +142,12 @@ fn bones_turn_as_their_curves_say() {
     // The scale of what stands above is in the lengths.
     assert!(hips.translation.distance(Vec3::Y * 1.2) < 1e-5, "{hips:?}");
     assert!(leg.translation.distance(Vec3::new(0.1, -0.1, 0.1)) < 1e-5, "{leg:?}");
-    let turned = Quat::from_rotation_z(FRAC_PI_2) * Quat::from_rotation_x(FRAC_PI_2);
+    let turned = Rotation::from_rotation_z(FRAC_PI_2) * Rotation::from_rotation_x(FRAC_PI_2);
     assert!(leg.rotation.dot(turned).abs() > 1.0 - 1e-5, "{leg:?}");
-    let half = Quat::from_rotation_z(FRAC_PI_2) * Quat::from_rotation_x(FRAC_PI_2 / 2.0);
+    let half = Rotation::from_rotation_z(FRAC_PI_2) * Rotation::from_rotation_x(FRAC_PI_2 / 2.0);
     assert!(clip.pose(15).locals[1].rotation.dot(half).abs() > 1.0 - 1e-5);
     assert!(
-        clip.skeleton().rest_pose().locals[1].rotation.dot(Quat::from_rotation_z(FRAC_PI_2)).abs()
+        clip.skeleton().rest_pose().locals[1].rotation.dot(Rotation::from_rotation_z(FRAC_PI_2)).abs()
             > 1.0 - 1e-5
     );
 }

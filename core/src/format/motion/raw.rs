@@ -1,11 +1,11 @@
 //! What the readers of the formats hand on: a motion in the units and axes of its file.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::Found;
 use crate::clip::TranslationTrack;
 use crate::error::Outcome;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::space::{Axis, Unit};
 
 /// A skeleton and its motions as a file has them.
@@ -35,7 +35,7 @@ pub(crate) struct Take {
     pub(crate) name: String,
     pub(crate) frames_per_second: f64,
     /// Frames × joints.
-    pub(crate) rotations: Vec<Quat>,
+    pub(crate) rotations: Vec<Rotation>,
     pub(crate) tracks: Vec<TranslationTrack>,
     /// Weights of morph targets, for characters that have such targets.
     pub(crate) weights: Vec<WeightTrack>,
@@ -127,7 +127,7 @@ impl Rigid {
                 }
                 None => (joint.rotation, joint.position),
             };
-            RigidTransform { rotation: rotation.as_quat(), translation: translation.as_vec3() }
+            RigidTransform { rotation: rotation.into(), translation: translation.as_vec3() }
         };
         world.iter().zip(parents).map(local).collect()
     }
@@ -135,7 +135,7 @@ impl Rigid {
 
 /// Collects frames given as local transforms into a take.
 pub(crate) struct Recorder {
-    rotations: Vec<Quat>,
+    rotations: Vec<Rotation>,
     columns: Vec<Vec<Vec3>>,
 }
 
@@ -199,8 +199,8 @@ mod tests {
         let child = parent * DAffine3::from_translation(DVec3::Y);
         let locals = Rigid::locals(&[Rigid::of(&parent), Rigid::of(&child)], &[None, Some(0)]);
         assert!(locals[1].translation.distance(Vec3::Y * 2.0) < 1e-6);
-        assert!(locals[1].rotation.angle_between(Quat::IDENTITY) < 1e-3);
-        assert!(locals[0].rotation.dot(turn.as_quat()) > 0.999_999);
+        assert!(locals[1].rotation.angle_between(Rotation::IDENTITY) < 1e-3);
+        assert!(locals[0].rotation.dot(turn.into()) > 0.999_999);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::array::Archive;
 use super::smpl;
@@ -10,6 +10,7 @@ use crate::clip::MAX_FRAMES;
 use crate::error::Outcome;
 use crate::format::motion::raw::{RawMotion, Recorder};
 use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
+use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
@@ -84,13 +85,13 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
 }
 
 /// A turn about an axis by its length; `NaN` where it is not finite.
-fn rotation(turn: DVec3) -> Quat {
+fn rotation(turn: DVec3) -> Rotation {
     let angle = turn.length();
     let (sin, cos) = libm::sincos(angle / 2.0);
     // sin(a/2) / a, whose limit at none is one half.
     let scale = if angle < 1e-9 { 0.5 } else { sin / angle };
     let axis: Vec3 = (turn * scale).as_vec3();
-    Quat::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
+    Rotation::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
 }
 
 /// Frames × width numbers, three a joint.

@@ -4,10 +4,10 @@
 //! body anyway. These are round numbers for somebody 1.70 m tall in a T-pose, from everyday proportions: legs about
 //! half of the height, arms' span about the height. Retargeting scales by legs, so that only ratios matter.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use crate::Side;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 
 /// A rest pose: +Y up, facing +Z, metres; joints rest unturned.
 pub(super) struct Skeleton {
@@ -139,7 +139,7 @@ impl Building {
     fn skeleton(self, model: &'static str) -> Skeleton {
         let step = |(place, parent): (&Vec3, &Option<u32>)| {
             let from = parent.map_or(Vec3::ZERO, |p| self.places[p as usize]);
-            RigidTransform { rotation: Quat::IDENTITY, translation: *place - from }
+            RigidTransform { rotation: Rotation::IDENTITY, translation: *place - from }
         };
         let rest = self.places.iter().zip(&self.parents).map(step).collect();
         Skeleton { model, names: self.names, parents: self.parents, rest, ends: self.ends }

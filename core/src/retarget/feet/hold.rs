@@ -1,9 +1,9 @@
 //! Where a foot has to go so that what touches the floor stays where it is.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::contacts::{Contact, FootPoint, runs};
-use crate::math::smoothstep;
+use crate::math::{Rotation, smoothstep};
 use crate::pose::Sole;
 
 /// A rigid motion of a foot: turned by `turn` (axis times angle) about its ball joint, then moved by `shift`.
@@ -17,8 +17,8 @@ pub(super) struct Correction {
 
 impl Correction {
     /// The rotation of it.
-    pub(super) fn rotation(&self) -> Quat {
-        Quat::from_scaled_axis(self.turn)
+    pub(super) fn rotation(&self) -> Rotation {
+        Rotation::from_scaled_axis(self.turn)
     }
 
     /// Where a point of the foot goes whose ball joint is at `joint`.
@@ -51,7 +51,7 @@ pub(super) fn corrections(
     let turns = bridged(&turns.collect::<Vec<_>>(), blend);
     let shifts = track.iter().zip(&turns).zip(heel.iter().zip(&ball)).map(|((sole, turn), held)| {
         let of_heel =
-            |place: Vec3| place + Quat::from_scaled_axis(*turn) * (sole.joint - sole.heel) - sole.joint;
+            |place: Vec3| place + Rotation::from_scaled_axis(*turn) * (sole.joint - sole.heel) - sole.joint;
         match held {
             // Of a foot that lies flat the skin of the ball is straight under its joint.
             (Some(heel), Some(ball)) => {
@@ -110,8 +110,8 @@ fn overlap(a: &Contact, b: &Contact) -> (usize, usize) {
 
 /// What turns a foot from `turn` to flat on the floor and pointing along `sole`, axis times angle; none when a
 /// direction has no length.
-fn flat_turn(turn: Quat, at_rest: Vec3, sole: Vec3) -> Option<Vec3> {
-    let ahead = Quat::from_rotation_arc(at_rest.try_normalize()?, sole.try_normalize()?);
+fn flat_turn(turn: Rotation, at_rest: Vec3, sole: Vec3) -> Option<Vec3> {
+    let ahead = Rotation::from_rotation_arc(at_rest.try_normalize()?, sole.try_normalize()?);
     let by = ahead * turn.conjugate();
     Some((if by.w < 0.0 { -by } else { by }).to_scaled_axis())
 }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::contacts::{Contact, Contacts, contacts};
 use super::hold::{Correction, bridged, corrections, ramped};
@@ -12,7 +12,7 @@ use super::{FeetOptions, FeetReport, for_each_pose, measure};
 use crate::Result;
 use crate::clip::edit::{closed, cut, repeated};
 use crate::clip::{Clip, TranslationTrack};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::pose::Leg;
 use crate::pose::SwingTwist;
 use crate::pose::ik::Reach;
@@ -227,7 +227,7 @@ impl Planter<'_> {
         model_from_joints(parents, &pose.locals, model);
         let goals: [RigidTransform; 2] =
             std::array::from_fn(|f| self.goal(&self.legs[f], model, &corrections[f]));
-        let above = parents[pelvis].map_or(Quat::IDENTITY, |p| model[p as usize].rotation);
+        let above = parents[pelvis].map_or(Rotation::IDENTITY, |p| model[p as usize].rotation);
         pose.locals[pelvis].translation -= above.conjugate() * (Vec3::Y * (drop + self.floor));
         model_from_joints(parents, &pose.locals, model);
         for ((leg, goal), correction) in self.legs.iter().zip(goals).zip(corrections) {
@@ -278,14 +278,14 @@ impl Planter<'_> {
     }
 
     /// Bends the toes of every frame, within their limits.
-    fn bend_toes(&self, leg: &Leg, bends: &[f32], pose: &mut Pose, rotations: &mut [Quat]) {
+    fn bend_toes(&self, leg: &Leg, bends: &[f32], pose: &mut Pose, rotations: &mut [Rotation]) {
         let at_rest = self.rest.rest_pose().locals[leg.ball].rotation;
         for (bend, frame) in bends.iter().zip(rotations.chunks_exact_mut(self.rest.len())) {
             let limit = self.limits.get(leg.ball).map_or(PI, |limit| limit.swing_x[1]);
             let bent = SwingTwist::of(at_rest.conjugate() * frame[leg.ball]).swing.x;
             let bend = bend.min(limit - bent);
             if bend > 0.0 {
-                pose.locals[leg.ball].rotation = frame[leg.ball] * Quat::from_rotation_x(bend);
+                pose.locals[leg.ball].rotation = frame[leg.ball] * Rotation::from_rotation_x(bend);
                 self.limits.clamp_joint(self.rest, pose, leg.ball);
                 frame[leg.ball] = pose.locals[leg.ball].rotation;
             }

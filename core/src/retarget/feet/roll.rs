@@ -164,7 +164,7 @@ pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<
 
 #[cfg(test)]
 mod tests {
-    use glam::Quat;
+    use crate::math::Rotation;
 
     use super::*;
     use crate::testing::bodies::bodies;
@@ -176,7 +176,7 @@ mod tests {
         (RoundSole::of(&leg, &model), [model[leg.limb.end], model[leg.ball]])
     }
 
-    fn turned(joints: &[RigidTransform; 2], by: Quat, about: Vec3) -> [RigidTransform; 2] {
+    fn turned(joints: &[RigidTransform; 2], by: Rotation, about: Vec3) -> [RigidTransform; 2] {
         joints.map(|joint| RigidTransform {
             rotation: by * joint.rotation,
             translation: about + by * (joint.translation - about),
@@ -187,7 +187,8 @@ mod tests {
     fn a_foot_that_turns_about_what_touches_does_not_slide_and_one_that_is_moved_does() {
         for (body, rest) in bodies() {
             let (sole, flat) = left(&rest);
-            for tilt in [Quat::IDENTITY, Quat::from_rotation_x(-0.2), Quat::from_rotation_z(0.15)] {
+            for tilt in [Rotation::IDENTITY, Rotation::from_rotation_x(-0.2), Rotation::from_rotation_z(0.15)]
+            {
                 let standing = turned(&flat, tilt, flat[0].translation);
                 let by = Vec3::new(0.03, 0.0, -0.01);
                 let moved = standing.map(|j| RigidTransform { translation: j.translation + by, ..j });
@@ -196,7 +197,7 @@ mod tests {
                     assert!(step.distance(by) < 1e-5, "{body} {point:?}: {step}");
                 }
                 let heel = at(standing[0], sole.lowest_of_heel(standing[0]));
-                let pivoted = turned(&standing, Quat::from_rotation_y(0.3), heel);
+                let pivoted = turned(&standing, Rotation::from_rotation_y(0.3), heel);
                 let [heel, ball] = POINTS.map(|point| sole.step(point, &standing, &pivoted).length());
                 assert!(heel < 1e-5 && ball > 0.03, "{body}: {heel} {ball}");
             }
@@ -209,7 +210,8 @@ mod tests {
         let (sole, flat) = left(&rest);
         for (pitch, roll) in [(0.0_f32, 0.0_f32), (-0.3, 0.0), (0.1, 0.2), (-0.1, -0.3)] {
             let foot =
-                turned(&flat, Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll), Vec3::ZERO)[0];
+                turned(&flat, Rotation::from_rotation_x(pitch) * Rotation::from_rotation_z(roll), Vec3::ZERO)
+                    [0];
             let lowest = at(foot, sole.lowest_of_heel(foot));
             let sphere = (0..200).flat_map(|i| (0..200).map(move |j| (i as f32 * 0.0315, j as f32 * 0.0158)));
             let surface = sphere.map(|(u, v)| {

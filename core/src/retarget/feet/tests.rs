@@ -1,7 +1,8 @@
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::*;
 use crate::clip::{TranslationTrack, builtin};
+use crate::math::Rotation;
 use crate::pose::limits::JointLimits;
 use crate::random::Random;
 use crate::testing::bodies::bodies;
@@ -17,7 +18,7 @@ fn spoilt(rest: &std::sync::Arc<crate::skeleton::Skeleton>) -> Clip {
     let mut tracks = walk.translations().to_vec();
     for frame in 0..walk.frame_count() {
         let mut pose = walk.pose(frame);
-        pose.locals[knee].rotation *= Quat::from_rotation_x(noise(0.03));
+        pose.locals[knee].rotation *= Rotation::from_rotation_x(noise(0.03));
         rotations.extend(pose.locals.iter().map(|l| l.rotation));
         for track in &mut tracks {
             let value = &mut track.values[frame];
@@ -75,7 +76,7 @@ fn feet_are_held_and_lifted_out_of_the_floor() {
 fn lifted(rest: &std::sync::Arc<crate::skeleton::Skeleton>) -> Clip {
     let mut pose = rest.rest_pose().clone();
     for (joint, degrees) in [("foot_l", -65.0_f32), ("foot_r", -65.0), ("ball_l", -45.0), ("ball_r", -45.0)] {
-        pose.locals[rest.find(joint).unwrap()].rotation *= Quat::from_rotation_x(degrees.to_radians());
+        pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_rotation_x(degrees.to_radians());
     }
     let [ball, pelvis] = ["ball_l", "pelvis"].map(|name| rest.find(name).unwrap());
     let fall = pose.model_from_joints(rest.parents())[ball].translation.y

@@ -1,10 +1,10 @@
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::*;
 use crate::clip::builtin;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::retarget::feet::measure;
 use crate::testing::bodies::bodies;
 
@@ -33,7 +33,7 @@ fn limp() -> (Clip, Arc<Skeleton>) {
     for frame in (0..frames).chain(1..frames) {
         let share = rotations.len() as f32 / (2 * frames * rest.len()) as f32;
         let mut pose = walk.pose(frame);
-        pose.locals[knee].rotation *= Quat::from_rotation_x(-0.25 * share);
+        pose.locals[knee].rotation *= Rotation::from_rotation_x(-0.25 * share);
         rotations.extend(pose.locals.iter().map(|local| local.rotation));
     }
     let clip = Clip::new("limp".into(), rest, 30.0, rotations, tracks).unwrap();
@@ -56,7 +56,7 @@ fn a_looped_clip_meets_and_its_feet_stand() {
         let [first, last] = [0, clip.frame_count() - 1].map(|frame| clip.pose(frame));
         // Exact near none, where an arc cosine is not.
         let turn = |(a, b): (&RigidTransform, &RigidTransform)| {
-            2.0 * libm::asinf((a.rotation.conjugate() * b.rotation).xyz().length().min(1.0))
+            2.0 * libm::asinf((a.rotation.conjugate() * b.rotation).vector().length().min(1.0))
         };
         let turns = first.locals.iter().zip(&last.locals).map(turn);
         turns.fold(0.0, f32::max)
@@ -110,7 +110,7 @@ fn without_limits_an_elbow_goes_where_the_source_does() {
     let rotations = (0..source.frame_count())
         .flat_map(|frame| {
             let mut pose = source.pose(frame);
-            pose.locals[hand].rotation *= Quat::from_rotation_z(2.4);
+            pose.locals[hand].rotation *= Rotation::from_rotation_z(2.4);
             pose.locals.into_iter().map(|local| local.rotation)
         })
         .collect();

@@ -1,21 +1,19 @@
 //! What drives each joint of the target. Spine and neck are shared out along their length.
 
-use glam::Quat;
-
 use super::super::joint_map::{NECK, SPINE};
 use super::bones::LIMBS;
 use super::fingers::relaxed;
 use super::reference::Reference;
 use super::{Driver, FingerMode, TransferOptions};
 use crate::Side;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Finger, RigJoint, SidedJoint};
 
 /// One driver per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<Driver> {
     let target = reference.joints.target;
     let mut drivers: Vec<Driver> = target.rest_rotations().map(Driver::Still).collect();
-    let mut set = |ours: RigJoint, alignment: Quat| {
+    let mut set = |ours: RigJoint, alignment: Rotation| {
         let pair = reference.map.source_of(ours).zip(target.rig_joint(ours));
         if let Some((source, joint)) = pair {
             drivers[joint] = Driver::Joint(source, reference.offset(source, joint, alignment));
@@ -41,7 +39,7 @@ pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<D
     drivers
 }
 
-fn fingers(reference: &Reference, mode: FingerMode, side: Side, hand: Quat, drivers: &mut [Driver]) {
+fn fingers(reference: &Reference, mode: FingerMode, side: Side, hand: Rotation, drivers: &mut [Driver]) {
     if mode == FingerMode::Rest {
         return;
     }

@@ -6,13 +6,13 @@
 //! what remains of it in a frame as far as the limb is bent there. The lower bone then only swings; the roll that it
 //! had goes on to hand or foot.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::bones::Bone;
 use super::twist::wrapped;
 use super::{Joints, Reference};
 use crate::Side;
-use crate::math::{RigidTransform, smoothstep};
+use crate::math::{RigidTransform, Rotation, smoothstep};
 use crate::skeleton::SidedJoint;
 
 /// Bends at which a frame's own plane begins to count and counts fully, radians (15° and 40°).
@@ -32,7 +32,7 @@ pub(super) struct Limb {
     /// The side to which the lower bone folds, in the upper joint's space: ±Z.
     flexion: f32,
     /// `upper_from_lower` at rest.
-    rest: Quat,
+    rest: Rotation,
 }
 
 impl Limb {
@@ -56,7 +56,7 @@ impl Limb {
     }
 
     /// Points both bones where the source's point: `model` are the target's rotations in model space.
-    pub(super) fn aim(&self, source: &[RigidTransform], model: &mut [Quat]) {
+    pub(super) fn aim(&self, source: &[RigidTransform], model: &mut [Rotation]) {
         for (bone, along) in [(&self.upper, self.along), (&self.lower, self.lower_along)] {
             let rotation = &mut model[bone.target];
             *rotation = towards(*rotation, along, bone.of_source(source));
@@ -67,7 +67,7 @@ impl Limb {
     ///
     /// The hinge is the lower joint's X axis. With both in the upper joint's space, this is the turn about Y after which
     /// the lower bone is at a right angle to the hinge, on the side to which it folds.
-    pub(super) fn fold(&self, model: &[Quat]) -> (f32, f32) {
+    pub(super) fn fold(&self, model: &[Rotation]) -> (f32, f32) {
         let lower = model[self.upper.target].conjugate() * (model[self.lower.target] * self.lower_along);
         let hinge = self.rest * Vec3::X;
         let [across, of_hinge] = [lower, hinge].map(|v| Vec2::new(v.x, v.z).length());
@@ -77,13 +77,13 @@ impl Limb {
     }
 
     /// Rolls the upper bone by the clip's `mean` and by what remains in this frame; the lower bone only swings.
-    pub(super) fn fold_about_hinge(&self, mean: f32, model: &mut [Quat]) {
+    pub(super) fn fold_about_hinge(&self, mean: f32, model: &mut [Rotation]) {
         let (fold, bend) = self.fold(model);
         let rest = wrapped(fold - mean);
         let weight = smooth(BENT, bend) * (1.0 - smooth(REVERSED, rest.abs()));
         let direction = model[self.lower.target] * self.lower_along;
         let upper = &mut model[self.upper.target];
-        *upper = (*upper * Quat::from_rotation_y(mean + weight * rest)).normalize();
+        *upper = (*upper * Rotation::from_rotation_y(mean + weight * rest)).normalize();
         let upper = *upper;
         model[self.lower.target] = towards(upper * self.rest, self.lower_along, direction);
     }
@@ -108,9 +108,9 @@ impl MeanFold {
 }
 
 /// Turned by the shortest arc so that `along`, in the joint's space, points where it should in model space.
-fn towards(rotation: Quat, along: Vec3, direction: Vec3) -> Quat {
+fn towards(rotation: Rotation, along: Vec3, direction: Vec3) -> Rotation {
     match direction.try_normalize() {
-        Some(direction) => (Quat::from_rotation_arc(rotation * along, direction) * rotation).normalize(),
+        Some(direction) => (Rotation::from_rotation_arc(rotation * along, direction) * rotation).normalize(),
         None => rotation,
     }
 }

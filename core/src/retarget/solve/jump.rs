@@ -1,5 +1,6 @@
 //! Jumps of a retargeted clip's limbs from one frame to the next that the source does not have.
 
+use glam::DQuat;
 use serde::Serialize;
 
 use super::super::JointMap;
@@ -63,7 +64,7 @@ fn steps(clip: &Clip, frames: usize) -> Vec<Vec<f64>> {
         clip.model_into(frame, &mut pose, &mut after);
         if frame > 0 {
             let turns = before.iter().zip(&after).map(|(a, b)| {
-                let turn = (a.rotation.conjugate() * b.rotation).as_dquat();
+                let turn = DQuat::from(a.rotation.conjugate() * b.rotation);
                 2.0 * libm::atan2(turn.xyz().length(), turn.w.abs()).to_degrees()
             });
             steps.push(turns.collect());
@@ -74,7 +75,7 @@ fn steps(clip: &Clip, frames: usize) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Quat;
+    use crate::math::Rotation;
 
     use super::*;
     use crate::retarget::Overrides;
@@ -90,7 +91,7 @@ mod tests {
         let foot = rest.find("foot_l").unwrap();
         let thrown = |frame: usize, joint: usize| {
             let by = if frame == 6 && joint == foot { 40.0_f32 } else { 0.0 };
-            source.rotations(frame)[joint] * Quat::from_rotation_x(by.to_radians())
+            source.rotations(frame)[joint] * Rotation::from_rotation_x(by.to_radians())
         };
         let rotations = (0..12).flat_map(|f| (0..rest.len()).map(move |j| (f, j)));
         let rotations = rotations.map(|(f, j)| thrown(f, j)).collect();

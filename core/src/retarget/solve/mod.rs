@@ -19,8 +19,6 @@ mod twist;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use glam::Quat;
-
 pub use direction::{BoneError, DirectionError, direction_error};
 use hinge::{Limb, MeanFold};
 pub use jump::{Jump, worst_jump};
@@ -30,7 +28,7 @@ use twist::Twist;
 
 use super::JointMap;
 use crate::clip::{Clip, TranslationTrack};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Pose, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
@@ -145,11 +143,11 @@ struct Joints<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Driver {
     /// `parent_from_joint` stays this.
-    Still(Quat),
+    Still(Rotation),
     /// `model_from_joint` is the source joint's, and this after it.
-    Joint(usize, Quat),
+    Joint(usize, Rotation),
     /// Between those of two source joints: `0` is the first.
-    Between([(usize, Quat); 2], f32),
+    Between([(usize, Rotation); 2], f32),
 }
 
 /// Carries clips of one skeleton over to another. Made once per pair, shared freely.
@@ -271,8 +269,8 @@ impl Retargeter {
     }
 
     /// Rotations in model space of the joints that the source drives; the others' are left over from before.
-    fn model_rotations(&self, source: &[RigidTransform], model: &mut Vec<Quat>) {
-        model.resize(self.drivers.len(), Quat::IDENTITY);
+    fn model_rotations(&self, source: &[RigidTransform], model: &mut Vec<Rotation>) {
+        model.resize(self.drivers.len(), Rotation::IDENTITY);
         for (rotation, driver) in model.iter_mut().zip(&self.drivers) {
             match *driver {
                 Driver::Still(_) => {}
@@ -288,10 +286,10 @@ impl Retargeter {
     }
 
     /// `parent_from_joint` from rotations in model space, which joints that stay still get on the way.
-    fn locals(&self, model: &mut [Quat], locals: &mut Vec<Quat>) {
+    fn locals(&self, model: &mut [Rotation], locals: &mut Vec<Rotation>) {
         locals.clear();
         for (joint, (driver, parent)) in self.drivers.iter().zip(self.target.parents()).enumerate() {
-            let above = parent.and_then(|p| model.get(p as usize)).copied().unwrap_or(Quat::IDENTITY);
+            let above = parent.and_then(|p| model.get(p as usize)).copied().unwrap_or(Rotation::IDENTITY);
             locals.push(match *driver {
                 Driver::Still(local) => {
                     model[joint] = above * local;

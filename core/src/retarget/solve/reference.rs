@@ -9,13 +9,13 @@
 //! shortest arc, so that no roll comes in between; where an elbow or knee is bent at rest its plane says the roll, and
 //! where a hand has fingers the row of their knuckles does.
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Mat3, Vec3};
 
 use super::super::JointMap;
 use super::bones::Bone;
 use super::{FootMode, Joints};
 use crate::Side;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{RigJoint, SidedJoint};
 
 /// Bends and leans below this are taken for the drawing of the skeleton and not for a pose, radians (15°).
@@ -30,8 +30,8 @@ const FLAT: f32 = 0.44;
 pub(super) struct Reference<'a> {
     pub(super) map: &'a JointMap,
     pub(super) joints: &'a Joints<'a>,
-    facing: Quat,
-    trunk: Quat,
+    facing: Rotation,
+    trunk: Rotation,
 }
 
 impl<'a> Reference<'a> {
@@ -56,45 +56,45 @@ impl<'a> Reference<'a> {
         let of_source = |joint: RigJoint| map.source_of(joint);
         let of_target = |joint: RigJoint| joints.target.rig_joint(joint);
         let turn = yaw(&joints.source_rest, &of_source) - yaw(&joints.target_rest, &of_target);
-        let facing = Quat::from_rotation_y(turn);
+        let facing = Rotation::from_rotation_y(turn);
         let up = up(&joints.source_rest, &of_source).zip(up(&joints.target_rest, &of_target));
-        let lean = up.map_or(Quat::IDENTITY, |(source, target)| {
+        let lean = up.map_or(Rotation::IDENTITY, |(source, target)| {
             let target = facing * target;
             if source.angle_between(target) > POSED {
-                Quat::from_rotation_arc(target, source)
+                Rotation::from_rotation_arc(target, source)
             } else {
-                Quat::IDENTITY
+                Rotation::IDENTITY
             }
         });
         Self { map, joints, facing, trunk: lean * facing }
     }
 
     /// `R⁻¹ · A · T` for a source joint that drives a target joint with the alignment `A`.
-    pub(super) fn offset(&self, source: usize, target: usize, alignment: Quat) -> Quat {
+    pub(super) fn offset(&self, source: usize, target: usize, alignment: Rotation) -> Rotation {
         let (r, t) = (self.joints.source_rest[source].rotation, self.joints.target_rest[target].rotation);
         (r.conjugate() * alignment * t).normalize()
     }
 
     /// `A` of pelvis, spine, neck, head and clavicles.
-    pub(super) fn trunk(&self) -> Quat {
+    pub(super) fn trunk(&self) -> Rotation {
         self.trunk
     }
 
     /// `A` of a side's arm: upper arm, forearm, hand.
-    pub(super) fn arm(&self, side: Side) -> [Quat; 3] {
+    pub(super) fn arm(&self, side: Side) -> [Rotation; 3] {
         let [upper, lower] = self.hinge([SidedJoint::Upperarm, SidedJoint::Lowerarm], side, Vec3::Z);
         let hand = self.bone(SidedJoint::Hand.on(side), lower);
         [upper, lower, self.knuckles(side).unwrap_or(hand)]
     }
 
     /// `A` of a side's leg: thigh, calf, foot.
-    pub(super) fn leg(&self, side: Side, mode: FootMode) -> [Quat; 3] {
+    pub(super) fn leg(&self, side: Side, mode: FootMode) -> [Rotation; 3] {
         let [upper, lower] = self.hinge([SidedJoint::Thigh, SidedJoint::Calf], side, Vec3::NEG_Z);
         [upper, lower, self.foot(side, lower, mode)]
     }
 
     /// `A` of a finger bone, on top of that of the bone before.
-    pub(super) fn finger(&self, joint: RigJoint, before: Quat) -> Quat {
+    pub(super) fn finger(&self, joint: RigJoint, before: Rotation) -> Rotation {
         self.bone(joint, before)
     }
 
@@ -105,15 +105,17 @@ impl<'a> Reference<'a> {
     }
 
     /// The shortest arc on top of what comes before.
-    fn bone(&self, joint: RigJoint, before: Quat) -> Quat {
+    fn bone(&self, joint: RigJoint, before: Rotation) -> Rotation {
         match self.pair(joint) {
-            Some((source, target)) => (Quat::from_rotation_arc(before * target, source) * before).normalize(),
+            Some((source, target)) => {
+                (Rotation::from_rotation_arc(before * target, source) * before).normalize()
+            }
             None => before,
         }
     }
 
     /// Upper and lower part of a limb that flexes the lower one towards `flexion` of the upper one's joint.
-    fn hinge(&self, limb: [SidedJoint; 2], side: Side, flexion: Vec3) -> [Quat; 2] {
+    fn hinge(&self, limb: [SidedJoint; 2], side: Side, flexion: Vec3) -> [Rotation; 2] {
         let [upper, lower] = limb.map(|joint| joint.on(side));
         let mut first = self.bone(upper, self.trunk);
         if let (Some((source, target)), Some((bent, _)), Some(joint)) =
@@ -127,7 +129,7 @@ impl<'a> Reference<'a> {
     }
 
     /// The hand by its direction and the row of its knuckles.
-    fn knuckles(&self, side: Side) -> Option<Quat> {
+    fn knuckles(&self, side: Side) -> Option<Rotation> {
         let (source, target) = self.pair(SidedJoint::Hand.on(side))?;
         let [index, pinky] = [SidedJoint::Index01.on(side), SidedJoint::Pinky01.on(side)];
         let [a, b] = [self.map.source_of(index)?, self.map.source_of(pinky)?];
@@ -138,7 +140,7 @@ impl<'a> Reference<'a> {
     }
 
     /// The foot by its sole, which stands on the floor at rest whatever way the bone above it points, or by the bone.
-    fn foot(&self, side: Side, calf: Quat, mode: FootMode) -> Quat {
+    fn foot(&self, side: Side, calf: Rotation, mode: FootMode) -> Rotation {
         let foot = SidedJoint::Foot.on(side);
         let Some((source, target)) = self.pair(foot) else { return self.facing };
         let by_bone = self.bone(foot, calf);
@@ -163,12 +165,12 @@ impl<'a> Reference<'a> {
 }
 
 /// The rotation that takes one direction to another and, as far as that leaves room, a second one to its other.
-fn align(from: Vec3, from_second: Vec3, to: Vec3, to_second: Vec3) -> Option<Quat> {
+fn align(from: Vec3, from_second: Vec3, to: Vec3, to_second: Vec3) -> Option<Rotation> {
     let basis = |first: Vec3, second: Vec3| {
         let x = first.try_normalize()?;
         let z = x.cross(second).try_normalize()?;
         Some(Mat3::from_cols(x, z.cross(x), z))
     };
     let rotation = basis(to, to_second)? * basis(from, from_second)?.transpose();
-    Some(Quat::from_mat3(&rotation).normalize())
+    Some(Rotation::from_mat3(&rotation).normalize())
 }

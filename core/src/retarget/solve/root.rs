@@ -1,13 +1,13 @@
 //! Where the body stands: the middle of the hips follows the source's, scaled by the length of the legs.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::super::JointMap;
 use super::bones::Bone;
 use super::{Joints, Reference, RootMotion};
 use crate::Side;
 use crate::clip::Clip;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{RigJoint, SidedJoint, model_from_joints};
 
 /// Of the frames, those whose lowest foot is taken for standing on the floor at least: less would follow noise, more
@@ -52,14 +52,14 @@ impl Root {
     }
 
     /// Where the pelvis is, by the source's pose and its own rotation, both in model space.
-    pub(super) fn place(&self, source: &[RigidTransform], rotation: Quat) -> Vec3 {
+    pub(super) fn place(&self, source: &[RigidTransform], rotation: Rotation) -> Vec3 {
         let [l, r] = self.thighs;
         (source[l].translation + source[r].translation) / 2.0 * self.scale - rotation * self.hips
     }
 
     /// How far the feet would stand above the floor, metres: what to lower the body by. `places` are the pelvis',
     /// frame by frame, in model space.
-    pub(super) fn above_floor(&self, joints: &Joints, rotations: &[Quat], places: &[Vec3]) -> f32 {
+    pub(super) fn above_floor(&self, joints: &Joints, rotations: &[Rotation], places: &[Vec3]) -> f32 {
         let parents = joints.target.parents();
         let mut locals = joints.target.rest_pose().locals.clone();
         let mut model = Vec::new();

@@ -5,7 +5,7 @@ use crate::testing::person::{Style, motion, person, posed, restyled};
 
 /// f32 through a chain of a dozen joints, radians and metres.
 const EXACT: f32 = 1e-5;
-/// The same where directions were compared, whose shortest arcs stop at 7e-4 (`Quat::from_rotation_arc`).
+/// The same where directions were compared, whose shortest arcs stop at 7e-4 (`Rotation::from_rotation_arc`).
 const CLOSE: f32 = 4e-3;
 
 fn exactly() -> TransferOptions {
@@ -27,7 +27,7 @@ fn assert_same(a: &Clip, b: &Clip, tolerance: f32, twists: bool) {
                 continue;
             }
             let q = x.rotation.conjugate() * y.rotation;
-            let angle = 2.0 * libm::asinf(q.xyz().length().min(1.0));
+            let angle = 2.0 * libm::asinf(q.vector().length().min(1.0));
             assert!(angle < tolerance, "frame {frame}, {name}: {angle} rad");
             let way = x.translation.distance(y.translation);
             assert!(way < tolerance, "frame {frame}, {name}: {} m for {}", y.translation, x.translation);
@@ -45,9 +45,9 @@ fn our_own_clip_stays_as_it_is() {
     let clip = motion(&rest, 20);
     assert_same(&clip, &retarget(&clip, &rest, &exactly()), EXACT, false);
     // Elbows that roll and fold sideways stay when hinges are off.
-    let mut rotations: Vec<Quat> = (0..20).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    let mut rotations: Vec<Rotation> = (0..20).flat_map(|f| clip.rotations(f).to_vec()).collect();
     for (i, q) in rotations.iter_mut().enumerate() {
-        *q *= Quat::from_scaled_axis(glam::Vec3::new(0.1, 0.2, -0.1) * (i % 5) as f32);
+        *q *= Rotation::from_scaled_axis(glam::Vec3::new(0.1, 0.2, -0.1) * (i % 5) as f32);
     }
     // Twist joints, Root and face are not the source's to say.
     let names = rest.names();
@@ -134,7 +134,7 @@ fn a_giant_moves_as_far_as_its_legs_are_long() {
 fn left_is_left() {
     let rest = person();
     let raised = posed(&rest, &[("upperarm_l", [0.0, 0.0, 80.0])]);
-    let rotations: Vec<Quat> = raised.iter().map(|l| l.rotation).collect();
+    let rotations: Vec<Rotation> = raised.iter().map(|l| l.rotation).collect();
     let clip = Clip::new("wave".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
     let style = Style {
         rename: &mixamo,
@@ -154,7 +154,7 @@ fn left_is_left() {
 fn roll_is_spread_along_limbs() {
     let rest = person();
     let turn = |turns: &[(&str, [f32; 3])]| {
-        let rotations: Vec<Quat> = posed(&rest, turns).iter().map(|l| l.rotation).collect();
+        let rotations: Vec<Rotation> = posed(&rest, turns).iter().map(|l| l.rotation).collect();
         let clip = Clip::new("roll".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
         retarget(&clip, &rest, &exactly())
     };
@@ -265,7 +265,7 @@ fn hands_without_fingers_are_at_ease() {
     let curl = |fingers, joint: RigJoint| {
         let found = retarget(&source, &rest, &TransferOptions { fingers, ..Default::default() });
         let joint = rest.rig_joint(joint).unwrap();
-        let down = |q: Quat| (q * glam::Vec3::Y).y;
+        let down = |q: Rotation| (q * glam::Vec3::Y).y;
         // In the T-pose a curl lowers the finger's tip.
         let upright = rest.model_from_joints();
         let parent = upright[rest.parents()[joint].unwrap() as usize].rotation;

@@ -7,7 +7,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::Quat;
+use crate::math::Rotation;
 
 use super::Joints;
 use crate::pose::SwingTwist;
@@ -24,8 +24,8 @@ pub(super) struct Twist {
     /// Whether the roll is that of the parent about itself, and not that of a joint below about the bone above.
     own: bool,
     /// `parent_from_joint` at rest, of itself and of `of`.
-    rest: Quat,
-    rest_of: Quat,
+    rest: Rotation,
+    rest_of: Rotation,
 }
 
 /// The twist joints of the target.
@@ -57,14 +57,14 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
 }
 
 /// Sets the twist joints' rotations; `before` holds each one's roll in the frame before, or none.
-pub(super) fn apply(twists: &[Twist], locals: &mut [Quat], before: &mut [Option<f32>]) {
+pub(super) fn apply(twists: &[Twist], locals: &mut [Rotation], before: &mut [Option<f32>]) {
     for (twist, before) in twists.iter().zip(before) {
         let local = locals[twist.of];
         let turned =
             if twist.own { twist.rest_of.conjugate() * local } else { local * twist.rest_of.conjugate() };
         let roll = near(SwingTwist::of(turned).twist, *before);
         *before = Some(roll);
-        locals[twist.joint] = twist.rest * Quat::from_rotation_y(roll * twist.part);
+        locals[twist.joint] = twist.rest * Rotation::from_rotation_y(roll * twist.part);
     }
 }
 

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3};
 use gltf_json::{Animation, animation::Property};
 
 use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
@@ -16,7 +16,7 @@ use crate::error::Outcome;
 use crate::format::gltf::animation::{self, Keys, MAX_NUMBERS, ON_FRAME, Timing, Track};
 use crate::format::gltf::document::Document;
 use crate::format::gltf::weights::{self, WeightKeys};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::scene::titles::Titles;
 use crate::skeleton::Skeleton as RestSkeleton;
 
@@ -147,7 +147,7 @@ impl Motion {
         name: String,
     ) -> Outcome<Clip> {
         let joints = skeleton.joints.len();
-        let mut rotations = vec![Quat::IDENTITY; self.frames * joints];
+        let mut rotations = vec![Rotation::IDENTITY; self.frames * joints];
         let mut translations = Vec::new();
         for (j, (chain, at_rest)) in skeleton.chains.iter().zip(&skeleton.locals).enumerate() {
             let still = chain.iter().all(|n| self.nodes.get(n).is_none_or(|t| t.is_still()));
@@ -191,7 +191,7 @@ impl Motion {
             let found = document.root.nodes.get(node);
             let at_rest = match found.and_then(written) {
                 Some(node) => RigidTransform {
-                    rotation: Quat::from_array(node.rotation),
+                    rotation: Rotation::from_array(node.rotation),
                     translation: Vec3::from(node.translation),
                 },
                 None => to_local(&chain_transform(document, &chain[n..=n])?),
@@ -215,8 +215,8 @@ impl Motion {
     }
 }
 
-fn quaternion(value: [f64; 4]) -> Quat {
-    Quat::from_array(value.map(|v| v as f32))
+fn quaternion(value: [f64; 4]) -> Rotation {
+    Rotation::from_array(value.map(|v| v as f32))
 }
 
 fn vector([x, y, z, _]: [f64; 4]) -> Vec3 {

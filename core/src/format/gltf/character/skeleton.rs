@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf_json::{Index, Node, Skin, Value};
 
 use crate::error::Outcome;
 use crate::format::gltf::document::{Document, Tree};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, Rotation};
 use crate::scene::SceneJoint;
 use crate::scene::titles::Titles;
 use crate::skeleton::written::{ParentFromJoint, rounded};
@@ -253,7 +253,7 @@ fn local_of(document: &Document, chain: &[usize], product: &DAffine3) -> RigidTr
     single.map_or_else(
         || to_local(product),
         |node| RigidTransform {
-            rotation: Quat::from_array(node.rotation),
+            rotation: Rotation::from_array(node.rotation),
             translation: Vec3::from(node.translation),
         },
     )
@@ -261,7 +261,7 @@ fn local_of(document: &Document, chain: &[usize], product: &DAffine3) -> RigidTr
 
 pub(super) fn to_local(transform: &DAffine3) -> RigidTransform {
     RigidTransform {
-        rotation: DQuat::from_mat3(&transform.matrix3).normalize().as_quat(),
+        rotation: DQuat::from_mat3(&transform.matrix3).normalize().into(),
         translation: transform.translation.as_vec3(),
     }
 }

@@ -238,8 +238,10 @@ fn others_lie_out_their_skeleton_in_other_ways() {
     assert_eq!(names, [("upper", None), ("lower", Some(0)), ("thumb", Some(1))]);
     let clip = &scene.clips[0];
     assert_eq!((clip.frame_count(), clip.frames_per_second()), (3, 25.0), "found by the keys' times");
-    let above =
-        glam::Affine3A::from_rotation_translation(glam::Quat::from_xyzw(0.0, 0.6, 0.0, 0.8), glam::Vec3::X);
+    let above = glam::Affine3A::from_rotation_translation(
+        crate::math::Rotation::from_xyzw(0.0, 0.6, 0.0, 0.8).into(),
+        glam::Vec3::X,
+    );
     let between = glam::Affine3A::from_translation(glam::Vec3::Y * 0.25);
     let [upper, lower, thumb] = [0, 1, 2].map(|j| SCENE.clips[0].pose(1).locals[j].to_affine());
     let expected = [above * upper, above * upper * lower, above * upper * lower * between * thumb];

@@ -8,7 +8,7 @@ mod uri;
 
 use std::path::Path;
 
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use glam::{Affine3A, Mat4, Vec3};
 use gltf_json::{
     Accessor, Index, Node, Root,
     accessor::{ComponentType, Type},
@@ -17,6 +17,7 @@ use gltf_json::{
 
 use crate::error::Outcome;
 use crate::format::limits::MAX_ELEMENTS;
+use crate::math::Rotation;
 use crate::{Error, Result};
 
 /// Required extensions that change no geometry.
@@ -291,7 +292,7 @@ pub(crate) fn local_transform(node: &Node) -> Affine3A {
     }
     Affine3A::from_scale_rotation_translation(
         node.scale.map_or(Vec3::ONE, Vec3::from),
-        node.rotation.map_or(Quat::IDENTITY, |rotation| Quat::from_array(rotation.0)),
+        node.rotation.map_or(Rotation::IDENTITY, |rotation| Rotation::from_array(rotation.0)).into(),
         node.translation.map_or(Vec3::ZERO, Vec3::from),
     )
 }

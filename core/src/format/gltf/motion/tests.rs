@@ -1,9 +1,10 @@
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use serde_json::{Value, json};
 
 use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
+use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
 /// Numbers of a buffer, with where they lie.
@@ -32,7 +33,7 @@ fn small(times: &[f32]) -> (Value, Vec<u8>) {
     let time = buffer.add("SCALAR", 1, times);
     let last = (times.len() - 1).max(1) as f32;
     let turns: Vec<f32> =
-        (0..times.len()).flat_map(|i| Quat::from_rotation_x(i as f32 / last).to_array()).collect();
+        (0..times.len()).flat_map(|i| Rotation::from_rotation_x(i as f32 / last).to_array()).collect();
     let rotation = buffer.add("VEC4", 4, &turns);
     let steps: Vec<f32> = (0..times.len()).flat_map(|i| [0.0, 100.0 + 10.0 * i as f32, 0.0]).collect();
     let translation = buffer.add("VEC3", 3, &steps);
@@ -88,7 +89,7 @@ fn joints_move_as_their_channels_say() {
     // The armature's scale is in the lengths, and no reason to warn.
     assert!(clip.skeleton().rest_pose().locals[1].translation.distance(Vec3::new(0.1, -0.05, 0.0)) < 1e-6);
     assert!(clip.pose(2).locals[0].translation.distance(Vec3::Y * 1.2) < 1e-6);
-    assert!(clip.pose(1).locals[1].rotation.dot(Quat::from_rotation_x(0.5)).abs() > 1.0 - 1e-6);
+    assert!(clip.pose(1).locals[1].rotation.dot(Rotation::from_rotation_x(0.5)).abs() > 1.0 - 1e-6);
     assert!(motion.report.warnings.is_empty(), "{:?}", motion.report.warnings);
     assert_eq!(clip.translations().len(), 1);
 }
@@ -118,7 +119,7 @@ fn steps_hold_lines_run_and_splines_curve() {
     for (height, expected) in heights.iter().zip([1.0, 1.0, 1.0, 1.0, 1.1]) {
         assert!((height - expected).abs() < 1e-6, "{heights:?}");
     }
-    assert!(clip.pose(1).locals[1].rotation.dot(Quat::from_rotation_x(0.25)).abs() > 1.0 - 1e-6);
+    assert!(clip.pose(1).locals[1].rotation.dot(Rotation::from_rotation_x(0.25)).abs() > 1.0 - 1e-6);
 
     // From 100 with a slope of 200 a second to 110 and none: 1/64 · (54 · 100 + 10 · 110) + 0.1 · 9/64 · 200.
     let (mut json, mut data) = small(&[0.0, 0.1]);

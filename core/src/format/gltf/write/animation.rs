@@ -6,7 +6,7 @@
 //! `frames_per_second` and `frames`. The weights of a mesh's morph targets are one channel of its node, with a key in every
 //! frame.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use gltf_json::{
     Accessor, Animation, Index, Value,
     animation::{Channel, Interpolation, Property, Sampler, Target},
@@ -96,7 +96,7 @@ fn weights(scene: &Scene, clip: usize) -> Vec<Vec<[f32; 1]>> {
 
 /// One rotation per frame.
 fn joint_rotations(clip: &Clip, joint: usize) -> Vec<[f32; 4]> {
-    (0..clip.frame_count()).filter_map(|f| clip.rotations(f).get(joint)).map(Quat::to_array).collect()
+    (0..clip.frame_count()).filter_map(|f| clip.rotations(f).get(joint)).map(|r| r.to_array()).collect()
 }
 
 /// One translation per frame; only the one at rest for a joint that keeps still.

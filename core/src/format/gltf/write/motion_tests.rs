@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use serde_json::json;
 
 use super::tests::Parsed;
 use super::*;
 use crate::clip::{Clip, TranslationTrack};
 use crate::format::vrm::{VrmMeta, to_vrm};
+use crate::math::Rotation;
 use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::{JointNames, humanoid_bones, renamed};
 use crate::testing::scene::{arm, bent};
@@ -64,10 +65,10 @@ fn tracks_are_the_clip() {
 fn what_keeps_still_has_one_key_and_what_rests_none() {
     let mut scene = arm(4);
     let rest = rest(&scene);
-    let q: Vec<Quat> = rest.rest_rotations().collect();
+    let q: Vec<Rotation> = rest.rest_rotations().collect();
     // The root as it rests, the next joint turned and still, the last one moving.
     let rotations = (0..4).flat_map(|frame| {
-        [q[0], q[1] * Quat::from_rotation_x(0.5), q[2] * Quat::from_rotation_y(0.1 * frame as f32)]
+        [q[0], q[1] * Rotation::from_rotation_x(0.5), q[2] * Rotation::from_rotation_y(0.1 * frame as f32)]
     });
     let shifted = rest.rest_pose().locals[1].translation + Vec3::Y * 0.01;
     let track = TranslationTrack { joint: 1, values: vec![shifted; 4] };

@@ -1,9 +1,10 @@
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::*;
 use crate::format::read_motion_from_bytes;
+use crate::math::Rotation;
 
 /// A standing person of 1.7 m as BVH, with lengths divided by `unit`, and +Z up where asked.
 fn person(unit: f64, up: Axis) -> String {
@@ -75,9 +76,9 @@ fn units_and_axes_are_found_from_the_body() {
             assert!(neck.distance(Vec3::new(0.0, 0.55, 0.0)) < 1e-5, "the rest pose stands, too");
             let toes = rest.ends()[rest.find("LeftFoot").unwrap()].unwrap();
             let turn = if up == Axis::Z {
-                Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)
+                Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2)
             } else {
-                Quat::IDENTITY
+                Rotation::IDENTITY
             };
             assert!((turn * toes).distance(Vec3::new(0.0, -0.05, 0.2)) < 1e-5, "joint spaces are the file's");
         }

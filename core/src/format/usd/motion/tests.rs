@@ -1,6 +1,7 @@
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::*;
+use crate::math::Rotation;
 
 /// What other programs write: centimetres, +Z up, ops above the skeleton, a child before its parent, an animation with
 /// an order of its own, without one joint and with one of somebody else.
@@ -61,25 +62,25 @@ fn files_of_others_are_read() {
     assert_eq!(raw.parents, [None, Some(0), Some(0)]);
     assert_eq!((raw.unit, raw.up), (Some(Unit::Centimetre), Some(Axis::Z)));
     // The ops above turn +Y into +Z, double every length, lift by 100.
-    let upright = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let upright = Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2);
     assert!(raw.rest[0].translation.distance(Vec3::new(0.0, 0.0, 200.0)) < 1e-4);
     assert!(raw.rest[0].rotation.dot(upright).abs() > 0.999_999);
     assert!(raw.rest[1].translation.distance(Vec3::new(0.0, -80.0, 0.0)) < 1e-4);
-    let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
+    let quarter = Rotation::from_rotation_z(std::f32::consts::FRAC_PI_2);
     assert!(raw.rest[2].rotation.dot(quarter).abs() > 0.999_999);
 
     let take = &raw.takes[0];
     assert_eq!((take.name.as_str(), take.frames_per_second), ("Walk", 24.0));
     assert_eq!(take.rotations.len(), 3 * 3);
-    let same = |frame: usize, joint: usize, expected: Quat| {
+    let same = |frame: usize, joint: usize, expected: Rotation| {
         let got = take.rotations[frame * 3 + joint];
         assert!(got.dot(expected).abs() > 0.999_999, "{frame} {joint}: {got} {expected}");
     };
-    same(0, 2, Quat::IDENTITY);
-    same(1, 2, Quat::from_rotation_z(std::f32::consts::PI));
-    same(2, 0, upright * Quat::from_rotation_x(std::f32::consts::PI));
+    same(0, 2, Rotation::IDENTITY);
+    same(1, 2, Rotation::from_rotation_z(std::f32::consts::PI));
+    same(2, 0, upright * Rotation::from_rotation_x(std::f32::consts::PI));
     // The leg is not in the animation and rests in its parent, which is half as large as at rest.
-    same(1, 1, Quat::IDENTITY);
+    same(1, 1, Rotation::IDENTITY);
     let tracks: Vec<_> = take.tracks.iter().map(|t| (t.joint, t.values.clone())).collect();
     assert_eq!(tracks.iter().map(|t| t.0).collect::<Vec<_>>(), [0, 1, 2]);
     assert!(tracks[0].1[1].distance(Vec3::new(0.0, -8.0, 200.0)) < 1e-4, "{:?}", tracks[0].1);
@@ -92,7 +93,7 @@ fn a_rate_that_is_asked_for_is_sampled_between_keys() {
     let raw = read_with(OTHERS.as_bytes(), &options).unwrap();
     let take = &raw.takes[0];
     assert_eq!((take.rotations.len(), take.frames_per_second), (5 * 3, 48.0));
-    let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
+    let quarter = Rotation::from_rotation_z(std::f32::consts::FRAC_PI_2);
     assert!(take.rotations[3 + 2].dot(quarter).abs() > 0.999_999);
 }
 
