@@ -7,7 +7,9 @@ mod clip;
 pub(crate) mod edit;
 mod sample;
 
-pub use blend::{JointMask, add_pose, additive, blend, blend_pose, crossfade};
+pub use blend::{
+    JointMask, Layer, add_pose, additive, blend, blend_layers, blend_pose, blend_poses, crossfade,
+};
 pub use builtin::{BUILTIN, builtin};
 pub use clip::{Clip, MAX_FRAMES, MAX_ROTATIONS, TranslationTrack};
 pub use edit::{in_place, looped, resample};

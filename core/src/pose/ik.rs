@@ -1,8 +1,18 @@
 //! Two-bone inverse kinematics: hip, knee, ankle; shoulder, elbow, wrist.
 //!
-//! The law of cosines gives the bend, the shortest turn of the whole limb the direction, so that the plane in which
-//! the limb bends swings with it and is otherwise kept. A limb that is straight, or bent the wrong way, bends the way
-//! its middle joint does.
+//! The law of cosines gives the bend, the shortest rotation of the whole limb the direction, so that the plane in which
+//! the limb bends swings with it and is otherwise kept, unless a pole says where it shall lie. A limb that is straight, or
+//! bent the wrong way, bends the way its middle joint does.
+//!
+//! ```text
+//!           lower (knee)
+//!             o
+//!      a    / |\    b         distance² = a² + b² − 2ab cos(angle at lower)
+//!          /  |  \
+//!         /   | sin · a       offset of the middle joint from the line, towards the pole
+//!   upper o---+-----o end
+//!          cos · a
+//! ```
 
 use glam::Vec3;
 
@@ -32,15 +42,31 @@ pub struct Limb {
     pub bend: Bend,
 }
 
-/// Where a limb shall reach.
+/// Where a limb shall reach, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// The end joint's place and rotation, `model_from_end`.
+    /// The end joint's position and rotation, `model_from_end`.
     pub target: RigidTransform,
+    /// Which way the middle joint shall lie off the line from the upper joint to the end, a direction in model space of any
+    /// length. `None`, and a direction along that line, keep the plane in which the limb bends already.
+    pub pole: Option<Vec3>,
+    /// How much of it is done: 0 leaves the pose, 1 reaches; rotations between are interpolated.
+    pub weight: f32,
     /// The stretch, as a share of the limb's length, over which it slows down before it is straight; a target within
     /// it is missed by up to that. 0 to 0.5.
     pub softness: f32,
 }
+
+impl Reach {
+    /// All the way to a target, exactly, in the plane in which the limb bends.
+    pub const fn to(target: RigidTransform) -> Self {
+        Self { target, pole: None, weight: 1.0, softness: 0.0 }
+    }
+}
+
+/// How far from its target an end joint may be for the target to be reached, as a share of the limb's length: the rounding of
+/// two bones in `f32`.
+const REACHED: f32 = 1e-4;
 
 impl Limb {
     /// The limb of these three joints.
@@ -72,17 +98,19 @@ impl Limb {
         pose.locals[self.lower].translation.length() + pose.locals[self.end].translation.length()
     }
 
-    /// Turns the three joints so that the end stands at its target with the rotation asked for. A target out of reach
+    /// Rotates the three joints so that the end stands at its target with the target's rotation. A target out of reach
     /// is pointed at. `parent` is `model_from_parent` of the upper joint; nothing changes when a bone has no length or
     /// a number is not finite.
-    pub fn reach(&self, pose: &mut Pose, parent: RigidTransform, reach: &Reach) {
+    ///
+    /// Whether the end reaches its target at full weight: not when that is too far, too near, or within the soft stretch.
+    pub fn reach(&self, pose: &mut Pose, parent: RigidTransform, reach: &Reach) -> bool {
         let [upper, lower, end] = self.model_from_joints(pose, parent);
         let (first, second) = (lower.translation - upper.translation, end.translation - lower.translation);
         let (a, b) = (first.length(), second.length());
         let to_target = reach.target.translation - upper.translation;
-        let finite = to_target.is_finite() && reach.target.rotation.is_finite();
+        let finite = to_target.is_finite() && reach.target.rotation.is_finite() && reach.weight.is_finite();
         if !finite || a.min(b) < 1e-6 {
-            return;
+            return false;
         }
         let line = (first + second).try_normalize().or(first.try_normalize()).unwrap_or(Vec3::NEG_Y);
         let distance = soften(to_target.length(), a + b, reach.softness).max((a - b).abs());
@@ -94,14 +122,25 @@ impl Limb {
         let new_first = line * (a * cos) + pole * (a * sin);
         let new_second = line * distance - new_first;
         let swing = arc(line, to_target);
+        let swing =
+            reach.pole.and_then(|wanted| roll(to_target, swing * pole, wanted)).map_or(swing, |r| r * swing);
         let upper_rotation = (swing * arc(first, new_first) * upper.rotation).normalize();
         let carried = upper_rotation * pose.locals[self.lower].rotation;
         let second_now = carried * pose.locals[self.end].translation;
         let lower_rotation = (arc(second_now, swing * new_second) * carried).normalize();
 
-        pose.locals[self.upper].rotation = (parent.rotation.conjugate() * upper_rotation).normalize();
-        pose.locals[self.lower].rotation = (upper_rotation.conjugate() * lower_rotation).normalize();
-        pose.locals[self.end].rotation = (lower_rotation.conjugate() * reach.target.rotation).normalize();
+        let solved = [
+            (self.upper, parent.rotation.conjugate() * upper_rotation),
+            (self.lower, upper_rotation.conjugate() * lower_rotation),
+            (self.end, lower_rotation.conjugate() * reach.target.rotation),
+        ];
+        let weight = reach.weight.clamp(0.0, 1.0);
+        for (joint, rotation) in solved {
+            let local = &mut pose.locals[joint].rotation;
+            let rotation = rotation.normalize();
+            *local = if weight == 1.0 { rotation } else { local.slerp(rotation, weight) };
+        }
+        (distance - to_target.length()).abs() <= REACHED * (a + b)
     }
 
     /// Where the middle joint shall stand off the line from end to end: where it does, and a little towards where it
@@ -135,7 +174,19 @@ fn soften(distance: f32, length: f32, softness: f32) -> f32 {
     }
 }
 
-/// The shortest turn from one direction to another; none when one of them has no length.
+/// The rotation about `line` that takes the part of `from` across it to that of `to`; `None` when one has no such part.
+fn roll(line: Vec3, from: Vec3, to: Vec3) -> Option<Rotation> {
+    let line = line.try_normalize()?;
+    let across = |v: Vec3| {
+        let part = v - line * v.dot(line);
+        // Less than that is what rounding leaves of a direction along the line.
+        (part.length() > 1e-4 * v.length()).then_some(part)?.try_normalize()
+    };
+    let (from, to) = (across(from)?, across(to)?);
+    Some(Rotation::from_axis_angle(line, libm::atan2f(from.cross(to).dot(line), from.dot(to))))
+}
+
+/// The shortest rotation from one direction to another; none when one of them has no length.
 fn arc(from: Vec3, to: Vec3) -> Rotation {
     match (from.try_normalize(), to.try_normalize()) {
         (Some(from), Some(to)) => Rotation::from_rotation_arc(from, to),
@@ -145,6 +196,7 @@ fn arc(from: Vec3, to: Vec3) -> Rotation {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3Swizzles;
     use proptest::prelude::*;
 
     use super::*;
@@ -175,7 +227,7 @@ mod tests {
         let (rest, limb) = leg();
         let mut pose = rest.rest_pose().clone();
         let target = RigidTransform { rotation: Rotation::from_rotation_y(0.3), translation: target };
-        limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { target, softness });
+        limb.reach(&mut pose, RigidTransform::IDENTITY, &Reach { softness, ..Reach::to(target) });
         limb.model_from_joints(&pose, RigidTransform::IDENTITY)
     }
 
@@ -197,6 +249,53 @@ mod tests {
         let short = 0.9 + soft.translation.y;
         // 2 % of 0.9 m, over e.
         assert!((short - 0.018 / std::f32::consts::E).abs() < 1e-4, "{short}");
+    }
+
+    #[test]
+    fn the_knee_lies_towards_the_pole_and_still_bends_about_its_hinge() {
+        let (rest, limb) = leg();
+        let target = RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::new(0.1, -0.6, 0.2) };
+        let line = target.translation.normalize_or_zero();
+        for pole in [Vec3::X, Vec3::NEG_X * 7.0, Vec3::new(0.3, 2.0, 1.0), Vec3::NEG_Z] {
+            let mut pose = rest.rest_pose().clone();
+            let reach = Reach { pole: Some(pole), ..Reach::to(target) };
+            assert!(limb.reach(&mut pose, RigidTransform::IDENTITY, &reach));
+            let [_, knee, ankle] = limb.model_from_joints(&pose, RigidTransform::IDENTITY);
+            assert!(ankle.translation.distance(target.translation) < 1e-5);
+            let across = |v: Vec3| (v - line * v.dot(line)).normalize_or_zero();
+            assert!(across(knee.translation).distance(across(pole)) < 1e-3, "{pole}: {knee:?}");
+            let hinge = pose.locals[limb.lower].rotation.to_scaled_axis();
+            assert!(hinge.x.abs() > 0.5 && hinge.yz().length() < 1e-3, "{pole}: {hinge}");
+        }
+        let mut pose = rest.rest_pose().clone();
+        let along = Reach { pole: Some(target.translation), ..Reach::to(target) };
+        assert!(limb.reach(&mut pose, RigidTransform::IDENTITY, &along));
+        let mut kept = rest.rest_pose().clone();
+        limb.reach(&mut kept, RigidTransform::IDENTITY, &Reach::to(target));
+        assert_eq!(pose, kept);
+    }
+
+    #[test]
+    fn what_is_out_of_reach_is_said_and_weight_goes_from_the_pose_to_the_target() {
+        let (rest, limb) = leg();
+        let reach = |y: f32, weight: f32, softness: f32| {
+            let mut pose = rest.rest_pose().clone();
+            let target = RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::new(0.0, y, 0.0) };
+            let options = Reach { weight, softness, ..Reach::to(target) };
+            let reached = limb.reach(&mut pose, RigidTransform::IDENTITY, &options);
+            (reached, pose)
+        };
+        assert!(reach(-0.7, 1.0, 0.0).0 && reach(-0.9, 1.0, 0.0).0 && reach(-0.7, 0.5, 0.0).0);
+        assert!(!reach(-0.92, 1.0, 0.0).0 && !reach(-0.05, 1.0, 0.0).0 && !reach(-0.9, 1.0, 0.02).0);
+        assert!(!reach(f32::NAN, 1.0, 0.0).0 && !reach(-0.7, f32::NAN, 0.0).0);
+        assert_eq!(reach(f32::NAN, 1.0, 0.0).1, *rest.rest_pose());
+        let bend = |pose: &Pose| pose.locals[limb.lower].rotation.angle_between(Rotation::IDENTITY);
+        let (none, half, all) = (reach(-0.7, 0.0, 0.0).1, reach(-0.7, 0.5, 0.0).1, reach(-0.7, 1.0, 0.0).1);
+        assert!(
+            none.locals[limb.upper].rotation.angle_between(rest.rest_pose().locals[limb.upper].rotation)
+                < 1e-3
+        );
+        assert!(bend(&none) < 1e-3 && (bend(&half) - bend(&all) / 2.0).abs() < 1e-3 && bend(&all) > 0.5);
     }
 
     #[test]
@@ -222,7 +321,7 @@ mod tests {
             let parent = RigidTransform { rotation: Rotation::from_rotation_z(turn), translation: Vec3::new(0.1, 1.0, 0.0) };
             let translation = parent.translation + Vec3::new(x, y, z);
             let target = RigidTransform { rotation: Rotation::from_rotation_x(turn), translation };
-            limb.reach(&mut pose, parent, &Reach { target, softness: 0.0 });
+            limb.reach(&mut pose, parent, &Reach::to(target));
             let [upper, _, end] = limb.model_from_joints(&pose, parent);
             let asked = Vec3::new(x, y, z).length();
             prop_assume!(asked > 1e-3);

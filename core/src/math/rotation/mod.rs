@@ -166,8 +166,8 @@ impl Rotation {
         Self::from_xyzw(sum.x / whole, sum.y / whole, sum.z / whole, sum.w / whole)
     }
 
-    /// `self · a + other · b`, by component.
-    fn sum(self, a: f32, other: Self, b: f32) -> Self {
+    /// `self · a + other · b`, by component: not of unit length.
+    pub(crate) fn sum(self, a: f32, other: Self, b: f32) -> Self {
         Self::from_xyzw(
             self.x * a + other.x * b,
             self.y * a + other.y * b,

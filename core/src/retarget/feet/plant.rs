@@ -249,14 +249,14 @@ impl Planter<'_> {
     ) {
         let place = goal.translation + goal.rotation * pivot;
         for _ in 0..4 {
-            leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
+            leg.limb.reach(pose, above, &Reach { softness: SOFTNESS, ..Reach::to(goal) });
             if !self.limits.clamp_joint(self.rest, pose, leg.limb.end) {
                 return;
             }
             goal.rotation = leg.limb.model_from_joints(pose, above)[2].rotation;
             goal.translation = place - goal.rotation * pivot;
         }
-        leg.limb.reach(pose, above, &Reach { target: goal, softness: SOFTNESS });
+        leg.limb.reach(pose, above, &Reach { softness: SOFTNESS, ..Reach::to(goal) });
         self.limits.clamp_joint(self.rest, pose, leg.limb.end);
     }
 
