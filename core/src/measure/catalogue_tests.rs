@@ -39,7 +39,7 @@ fn a_row_more_is_a_measure_more() {
         assert_eq!(mirrored.mirrored, place);
         assert_eq!((mirrored.base, mirrored.side), (entry.base, entry.side.map(Side::mirrored)));
         assert_eq!((mirrored.part, mirrored.standard), (entry.part, entry.standard));
-        assert_eq!(Side::part_measure_name(entry.name), (entry.base, entry.side));
+        assert_eq!(Side::split_measure_name(entry.name), (entry.base, entry.side));
     }
     assert_eq!(LARGER.0[right].part, BodyPart::Hand);
     assert_eq!(LARGER.0[right].standard, Some("ANSUR II wristbreadth"));

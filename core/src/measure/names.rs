@@ -163,7 +163,7 @@ mod tests {
             assert_eq!(MeasureId::from_index(i), Some(id));
             assert_eq!(id.mirrored().mirrored(), id);
             assert_eq!(id.side().map(Side::mirrored), id.mirrored().side());
-            assert_eq!(Side::part_measure_name(id.name()), (id.base_name(), id.side()));
+            assert_eq!(Side::split_measure_name(id.name()), (id.base_name(), id.side()));
         }
         assert_eq!(MeasureId::from_index(MEASURE_COUNT), None);
         assert_eq!(MeasureId::HEIGHT.name(), "height");
