@@ -235,7 +235,7 @@ impl Model {
 
     /// The coefficients that the network gives for a full set of measures, before any solve.
     pub fn decode(&self, measures: &Measurements, sex: Sex, z: &[f64]) -> Vec<f64> {
-        self.shared.decoder.decode_exact(&self.standardised(measures), sex, z)
+        self.shared.decoder.decode_f64(&self.standardised(measures), sex, z)
     }
 
     /// The encoder's mean of z for a body with these measures (metres) and coefficients (metres).

@@ -127,7 +127,7 @@ impl MeasuredSpace {
         let axis = *axis;
         let points = &measure.definition.points;
         let share = 1.0 / points.len() as f64;
-        let level: f64 = points.iter().map(|p| p.place(|v| at[v as usize])[axis] * share).sum();
+        let level: f64 = points.iter().map(|p| p.position(|v| at[v as usize])[axis] * share).sum();
         let rest = STAGES.map(|stage| norm(c.iter().skip(stage).copied()));
         for SliceVertex { place, rest: of_row } in vertices {
             let row = self.row(*place, axis);
