@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sampling of the motion of armatures in the scene, frame by frame and as Blender evaluates it: actions, NLA, constraints, drivers.
+"""Sampling of the motion of armatures, frame by frame and as Blender evaluates it: actions, NLA, constraints, drivers.
 
 The functions are generators, since this takes long: they yield the progress, 0 to 1, and return their result."""
 
@@ -137,7 +137,7 @@ def _skeleton(ob):
     def kept_parent(bone):
         parent = bone.parent
         while parent is not None:
-            # In a rig by Rigify the parent of a deforming bone can be a mechanism bone, whose deforming bone is then the parent.
+            # In a rig by Rigify the parent can be a mechanism bone, whose deforming bone is then taken as the parent.
             for name in (parent.name, f"{_DEFORM_PREFIX}{parent.name.partition('-')[2]}"):
                 if name in index and name != bone.name:
                     return index[name]

@@ -3,7 +3,8 @@
 //!     morph_dump FOLDER
 //!
 //! Writes `morph.glb`, `morph_meshopt.glb`, `morph.usda`, `morph.usdc`, `morph.vrm` (without motion), and
-//! `morph.json` to FOLDER; the last has targets, weights and morphed vertices. `tests/morph_check.py` and `tests/morph_threejs.mjs` read them.
+//! `morph.json` (targets, weights and morphed vertices) to FOLDER. `tests/morph_check.py` and `tests/morph_threejs.mjs`
+//! read them.
 
 use std::path::Path;
 use std::sync::Arc;
