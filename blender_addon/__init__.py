@@ -9,7 +9,7 @@ from .services import property_callbacks
 
 
 def register():
-    # The one place at which property groups and what their changes do meet.
+    # Only here are the property groups connected with the callbacks for their changes.
     state.register(property_callbacks.callback_for)
     operators.register()
     ui.register()

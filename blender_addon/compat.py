@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that differs between Blender 4.2, 4.5 and 5.0. No other module asks for Blender's version.
+"""Everything that differs between Blender 4.2, 4.5 and 5.0. No other module depends on Blender's version.
 
 In all functions ``block`` is a data-block that can be animated: an object, or the shape keys of a mesh."""
 

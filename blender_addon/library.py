@@ -3,7 +3,7 @@
 
 
 class LibraryError(Exception):
-    """The library cannot be loaded. The message says what is missing and where it was looked for."""
+    """The library cannot be loaded. The message says what is missing and which paths were searched."""
 
 
 def anthronet():

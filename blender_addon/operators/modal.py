@@ -131,5 +131,5 @@ class ModalOperatorWithoutDialog(ModalOperator):
     """The same for operators that start at once when they are invoked."""
 
     def invoke(self, context, _event):
-        """Starts. Only an operator with this method is told that it was invoked."""
+        """Starts the work. Blender reports an invocation only to operators that have this method."""
         return self.execute(context)

@@ -57,7 +57,7 @@ class ANTHRONET_OT_preset_apply(ChangesCharacter, bpy.types.Operator):
     def execute(self, context):
         settings = character.active(context).anthronet
         # A preset is a script that sets properties of the active character. They are read and then restored, so that the
-        # change goes the same way as every other one.
+        # change is applied like every other one.
         before = {name: _copied(getattr(settings, name)) for name in _preset_properties()}
         with updates_suspended():
             try:

@@ -17,7 +17,7 @@ from . import material
 LOD = "anthronet_lod"
 #: Attribute of a mesh: the generated positions. A sculpted mesh differs from them.
 GENERATED = "anthronet_generated"
-#: Custom property of a template mesh: what it was built for.
+#: Custom property of a template mesh: level of detail, parts and bone names that it was built for.
 _TEMPLATE_KEY = "anthronet_template"
 
 
@@ -136,8 +136,8 @@ def _build(library_mesh, bone_names, name):
 
 
 def _set_weights(mesh, parts, starts, bone_names):
-    """Writes the skin weights, exact to the bit. A mesh holds weights, but the names of the vertex groups are an object's, so
-    that one is needed here."""
+    """Writes the skin weights, exact to the bit. Weights belong to a mesh, but the names of vertex groups to an object, so one
+    is needed here."""
     helper = bpy.data.objects.new(".AnthroNet Weights", mesh)
     for name in bone_names:
         helper.vertex_groups.new(name=name)
@@ -158,7 +158,7 @@ def _set_weights(mesh, parts, starts, bone_names):
 
 
 def is_sculpted(mesh):
-    """Whether a vertex is elsewhere than it was generated."""
+    """Whether any vertex differs from its generated position."""
     return not np.array_equal(*_current_and_generated(mesh))
 
 

@@ -77,7 +77,7 @@ class Snapshot(NamedTuple):
 
     @property
     def has_vertex_data(self):
-        """Whether there is anything that depends on which vertices correspond."""
+        """Whether there is anything whose transfer needs the correspondence of vertices."""
         return bool(np.any(self.sculpting) or self.vertex_groups or self.shape_keys or self.point_attributes)
 
 
@@ -129,7 +129,7 @@ def _restore_vertex_data(mesh_object, snapshot, sources, weights):
     for name, group_weights in snapshot.vertex_groups.items():
         _write_vertex_group(mesh_object, name, interpolate(group_weights[:, None])[:, 0])
     for attribute in snapshot.point_attributes:
-        # Integers and booleans have nothing between two values: they are those of the first source.
+        # Integers and booleans cannot be interpolated: the value of the first source is used.
         continuous = attribute.values.dtype == np.float32
         values = interpolate(attribute.values) if continuous else attribute.values[sources[:, 0]]
         _write_attribute(mesh_object.data, attribute, values)

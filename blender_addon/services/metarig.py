@@ -173,7 +173,7 @@ def _place(bone, head, tail, x_axis=None):
 
 
 def _bend(above, below):
-    """Moves the joint between two bones off the straight line, if it is not already: from that Rigify finds out to which side
+    """Moves the joint between two bones off the straight line, if it is not already, as Rigify infers from it to which side
     the limb bends."""
     limb = below.tail - above.head
     direction = limb.cross(above.x_axis).normalized()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happens when a user or a script changes a property of a character.
+"""The update callbacks of a character's properties, called when a user or a script changes one.
 
-:func:`callback_for` is handed to :func:`state.register`, so that the property groups need not know any service."""
+:func:`callback_for` is passed to :func:`state.register`, so that the property groups do not depend on services."""
 
 from functools import partial
 

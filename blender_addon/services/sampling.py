@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sampling of what armatures do in the scene, frame by frame and as Blender evaluates it: actions, NLA, constraints, drivers.
+"""Sampling of the motion of armatures, frame by frame and as Blender evaluates it: actions, NLA, constraints, drivers.
 
 The functions are generators, since this takes long: they yield the progress, 0 to 1, and return their result."""
 
@@ -115,7 +115,7 @@ def _rotation(matrix):
 
 @contextmanager
 def _armature_modifiers_disabled(ob):
-    """Modifiers of an armature's meshes hidden in the viewport: nobody needs the vertices, which take most of the time."""
+    """Modifiers of an armature's meshes hidden in the viewport, as evaluating the unneeded vertices takes most of the time."""
     meshes = [child for child in ob.children_recursive if child.type == "MESH"]
     modifiers = [modifier for mesh in meshes for modifier in mesh.modifiers if modifier.show_viewport]
     try:
@@ -137,7 +137,7 @@ def _skeleton(ob):
     def kept_parent(bone):
         parent = bone.parent
         while parent is not None:
-            # In a rig by Rigify a deforming bone can have a mechanism bone as parent: that one's deforming bone counts.
+            # In a rig by Rigify the parent can be a mechanism bone, whose deforming bone is then taken as the parent.
             for name in (parent.name, f"{_DEFORM_PREFIX}{parent.name.partition('-')[2]}"):
                 if name in index and name != bone.name:
                     return index[name]

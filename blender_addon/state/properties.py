@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The property groups on the armature object of a character: its request, and the report on the body that came of it.
+"""The property groups on the armature object of a character: its request, and the report on the generated body.
 
 Their names are stored in users' files and used in their scripts, so they stay as they are."""
 

@@ -99,14 +99,14 @@ impl RequestArguments {
             }
             measures.push((name, *value));
         }
-        measures.sort_by_key(|(name, _)| Side::part_measure_name(name).1.is_some());
+        measures.sort_by_key(|(name, _)| Side::split_measure_name(name).1.is_some());
         Ok(measures)
     }
 
     /// Whether a field of the request was typed rather than read from the file. Sides count as one: a value typed for
     /// both may be wrong on one of them.
     fn typed(&self, field: &str) -> bool {
-        let base = |name| Side::part_measure_name(name).0;
+        let base = |name| Side::split_measure_name(name).0;
         match field {
             "z" => self.z.is_some(),
             _ => self.measures.iter().any(|(name, _)| base(name) == base(field)),

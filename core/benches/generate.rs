@@ -1,4 +1,4 @@
-//! What one person costs, on one thread.
+//! Time to generate one body, on one thread.
 
 use anthronet::Body;
 use anthronet::condition::{Fill, Request};
@@ -35,14 +35,14 @@ fn body(model: &Model, request: &Request) -> Body {
     model.generate(request).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Three measures to vertices and normals of level 0.
+/// From three measures to vertices and normals of LOD 0.
 #[divan::bench]
 fn body_of_three_measures(bencher: Bencher<'_, '_>) {
     let (model, request) = (model(), request());
     bencher.bench_local(|| body(&model, black_box(&request)));
 }
 
-/// All measures to vertices and normals of level 0.
+/// From all measures to vertices and normals of LOD 0.
 #[divan::bench]
 fn body_of_all_measures(bencher: Bencher<'_, '_>) {
     let model = model();
@@ -50,7 +50,7 @@ fn body_of_all_measures(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| body(&model, black_box(&request)));
 }
 
-/// The coefficients alone: check, fill, decode, exact solve.
+/// The coefficients only: checks, filling, decoder, exact solve.
 #[divan::bench]
 fn solve_of_all_measures(bencher: Bencher<'_, '_>) {
     let model = model();
@@ -58,7 +58,7 @@ fn solve_of_all_measures(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| model.solve(black_box(&request)));
 }
 
-/// The surface from coefficients.
+/// Points of the cage and the accessories from coefficients.
 #[divan::bench]
 fn cage_of_coefficients(bencher: Bencher<'_, '_>) {
     let model = model();
@@ -66,7 +66,7 @@ fn cage_of_coefficients(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| model.shape_space().body(black_box(body.coefficients())));
 }
 
-/// A body's scene of level 0 as .glb.
+/// A body's scene of LOD 0 as .glb.
 #[divan::bench]
 fn glb_of_body(bencher: Bencher<'_, '_>) {
     let model = model();

@@ -1,4 +1,4 @@
-//! What posing one surface, or a crowd, costs; positions and normals.
+//! Time to skin one surface or a crowd: positions and normals.
 
 use anthronet::Result;
 use anthronet::condition::Request;
@@ -16,7 +16,7 @@ fn main() {
     divan::main();
 }
 
-/// A surface with a pose that turns every joint.
+/// A surface and a pose that rotates every joint.
 fn posed(lod: Lod, influences: usize) -> Result<(Skinner, Vec<RigidTransform>)> {
     let body = Model::embedded()?.generate(&Request { sex: Some(Sex::Female), ..Request::default() })?;
     let scene = Scene::from_body(&body, &SceneOptions { lod, influences, ..SceneOptions::default() })?;
@@ -93,7 +93,7 @@ fn lod1_joint_translation_4(bencher: Bencher<'_, '_>, threads: usize) {
     bench(bencher, SkinMethod::JointTranslation, Lod::Lod1, 4, threads);
 }
 
-/// Forty characters of level 1 in one call.
+/// Forty characters of LOD 1 in one call.
 #[divan::bench(args = [1, 0])]
 fn crowd_of_40(bencher: Bencher<'_, '_>, threads: usize) {
     let (skinner, pose) = posed(Lod::Lod1, 4).unwrap_or_else(|e| panic!("{e}"));

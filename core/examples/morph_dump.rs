@@ -1,9 +1,10 @@
-//! Writes a character with morph targets for programs that are not ours to agree with.
+//! Writes a character with morph targets, to be compared with other programs' results.
 //!
 //!     morph_dump FOLDER
 //!
-//! FOLDER gets `morph.glb`, `morph_meshopt.glb`, `morph.usda`, `morph.usdc`, `morph.vrm` (without motion), and
-//! `morph.json`: targets, weights and morphed vertices. `tests/morph_check.py` and `tests/morph_threejs.mjs` read them.
+//! Writes `morph.glb`, `morph_meshopt.glb`, `morph.usda`, `morph.usdc`, `morph.vrm` (without motion), and
+//! `morph.json` (targets, weights and morphed vertices) to FOLDER. `tests/morph_check.py` and `tests/morph_threejs.mjs`
+//! read them.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,10 +19,10 @@ use serde_json::{Value, json};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-/// Frames of the clip of joints at rest.
+/// Frames of the clip with all joints at rest.
 const FRAMES: usize = 11;
 const RATE: f64 = 30.0;
-/// How many meshes have targets.
+/// Number of meshes, from the first, that have morph targets.
 const MORPHING: usize = 3;
 
 fn main() -> Outcome {
@@ -45,8 +46,9 @@ fn main() -> Outcome {
     Ok(())
 }
 
-/// A body that becomes another one, and half of which is lifted; parts of the eyes have a target of the same name, of which
-/// the second follows the body and the first does not. The first clip keeps the joints at rest.
+/// A body with one target that is another body and one that lifts its left half. Two meshes of the eyes have a target of the
+/// first's name: the weights of the second mesh's are equal to the body's, those of the first mesh's are not. The first clip
+/// keeps the joints at rest.
 fn character() -> Outcome<Scene> {
     let model = Model::embedded()?;
     let scene = |waist: f64| -> Outcome<Scene> {
@@ -85,14 +87,15 @@ fn character() -> Outcome<Scene> {
 }
 
 fn towards(name: &str, from: &SceneMesh, to: &SceneMesh) -> MorphTarget {
-    let way = |from: &[[f32; 3]], to: &[[f32; 3]]| {
+    let displacements = |from: &[[f32; 3]], to: &[[f32; 3]]| {
         from.iter().zip(to).map(|(a, b)| std::array::from_fn(|i| b[i] - a[i])).collect()
     };
-    let (positions, normals) = (way(&from.positions, &to.positions), way(&from.normals, &to.normals));
+    let (positions, normals) =
+        (displacements(&from.positions, &to.positions), displacements(&from.normals, &to.normals));
     MorphTarget { name: name.into(), positions, normals }
 }
 
-/// What other programs are to find.
+/// The results that other programs are expected to get.
 fn expected(scene: &Scene) -> Value {
     let meshes = scene.meshes.iter().take(MORPHING).enumerate().map(|(index, mesh)| {
         let weights = |clip: usize, target: usize| {
@@ -102,11 +105,11 @@ fn expected(scene: &Scene) -> Value {
         };
         let targets = mesh.morph_targets.iter().enumerate().map(|(target, shape)| {
             let of_clips: Vec<_> = (0..scene.clips.len()).map(|clip| weights(clip, target)).collect();
-            // In USD, where it stands for its weights too, which are others in the second mesh.
+            // The name in USD, where one name has one track of weights; those of the second mesh differ.
             let token = shape.name.replace(' ', "_") + if index == 1 { "_2" } else { "" };
             json!({"name": shape.name, "token": token, "weights": of_clips})
         });
-        // Over the first clip, joints at rest.
+        // Over the first clip, which has the joints at rest.
         let frames = [0, FRAMES / 3, FRAMES - 1].map(|frame| {
             let place = |vertex: usize| {
                 let mut at = mesh.positions[vertex].map(f64::from);

@@ -1,10 +1,10 @@
-//! Writes skinned surfaces for programs that are not ours to agree with.
+//! Writes skinned surfaces, to be compared with other programs' skinning.
 //!
 //!     skin_dump FOLDER [--time]
 //!
-//! FOLDER gets `skin.json` (counts, joint names, parents) and, per surface and pose, arrays of little-endian numbers;
+//! Writes `skin.json` (counts, joint names, parents) to FOLDER and, per surface and pose, arrays of little-endian numbers;
 //! `tests/skin_reference.py` reads them. With `--time`, every line on standard input is answered with the nanoseconds
-//! that one linear skinning of level 0 and one copy of as many bytes took, on one thread; `tests/skin_speed.py` asks.
+//! that one linear skinning of LOD 0 and one copy of as many bytes took, on one thread; `tests/skin_speed.py` uses it.
 
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -88,7 +88,7 @@ fn main() -> Outcome {
     Ok(())
 }
 
-/// Every joint turned about a random axis, by a normal angle of half a radian.
+/// Every joint rotated about a random axis, by a normally distributed angle of standard deviation 0.5 rad.
 fn random_pose(rest: &Skeleton, seed: u64) -> Pose {
     let mut random = Random::new(seed, 0);
     let mut pose = rest.rest_pose().clone();
@@ -115,7 +115,7 @@ fn write<T: Copy, const N: usize>(file: &Path, numbers: &[T], bytes: impl Fn(T) 
 
 /// Answers each line with the times, in nanoseconds, of one linear skinning and of one copy that moves as many bytes.
 ///
-/// Both take the next of many characters each time, so that neither finds its memory in a cache.
+/// Both use the next of many characters each time, so that their memory is not in a cache.
 fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[RigidTransform]) -> Outcome {
     const CROWD: usize = 64;
     let skinners = vec![skinner.clone(); CROWD];
@@ -145,8 +145,8 @@ fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[RigidTransfo
     Ok(())
 }
 
-/// What a skinning of positions and normals reads and writes: both twice, and joints and weights, of which four
-/// vertices side by side have as many as the busiest of them.
+/// Bytes read and written by one skinning: positions and normals twice each, plus joints and weights, where four adjacent
+/// vertices use as many slots as the one of them with most influences.
 fn bytes_moved(influences: &Influences) -> usize {
     let vertices = influences.weights.chunks(influences.per_vertex);
     let used: Vec<usize> = vertices.map(|w| w.iter().filter(|w| **w > 0.0).count()).collect();

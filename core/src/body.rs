@@ -1,4 +1,4 @@
-//! A body: what [`Model::generate`] returns.
+//! The generated body, which [`Model::generate`] returns.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::mesh::vertex_normals;
 use crate::model::{Character, Model, Solved};
 use crate::skeleton::Skeleton;
 
-/// A person in the bind pose: T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres.
+/// A person in the bind pose: a T-pose, standing on y = 0, facing +Z, the pelvis over the origin. Metres, model space.
 #[derive(Clone)]
 pub struct Body {
     character: Arc<Character>,
     coefficients: Vec<f64>,
-    // Level 0, then the accessories' points.
+    /// Vertices of LOD 0, then those of the accessories.
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
     skeleton: Arc<Skeleton>,
@@ -32,17 +32,18 @@ impl std::fmt::Debug for Body {
 }
 
 impl Model {
-    /// Makes the body that a request describes.
+    /// Generates the body of a request.
     ///
     /// # Errors
-    /// [`crate::Error::Request`] for a bad field, [`crate::Error::Infeasible`] for measures that no one person has.
+    /// [`crate::Error::Request`] for a wrong field, [`crate::Error::Infeasible`] for measures that no person has together.
     pub fn generate(&self, request: &Request) -> Result<Body> {
         let solved = self.solve(request)?;
         Body::new(self, request, &solved)
     }
 
-    /// The body between two requests (the paper's Fig. 4): measures and identity at the share `t` of the way, met
-    /// exactly. Sex, seed and fill are told of the nearer end, warnings and conflicts of both.
+    /// The body between two requests (the paper's Fig. 4): shape coefficients and measures are interpolated linearly, `t` in
+    /// 0..=1, and the measures met exactly. Sex, seed and fill of the report are those of the nearer request, warnings and
+    /// conflicts those of both.
     ///
     /// # Errors
     /// As [`generate`](Self::generate), and when `t` is not in 0..=1.
@@ -57,9 +58,9 @@ impl Model {
         let measures = between(&a.outcome.obtained, &b.outcome.obtained);
         let measures: [Option<f64>; MEASURE_COUNT] = std::array::from_fn(|i| measures.get(i).copied());
         let outcome: SolveOutcome = self.solve_from(&start, &measures)?;
-        let (near, request) = if t < 0.5 { (&a, from) } else { (&b, to) };
+        let (nearer, request) = if t < 0.5 { (&a, from) } else { (&b, to) };
         let z = between(&a.prepared.z, &b.prepared.z);
-        let prepared = Prepared { given: measures, z, warnings: Vec::new(), ..near.prepared.clone() };
+        let prepared = Prepared { given: measures, z, warnings: Vec::new(), ..nearer.prepared.clone() };
         let mut body = Body::new(self, request, &Solved { prepared, decoded: start, outcome })?;
         body.report = body.report.interpolated([&a.prepared, &b.prepared]);
         Ok(body)
@@ -73,16 +74,16 @@ impl Body {
         let surface = model.shape_space().body(&coefficients);
         let cage = character.cage().vertex_count;
         let mut points = character.subdivision().refine(&surface[..cage])?;
-        let mut shape = model.joints_of(&coefficients);
-        shape.straighten(character.joint_tree());
+        let mut bones = model.joints_of(&coefficients);
+        bones.straighten(character.joint_tree());
 
-        // Feet on the ground: the lowest vertex of the body.
+        // The lowest vertex of the body goes to y = 0, the root joint to the origin.
         let floor = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         points.extend_from_slice(&surface[cage..]);
-        for p in points.iter_mut().chain(&mut shape.heads).chain(&mut shape.tails) {
+        for p in points.iter_mut().chain(&mut bones.heads).chain(&mut bones.tails) {
             p.y -= floor;
         }
-        if let Some(root) = shape.heads.first_mut() {
+        if let Some(root) = bones.heads.first_mut() {
             *root = Vec3::ZERO;
         }
         let refined = character.subdivision().refined();
@@ -105,7 +106,7 @@ impl Body {
             mass.mass_kg,
             mass.volume_m3,
         );
-        let skeleton = Arc::new(shape.skeleton(character.joint_tree())?);
+        let skeleton = Arc::new(bones.skeleton(character.joint_tree())?);
         Ok(Self { character, coefficients, points, normals, skeleton, report, measurements, mass })
     }
 
@@ -114,12 +115,12 @@ impl Body {
         self.report.sex
     }
 
-    /// What came of the request.
+    /// The report on the request and the body.
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// All measures, metres.
+    /// All measures, metres, in the order of [`MeasureId`].
     pub fn measurements(&self) -> &Measurements {
         &self.measurements
     }
@@ -129,32 +130,32 @@ impl Body {
         self.mass
     }
 
-    /// Coefficients in the shape space, metres.
+    /// Coefficients in the shape space, metres, one per component.
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// What the body shares with all others: topology, skeleton, skin weights.
+    /// What the body shares with all others: topology, joint tree, skin weights.
     pub fn character(&self) -> &Character {
         &self.character
     }
 
-    /// The joints in the bind pose, which is the pose they rest in.
+    /// The joint tree with this body's bind pose, which is also its rest pose.
     pub fn skeleton(&self) -> &Arc<Skeleton> {
         &self.skeleton
     }
 
-    /// Vertices of level 0, in model order; the first ones are those of level 1.
+    /// Vertices of LOD 0, metres, in model order; the first ones are those of LOD 1.
     pub fn vertices(&self) -> &[Vec3] {
         &self.points[..self.character.subdivision().refined().vertex_count]
     }
 
-    /// Unit normals of the vertices of level 0.
+    /// Unit normals of the vertices of LOD 0.
     pub fn normals(&self) -> &[Vec3] {
         &self.normals[..self.vertices().len()]
     }
 
-    /// Points and normals of an accessory, by its place in [`Character::accessories`]; `None` beyond the last.
+    /// Vertices (metres) and unit normals of an accessory, by its index in [`Character::accessories`]; `None` out of range.
     pub fn accessory(&self, index: usize) -> Option<(&[Vec3], &[Vec3])> {
         let accessory = self.character.accessories().get(index)?;
         let start = self.vertices().len() + accessory.start - self.character.cage().vertex_count;

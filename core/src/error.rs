@@ -1,12 +1,12 @@
-//! The error type of the library: every variant names what was wrong, what was expected and what came.
+//! The error type of the library: every variant says what is wrong, what was expected and what was found.
 
 use std::path::{Path, PathBuf};
 
 /// What the library's fallible functions return.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What readers of files return among themselves: what is wrong, and where within the file. Who knows the file's path
-/// puts it in front with [`Error::file`].
+/// The result inside file readers: a message that says what is wrong and where in the file. The caller that knows the
+/// path adds it with [`Error::file`].
 pub(crate) type Outcome<T> = std::result::Result<T, String>;
 
 /// Everything that can go wrong, grouped by what the caller can do about it.
@@ -18,7 +18,7 @@ pub enum Error {
     Request {
         /// The field as the caller wrote it, such as `height` or `z`.
         field: String,
-        /// What was expected and what came, with a hint where there is one.
+        /// What was expected and what was found, with a hint where there is one.
         message: String,
     },
     /// The given measures cannot belong to one person.
@@ -37,7 +37,7 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// What was expected and what came, with line or offset where known.
+        /// What was expected and what was found, with line or offset where known.
         message: String,
     },
     /// The operating system refused to read or write.
@@ -45,9 +45,9 @@ pub enum Error {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What was tried: `read`, `write`, `create`.
+        /// The operation that failed: `read`, `write`, `create`.
         action: &'static str,
-        /// The system's own word.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// Data handed to an exporter or a constructor contradicts itself.
@@ -60,23 +60,23 @@ pub enum Error {
     },
 }
 
-/// Why a request is refused that nobody can meet; prints as one sentence per conflict.
+/// Why a request is refused that no body can meet; displays as one sentence per conflict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Infeasible {
-    /// What quarrels, worst first; never empty.
+    /// The conflicts, in the order in which they were found; not empty in an [`Error::Infeasible`].
     pub conflicts: Vec<Conflict>,
 }
 
-/// Given measures that do not go together, or that do not fit beside earlier conflicts; a measure is in one conflict
-/// only.
+/// Given measures that contradict each other, or that contradict the corrected values of earlier conflicts; a measure is
+/// in one conflict only.
 ///
-/// The set is minimal: whichever name is left out, the rest does go together. One of up to four names is also among the
-/// smallest that there are. Only a request that is wrong all over ends with a conflict of all its measures.
+/// The set is minimal: without any one of its names, the rest is feasible. A conflict of up to four names is also one of
+/// the fewest names possible. Only a request with more than three conflicts ends with one of all remaining measures.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Conflict {
     /// The measures, in order.
     pub measures: Vec<ConflictMeasure>,
-    /// A sentence for people.
+    /// The conflict as an English sentence.
     pub message: String,
 }
 
@@ -85,9 +85,9 @@ pub struct Conflict {
 pub struct ConflictMeasure {
     /// Identifier, with its side.
     pub name: &'static str,
-    /// What the request gives.
+    /// The value in the request.
     pub asked: f64,
-    /// What would do.
+    /// The value in the nearest feasible request.
     pub nearest: f64,
 }
 
@@ -117,8 +117,8 @@ impl Error {
     }
 }
 
-/// How unlike two names are, to suggest the one that was meant: Levenshtein distance in characters. Only the first 64 are
-/// looked at: a name is never longer.
+/// Levenshtein distance of two names in characters, to suggest the one that was meant. Only the first 64 characters are
+/// compared: no known name is longer.
 pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
     let characters = |name: &str| name.chars().take(64).collect::<Vec<char>>();
     strsim::generic_levenshtein(&characters(a), &characters(b))
@@ -129,7 +129,7 @@ mod tests {
     use super::edit_distance;
 
     #[test]
-    fn names_are_as_far_apart_as_the_characters_to_change() {
+    fn distances_count_the_characters_to_change() {
         assert_eq!(edit_distance("thig_l", "thigh_l"), 1);
         assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(edit_distance("", "é—"), 2);

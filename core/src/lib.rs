@@ -24,34 +24,34 @@
 //!
 //! # Tour
 //!
-//! | Type | What it is | To share, to keep, to clone |
+//! | Type | What it is | Ownership and cost |
 //! |---|---|---|
-//! | [`model::Model`] | networks, shape space, prior, definitions: what training decided | immutable; open once, share between threads, clones are a pointer |
-//! | [`model::Character`] | what is the same for everybody: topology, levels of detail, skeleton, skin weights | inside the model, behind an `Arc` |
-//! | [`condition::Request`] | what is asked: any subset of the measures, sex, seed or z | plain data |
+//! | [`model::Model`] | networks, shape space, prior, definitions: the result of training | immutable; open it once and share it between threads, a clone copies a pointer |
+//! | [`model::Character`] | what all bodies share: topology, levels of detail, joint tree, skin weights | in the model, behind an `Arc` |
+//! | [`condition::Request`] | what a body is made from: any subset of the measures, sex, seed or z | plain data |
 //! | [`Body`] | one person in the bind pose, with joints and [`condition::Report`] | immutable; owns about 2 MB of vertices and normals, shares the character |
-//! | [`measure::Definitions`] | where each measure lies, as data | inside the model |
-//! | [`skeleton::Skeleton`] | a joint tree in the pose it rests in | immutable, some kilobytes; shared by a body and its clips |
-//! | [`skeleton::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
-//! | [`clip::Clip`], [`clip::Sampler`] | a motion; reads poses off it | a clip is immutable and shared, a sampler is two words |
-//! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one skinning of it | a skinner is immutable and shared, a job borrows the caller's buffers |
-//! | [`scene::Scene`] | meshes, joints, materials, clips; knows nothing of bodies | plain data, what every file format is read into and written from |
+//! | [`measure::Definitions`] | where each measure is taken, as data | in the model |
+//! | [`skeleton::Skeleton`] | a joint tree with its rest pose | immutable, a few kilobytes; shared by a body and its clips |
+//! | [`skeleton::Pose`] | one transform per joint, relative to its parent | a reusable buffer: keep one per thread and character and nothing is allocated per frame |
+//! | [`clip::Clip`], [`clip::Sampler`] | a motion; evaluates it at a time | a clip is immutable and shared, a sampler is two words |
+//! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one evaluation of it | a skinner is immutable and shared, a job borrows the caller's buffers |
+//! | [`scene::Scene`] | meshes, joints, materials, clips, of any character | plain data that every file format is read into and written from |
 //!
-//! Data flows one way: `condition` → `model` → [`Body`] → `skeleton`, `clip`, `skin` → `scene` → `format`. ARCHITECTURE.md has the rooms
-//! and which may use which.
+//! Data flows one way: `condition` → `model` → [`Body`] → `skeleton`, `clip`, `skin` → `scene` → `format`. ARCHITECTURE.md lists
+//! the modules and their allowed dependencies.
 //!
 //! # Conventions
 //!
 //! Metres, radians, seconds, kilograms; other units, axes and handedness are converted in [`space`] alone. Right-handed,
 //! +Y up, +Z forward, +X the character's left, as glTF. The bind pose is a T-pose with the feet on y = 0 and the pelvis
-//! over the origin. Column vectors: `model_from_joint * point_in_joint`, names say both spaces and the matrix nearest to
-//! the point is applied first. Quaternions x, y, z, w. Joints stand after their parents.
+//! over the origin. Matrices act on column vectors: `model_from_joint * point_in_joint`. Their names say both spaces,
+//! and of a product the rightmost factor is applied first. Quaternions are x, y, z, w. Parents come before their children.
 //!
-//! Vertices are in one order everywhere: ids of level 0 are what measures speak of, level 1 is its first 13,380, levels 2
-//! and 3 are index lists over those.
+//! Vertices have one order everywhere: measures are defined on the vertices of LOD 0, LOD 1 is the first 13,380 of them,
+//! and LODs 2 and 3 are index lists over those.
 //!
 //! The same request gives the same bits on every machine and on any number of threads. Errors name the field or file,
-//! what was expected and what came; bad input never panics.
+//! what was expected and what was found; bad input never panics.
 
 mod body;
 pub mod clip;

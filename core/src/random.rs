@@ -1,22 +1,22 @@
-//! Reproducible random numbers: the same seed gives the same bits on every host.
+//! Reproducible random numbers: the same seed gives the same bits on every machine.
 //!
-//! ChaCha8 makes the bits (specified by its algorithm, not by the host), Box–Muller with `libm` makes them normal:
-//! the standard library's logarithm and cosine differ in the last bit from platform to platform.
+//! The bits are ChaCha8's, which its algorithm defines completely. Normal numbers are made from them by the Box–Muller
+//! transform with `libm`, as the standard library's logarithm and cosine differ in the last bit between platforms.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// A source of uniform and normal numbers, independent per (seed, stream).
+/// A generator of uniform and normal numbers; generators of different (seed, stream) are independent.
 #[derive(Clone, Debug)]
 pub struct Random {
     bits: ChaCha8Rng,
-    /// Box–Muller makes two numbers at a time.
+    /// The second number of the last Box–Muller transform, which makes two at a time.
     spare: Option<f64>,
 }
 
 impl Random {
-    /// The source of this seed. Streams of one seed are independent of each other: one per purpose keeps what a seed
-    /// means for one purpose when another purpose draws more or fewer numbers.
+    /// The generator of this seed and stream. Each purpose has its own stream, so that its numbers do not change when
+    /// another purpose draws more or fewer.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
@@ -30,7 +30,7 @@ impl Random {
         self.bits.next_u64()
     }
 
-    /// Uniform in the open interval (0, 1), on a grid of 2⁻⁵³.
+    /// Uniform in the open interval (0, 1): odd multiples of 2⁻⁵³.
     pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 12) as f64 + 0.5) * (1.0 / (1u64 << 52) as f64)
     }
@@ -46,7 +46,7 @@ impl Random {
         radius * libm::cos(angle)
     }
 
-    /// This many independent normal numbers.
+    /// `count` independent numbers of [`normal`](Self::normal).
     pub fn normals(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.normal()).collect()
     }
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_seed_means_these_numbers_for_ever() {
+    fn a_seed_always_gives_these_numbers() {
         let mut random = Random::new(7, 1);
         assert_eq!(random.bits(), BITS);
         assert_eq!(random.normal().to_bits(), NORMAL);

@@ -1,6 +1,6 @@
-//! Left and right of the character.
+//! Left and right of the character, and the suffixes of names that say so.
 
-/// A side of the character, as the character sees it: +X is its left.
+/// A side of the character, from the character's own point of view: +X is its left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
     /// The character's left, +X.
@@ -34,7 +34,7 @@ impl Side {
         }
     }
 
-    /// Sign of x on this side: 1 on the left, −1 on the right. Turns about Y and Z mirror by it too.
+    /// Sign of x on this side: 1 on the left, −1 on the right. Rotations about Y and Z change sign with it too when mirrored.
     pub const fn sign(self) -> f32 {
         match self {
             Self::Left => 1.0,
@@ -42,7 +42,7 @@ impl Side {
         }
     }
 
-    /// How names of joints of our rig end on this side: `_l` or `_r`.
+    /// Suffix of this side's joints in our rig: `_l` or `_r`.
     pub const fn joint_suffix(self) -> &'static str {
         match self {
             Self::Left => "_l",
@@ -50,7 +50,7 @@ impl Side {
         }
     }
 
-    /// How names of measures end on this side: `_left` or `_right`.
+    /// Suffix of this side's measures: `_left` or `_right`.
     pub const fn measure_suffix(self) -> &'static str {
         match self {
             Self::Left => "_left",
@@ -58,16 +58,16 @@ impl Side {
         }
     }
 
-    /// The side that a joint's name in our rig ends in; `None` for one in the middle.
+    /// The side of a joint of our rig, from the suffix of its name; `None` for a central one.
     pub fn of_joint_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|side| name.ends_with(side.joint_suffix()))
     }
 
-    /// A measure's name parted from the side that it ends in, whether there is such a measure or not:
-    /// `("arm_length", Some(Left))` of `arm_length_left`.
-    pub fn part_measure_name(name: &str) -> (&str, Option<Self>) {
-        let parted = |side: Self| Some((name.strip_suffix(side.measure_suffix())?, Some(side)));
-        Self::ALL.into_iter().find_map(parted).unwrap_or((name, None))
+    /// Splits a measure's name into its base name and side: `arm_length_left` gives `("arm_length", Some(Left))`. The
+    /// name need not be in the catalogue.
+    pub fn split_measure_name(name: &str) -> (&str, Option<Self>) {
+        let split = |side: Self| Some((name.strip_suffix(side.measure_suffix())?, Some(side)));
+        Self::ALL.into_iter().find_map(split).unwrap_or((name, None))
     }
 }
 
@@ -85,10 +85,10 @@ mod tests {
     }
 
     #[test]
-    fn names_tell_their_side() {
+    fn names_have_the_side_as_suffix() {
         assert_eq!(Side::of_joint_name("thigh_r"), Some(Side::Right));
         assert_eq!(Side::of_joint_name("pelvis"), None);
-        assert_eq!(Side::part_measure_name("arm_length_left"), ("arm_length", Some(Side::Left)));
-        assert_eq!(Side::part_measure_name("height"), ("height", None));
+        assert_eq!(Side::split_measure_name("arm_length_left"), ("arm_length", Some(Side::Left)));
+        assert_eq!(Side::split_measure_name("height"), ("height", None));
     }
 }

@@ -1,13 +1,29 @@
-//! Units, axes and handedness: the only place that knows of any but the library's own.
+//! Conversion of units, axes and handedness; no other module converts between spaces.
 //!
 //! Inside the library: metres, right-handed, +Y up, +Z forward, +X the character's left (glTF). Every other space is a
-//! signed permutation of these axes, so that conversions there and back are exact:
+//! signed permutation of these axes, so vectors convert there and back exactly:
 //!
-//! | [`Space`] | up | forward | character's left | hand | from ours (x, y, z) |
+//! | [`Space`] | up | forward | character's left | handedness | our (x, y, z) becomes |
 //! |---|---|---|---|---|---|
 //! | `YUp` (ours, glTF, USD) | +Y | +Z | +X | right | (x, y, z) |
 //! | `ZUp` (Blender, AMASS) | +Z | −Y | +X | right | (x, −z, y) |
 //! | `Unity` | +Y | +Z | −X | left | (−x, y, z) |
+//!
+//! The same as matrices C = `space_from_ours`. They act on column vectors, v′ = C v, so column j of C is our axis j in
+//! the other space:
+//!
+//! ```text
+//!              x  y  z                   x  y  z     (ours)
+//!          x │ 1  0  0 │            x │ −1  0  0 │
+//! C(ZUp) = y │ 0  0 −1 │ C(Unity) = y │  0  1  0 │
+//!          z │ 0  1  0 │            z │  0  0  1 │
+//!
+//!     rotation, +90° about X     reflection in the plane x = 0
+//! ```
+//!
+//! A transform M = `model_from_joint` becomes C M J⁻¹: C changes the axes of the model, on the left of M, and J those of
+//! the joint, on its right. J is the identity in right-handed spaces, which leaves every joint's own frame as it is (+Y
+//! stays along the bone), and C in Unity, as a reflection has to act on both sides for the result to remain a rotation.
 
 use std::{f32::consts::FRAC_1_SQRT_2, fmt, str::FromStr};
 
@@ -35,7 +51,7 @@ pub enum Unit {
     /// 1 / 0.45 inch, 0.0564 m: what the skeletons of the CMU motion capture database are measured in (`:units
     /// length 0.45` in their ASF files), and the BVH files made of them.
     Acclaim,
-    /// So many metres; positive.
+    /// Any other unit, as metres per unit; finite and positive.
     Metres(f64),
 }
 
@@ -65,8 +81,9 @@ impl Unit {
         }
     }
 
-    /// The unit of so many metres: a named one within a millionth; `None` when it is not finite and positive.
-    pub fn of_metres(metres: f64) -> Option<Self> {
+    /// The unit with this many metres per unit: a named one where they agree to a relative 10⁻⁶; `None` unless `metres` is
+    /// finite and positive.
+    pub fn from_metres(metres: f64) -> Option<Self> {
         let named = Self::NAMED.into_iter().find(|unit| (metres / unit.metres() - 1.0).abs() < 1e-6);
         let valid = metres.is_finite() && metres > 0.0;
         named.or(valid.then_some(Self::Metres(metres)))
@@ -102,7 +119,7 @@ impl FromStr for Unit {
     /// `m`, `dm`, `cm`, `mm`, `in`, `ft`, `acclaim`, or metres per unit as a number, such as `0.04`.
     fn from_str(text: &str) -> Result<Self> {
         let named = Self::NAMED.into_iter().find(|unit| unit.name() == Some(text));
-        let number = || text.trim_end_matches('m').trim_end().parse().ok().and_then(Self::of_metres);
+        let number = || text.trim_end_matches('m').trim_end().parse().ok().and_then(Self::from_metres);
         named.or_else(number).ok_or_else(|| {
             let known = Self::NAMED.iter().filter_map(|u| u.name()).collect::<Vec<_>>().join(", ");
             Error::request("unit", format!("expected one of {known} or metres per unit, got `{text}`"))
@@ -116,7 +133,7 @@ impl Serialize for Unit {
     }
 }
 
-/// The axis that points up in a right-handed file.
+/// The up axis of a right-handed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Axis {
     /// +Y up, as in this library.
@@ -126,22 +143,23 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// The rotation that stands a file with this axis up on our floor: identity, or −90° about X.
+    /// The rotation from the file's axes to ours: the identity for +Y up, −90° about X for +Z up.
     ///
-    /// As the left factor of a root's transform it moves everything below; joint spaces stay as they are.
+    /// Multiplied on the left of the root's transform it turns the whole skeleton; the joints' own frames stay as they
+    /// are.
     pub fn ours_from_file(self) -> Rotation {
         match self {
             Self::Y => Rotation::IDENTITY,
-            Self::Z => STAND_UP,
+            Self::Z => Y_UP_FROM_Z_UP,
         }
     }
 
-    /// A vector of the file in our axes, exactly.
+    /// Converts a vector from the file's axes to ours, exactly.
     pub fn vector_to_ours(self, v: Vec3) -> Vec3 {
         self.space().to_ours(v)
     }
 
-    /// The space with this axis up.
+    /// The right-handed space with this axis up.
     pub fn space(self) -> Space {
         match self {
             Self::Y => Space::YUp,
@@ -149,7 +167,7 @@ impl Axis {
         }
     }
 
-    /// Its place among x, y, z.
+    /// Index of the axis in x, y, z: 1 or 2.
     pub fn index(self) -> usize {
         match self {
             Self::Y => 1,
@@ -158,10 +176,10 @@ impl Axis {
     }
 }
 
-/// −90° about X: what lies along +Z stands along +Y.
-const STAND_UP: Rotation = Rotation::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
+/// −90° about X, the inverse of C(ZUp) in the [module](self): takes +Z to +Y and −Y to +Z.
+const Y_UP_FROM_Z_UP: Rotation = Rotation::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
 
-/// A rotation as seen in a mirror across X.
+/// A rotation R reflected in the plane x = 0: C R C with C = diag(−1, 1, 1).
 fn mirrored(q: Rotation) -> Rotation {
     Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
@@ -178,7 +196,7 @@ impl fmt::Display for Axis {
 impl FromStr for Axis {
     type Err = Error;
 
-    /// `y` or `z`, small or capital.
+    /// `y` or `z`, in either case.
     fn from_str(text: &str) -> Result<Self> {
         match text {
             "y" | "Y" => Ok(Self::Y),
@@ -188,20 +206,20 @@ impl FromStr for Axis {
     }
 }
 
-/// Axes and handedness of a program or file; see the table of the [module](self). Lengths stay metres.
+/// Axes and handedness of a program or file; see the table in the [module](self). Lengths stay in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Space {
-    /// The library's own.
+    /// The library's own: right-handed, +Y up, characters face +Z.
     #[default]
     YUp,
-    /// Blender's: the front of a character looks along −Y.
+    /// Blender's and AMASS's: right-handed, +Z up, characters face −Y.
     ZUp,
-    /// Unity's, left-handed.
+    /// Unity's: left-handed, +Y up, characters face +Z with their left at −X.
     Unity,
 }
 
 impl Space {
-    /// A point, direction or normal of ours in this space.
+    /// Converts a point, direction or normal from our space to this one, exactly: C v.
     pub fn from_ours(self, v: Vec3) -> Vec3 {
         match self {
             Self::YUp => v,
@@ -210,7 +228,7 @@ impl Space {
         }
     }
 
-    /// A point, direction or normal of this space in ours.
+    /// Converts a point, direction or normal from this space to ours, exactly: Cᵀ v.
     pub fn to_ours(self, v: Vec3) -> Vec3 {
         match self {
             Self::YUp => v,
@@ -219,29 +237,29 @@ impl Space {
         }
     }
 
-    /// A joint's transform to the model, ours, in this space: the model's axes change, the joint's own stay, so that +Y runs
-    /// along its bone everywhere; a mirror mirrors them too.
+    /// Converts a `model_from_joint` (metres) from our space to this one: C M J⁻¹ of the
+    /// [module](self).
     pub fn model_from_joint(self, ours: RigidTransform) -> RigidTransform {
         let rotation = match self {
             Self::YUp => ours.rotation,
-            Self::ZUp => STAND_UP.conjugate() * ours.rotation,
+            Self::ZUp => Y_UP_FROM_Z_UP.conjugate() * ours.rotation,
             Self::Unity => mirrored(ours.rotation),
         };
         RigidTransform { rotation, translation: self.from_ours(ours.translation) }
     }
 
-    /// A joint's transform to the model, in this space, as ours.
+    /// The inverse of [`model_from_joint`](Self::model_from_joint): from this space to ours.
     pub fn model_from_joint_to_ours(self, theirs: RigidTransform) -> RigidTransform {
         let rotation = match self {
             Self::YUp => theirs.rotation,
-            Self::ZUp => STAND_UP * theirs.rotation,
+            Self::ZUp => Y_UP_FROM_Z_UP * theirs.rotation,
             Self::Unity => mirrored(theirs.rotation),
         };
         RigidTransform { rotation, translation: self.to_ours(theirs.translation) }
     }
 
-    /// A joint's transform to another joint: the same in every right-handed space, mirrored in the other; from ours to this
-    /// space and back alike.
+    /// Converts a `parent_from_joint` (metres) between our space and this one: J M J⁻¹, so
+    /// unchanged in right-handed spaces and reflected in Unity's. Its own inverse.
     pub fn parent_from_joint(self, transform: RigidTransform) -> RigidTransform {
         match self {
             Self::YUp | Self::ZUp => transform,
@@ -252,28 +270,30 @@ impl Space {
         }
     }
 
-    /// [`model_from_joint`](Self::model_from_joint) as a matrix, exactly.
+    /// [`model_from_joint`](Self::model_from_joint) for a matrix, exactly: C M J⁻¹.
     pub fn model_from_joint_matrix(self, model_from_joint: Mat4) -> Mat4 {
-        Mat4::from_mat3(self.change()) * model_from_joint * Mat4::from_mat3(self.joint_change())
+        Mat4::from_mat3(self.space_from_ours()) * model_from_joint * Mat4::from_mat3(self.joint_from_ours())
     }
 
-    /// The inverse of such a matrix, ours, in this space, exactly.
+    /// Converts a `joint_from_model` (an inverse bind matrix) from our space to this one, exactly: J M C⁻¹.
     pub fn joint_from_model_matrix(self, joint_from_model: Mat4) -> Mat4 {
-        Mat4::from_mat3(self.joint_change()) * joint_from_model * Mat4::from_mat3(self.change().transpose())
+        let ours_from_space = self.space_from_ours().transpose();
+        Mat4::from_mat3(self.joint_from_ours()) * joint_from_model * Mat4::from_mat3(ours_from_space)
     }
 
-    /// Whether corners of triangles go round the other way, as they do in a left-handed space.
+    /// Whether faces have to reverse the order of their corners to keep their front outside: in a left-handed space.
     pub fn flips_winding(self) -> bool {
         self == Self::Unity
     }
 
-    fn change(self) -> Mat3 {
+    /// C of the [module](self), orthogonal.
+    fn space_from_ours(self) -> Mat3 {
         Mat3::from_cols(self.from_ours(Vec3::X), self.from_ours(Vec3::Y), self.from_ours(Vec3::Z))
     }
 
-    /// What becomes of a joint's own axes; its own inverse.
-    fn joint_change(self) -> Mat3 {
-        if self.flips_winding() { self.change() } else { Mat3::IDENTITY }
+    /// J of the [module](self): the change of a joint's own axes; its own inverse.
+    fn joint_from_ours(self) -> Mat3 {
+        if self.flips_winding() { self.space_from_ours() } else { Mat3::IDENTITY }
     }
 }
 
@@ -307,44 +327,44 @@ mod tests {
     const SPACES: [Space; 3] = [Space::YUp, Space::ZUp, Space::Unity];
 
     #[test]
-    fn a_character_stands_faces_and_holds_its_left_out_in_every_space() {
+    fn up_forward_and_left_of_every_space() {
         let (left, up, front) = (Vec3::X, Vec3::Y, Vec3::Z);
-        let seen = |space: Space| [left, up, front].map(|v| space.from_ours(v));
-        assert_eq!(seen(Space::YUp), [Vec3::X, Vec3::Y, Vec3::Z]);
-        assert_eq!(seen(Space::ZUp), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
-        assert_eq!(seen(Space::Unity), [Vec3::NEG_X, Vec3::Y, Vec3::Z]);
+        let axes = |space: Space| [left, up, front].map(|v| space.from_ours(v));
+        assert_eq!(axes(Space::YUp), [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert_eq!(axes(Space::ZUp), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
+        assert_eq!(axes(Space::Unity), [Vec3::NEG_X, Vec3::Y, Vec3::Z]);
     }
 
     #[test]
-    fn there_and_back_is_exact_but_for_rotations() {
+    fn round_trips_are_exact_except_for_rotations() {
         let (v, q) = (Vec3::new(0.1, -2.0, 3.0), Rotation::from_xyzw(0.1, -0.3, 0.7, 0.64).normalize());
         for space in SPACES {
             assert_eq!(space.to_ours(space.from_ours(v)), v);
             let ours = RigidTransform { rotation: q, translation: v };
             assert_eq!(space.parent_from_joint(space.parent_from_joint(ours)), ours);
             let back = space.model_from_joint_to_ours(space.model_from_joint(ours));
-            // The products with a quarter turn round.
+            // Products with the quarter turn are rounded.
             assert!(back.translation == v && back.rotation.dot(q) > 1.0 - 1e-6, "{space:?}");
         }
     }
 
     #[test]
-    fn what_hangs_on_a_joint_is_carried_along() {
+    fn points_of_a_joint_land_in_the_same_place() {
         let q = Rotation::from_axis_angle(Vec3::new(0.48, -0.6, 0.64), 1.1);
-        let (step, point) = (Vec3::new(4.0, 5.0, -6.0), Vec3::new(0.3, 1.7, -0.2));
-        let ours = RigidTransform { rotation: q, translation: step };
+        let (translation, point) = (Vec3::new(4.0, 5.0, -6.0), Vec3::new(0.3, 1.7, -0.2));
+        let ours = RigidTransform { rotation: q, translation };
         let matrix = Mat4::from(ours.to_affine());
         for space in SPACES {
-            // The joint's own axes, and what hangs on it, change only in a mirror.
-            let hanging = if space == Space::Unity { space.from_ours(point) } else { point };
-            let expected = space.from_ours(q * point + step);
+            // Coordinates in the joint's own frame change only under the reflection.
+            let in_joint = if space == Space::Unity { space.from_ours(point) } else { point };
+            let expected = space.from_ours(q * point + translation);
             let there = space.model_from_joint(ours);
             // A few roundings of numbers near 8.
-            assert!((there.rotation * hanging + there.translation).distance(expected) < 4e-6, "{space:?}");
+            assert!((there.rotation * in_joint + there.translation).distance(expected) < 4e-6, "{space:?}");
             let model_from_joint = space.model_from_joint_matrix(matrix);
-            assert!(model_from_joint.transform_point3(hanging).distance(expected) < 4e-6, "{space:?}");
+            assert!(model_from_joint.transform_point3(in_joint).distance(expected) < 4e-6, "{space:?}");
             let joint_from_model = space.joint_from_model_matrix(matrix.inverse());
-            assert!(joint_from_model.transform_point3(expected).distance(hanging) < 4e-6, "{space:?}");
+            assert!(joint_from_model.transform_point3(expected).distance(in_joint) < 4e-6, "{space:?}");
         }
     }
 
@@ -359,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_z_up_is_stood_up() {
+    fn z_up_becomes_y_up() {
         for v in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(1.0, 2.0, 3.0)] {
             assert!((Axis::Z.ours_from_file() * v).distance(Axis::Z.vector_to_ours(v)) < 1e-6);
         }
@@ -371,7 +391,7 @@ mod tests {
     fn units_are_written_and_read() {
         for unit in Unit::NAMED.into_iter().chain([Unit::Metres(0.04)]) {
             assert_eq!(unit.to_string().parse::<Unit>().unwrap(), unit);
-            assert_eq!(Unit::of_metres(unit.metres()), Some(unit));
+            assert_eq!(Unit::from_metres(unit.metres()), Some(unit));
         }
         for wrong in ["", "miles", "-1", "NaN", "0", "inf"] {
             assert!(

@@ -84,7 +84,7 @@ fn tapes_read_what_a_planar_cut_reads() {
             .map(|body| {
                 let at = |v: u32| body.vertices()[v as usize].as_dvec3();
                 let tape = definition.read(at);
-                let places: Vec<DVec3> = definition.points.iter().map(|p| p.place(at)).collect();
+                let places: Vec<DVec3> = definition.points.iter().map(|p| p.position(at)).collect();
                 let centre = places.iter().sum::<DVec3>() / places.len() as f64;
                 let reach = 1.45 * places.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
                 let quads = &body.character().subdivision().refined().quads;
@@ -114,7 +114,7 @@ fn the_chest_is_the_cut_at_the_nipples() {
         let sex = Some(Sex::ALL[seed as usize % 2]);
         let body = model.generate(&Request { sex, seed, fill: Fill::Sample, ..Request::default() }).unwrap();
         let at = |v: u32| body.vertices()[v as usize].as_dvec3();
-        let nipples: Vec<DVec3> = definition.points.iter().map(|p| p.place(at)).collect();
+        let nipples: Vec<DVec3> = definition.points.iter().map(|p| p.position(at)).collect();
         let level = (nipples[0] + nipples[1]) / 2.0;
         // Anything at that height but the arms: nothing reaches farther out than the chest itself does.
         let quads = &body.character().subdivision().refined().quads;

@@ -1,9 +1,9 @@
-//! The chi-squared distribution: how far from the mean a Gaussian of n dimensions reaches.
+//! The chi-squared distribution: of the squared Mahalanobis distance of an n-dimensional Gaussian from its mean.
 //!
 //! Closed forms for whole degrees of freedom (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.4.4 and
-//! 26.4.5), so that tails of 1e-12 are as exact as those of 5 %.
+//! 26.4.5), so that tails of 1e-12 are as accurate as those of 5 %.
 
-/// Probability of a value above `x` for `n` degrees of freedom; 1 for x ≤ 0, and 0 for n = 0 beyond that.
+/// Probability of a value above `x` with `n` degrees of freedom; 1 for x ≤ 0, and 0 for x > 0 and n = 0.
 pub(crate) fn survival(x: f64, n: usize) -> f64 {
     if x <= 0.0 {
         return 1.0;
@@ -16,7 +16,7 @@ pub(crate) fn survival(x: f64, n: usize) -> f64 {
     if decay == 0.0 {
         return 0.0;
     }
-    // Sum of half^(k) / Γ(k + 1): whole k for even n, k + 1/2 for odd n.
+    // Sum of half^k / Γ(k + 1) over k < n / 2: k = 0, 1, … for even n, k = 1/2, 3/2, … for odd n.
     let (mut term, mut order, tail) = if n.is_multiple_of(2) {
         (1.0, 0.0, 0.0)
     } else {
@@ -31,10 +31,10 @@ pub(crate) fn survival(x: f64, n: usize) -> f64 {
     tail + decay * sum
 }
 
-/// The value that is exceeded with probability `tail`, 0 < tail < 1, for `n` degrees of freedom.
+/// The value that is exceeded with probability `tail`, 0 < tail < 1, with `n` degrees of freedom.
 pub(crate) fn upper_quantile(tail: f64, n: usize) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
-    // exp underflows long before 1e4, so the bound is only there for a tail of zero.
+    // exp underflows long before 1e4: the bound matters only for a tail of zero.
     while survival(high, n) > tail && high < 1e4 {
         low = high;
         high *= 2.0;

@@ -1,11 +1,11 @@
-//! Whether the given measures can belong to one person, and if not, which of them quarrel and what would do instead.
+//! Whether the given measures can belong to one person, and if not, which of them conflict and which values are nearest.
 //!
-//! The ruler is the Mahalanobis distance of the given measures from the prior's mean, each believed up to
-//! [`JUDGING_ERROR`]. In that metric the nearest point of the feasible ellipsoid lies on the line to the mean, so it has a closed
-//! form.
+//! The criterion is the Mahalanobis distance of the given measures from the prior's mean, with [`FEASIBILITY_NOISE`] added
+//! to the covariance. In that metric the point of the feasible ellipsoid nearest to the given measures lies on the line to
+//! the mean, so it has a closed form.
 
 use super::chi_squared;
-use super::error::JUDGING_ERROR;
+use super::error::FEASIBILITY_NOISE;
 use super::prior::{GivenMeasures, SexPrior};
 use super::request::{group_by, groups};
 use super::text::{list, metres};
@@ -13,45 +13,46 @@ use crate::Result;
 use crate::error::{Conflict, ConflictMeasure, Infeasible};
 use crate::measure::{MEASURE_COUNT, MeasureId, Sex};
 
-/// Largest number of names (both sides of a measure count as one) that the search for a conflict goes through in
-/// full; 24 names give 12,950 sets. Larger conflicts are found by leaving names out one by one.
+/// Largest conflicts, in names (both sides of a measure count as one), that an exhaustive search looks for; 24 names give
+/// 12,950 sets. Larger conflicts are found by removing names one by one.
 const FULL_SEARCH: usize = 4;
 
-/// Number of conflicts that are told apart. A request with more is wrong all over and is best moved as a whole.
-const ROUNDS: usize = 3;
+/// Number of conflicts that are resolved one by one; a request with more is then corrected as a whole.
+const MAX_CONFLICTS: usize = 3;
 
-/// Names that a message spells out; of more, it tells those that move most.
-const SPELT_OUT: usize = 6;
+/// Most names that a message lists in full; of more, it lists the three that change most.
+const MAX_LISTED: usize = 6;
 
-/// How often nearest values are pulled towards the mean, each time to [`PULL`] of their distance, before the mean itself is
-/// taken: by then a sixtieth of the first distance is left.
-const PULLS: usize = 39;
-const PULL: f64 = 0.9;
+/// How often nearest values are moved towards the mean, each time by the factor [`SHRINK`] on their distance, before the
+/// mean itself is taken; a sixtieth of the first distance is left by then.
+const MAX_SHRINKS: usize = 39;
+const SHRINK: f64 = 0.9;
 
-/// How far inside the limit a nearest value is put, so that it is still feasible when rounded to the millimetre.
+/// Distance of nearest values as a share of the limit: inside it, so that they are still feasible when rounded to
+/// millimetres.
 const NEAREST_SCALE: f64 = 0.98;
 
 /// Where a request becomes unusual, and where it is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Standard deviation, metres, of the error with which given measures are believed; [`JUDGING_ERROR`].
-    pub error: f64,
-    /// Share of people farther out than the distance that draws a warning.
+    /// Standard deviation of the noise of given measures, metres; [`FEASIBILITY_NOISE`].
+    pub noise: f64,
+    /// Share of people, under the Gaussian, beyond the distance that gives a warning.
     pub warn_tail: f64,
-    /// Share of people farther out than the distance that, times `slack`, is refused.
+    /// Share of people, under the Gaussian, beyond the distance that, times `slack`, is the limit of feasibility.
     pub refuse_tail: f64,
-    /// The factor on that distance: real bodies have heavier tails than the Gaussian.
+    /// Factor on that distance: real bodies have heavier tails than the Gaussian.
     pub slack: f64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { error: JUDGING_ERROR, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.6 }
+        Self { noise: FEASIBILITY_NOISE, warn_tail: 1e-3, refuse_tail: 1e-6, slack: 1.6 }
     }
 }
 
 impl Limits {
-    /// The Mahalanobis distance of `count` measures beyond which a warning is due.
+    /// The Mahalanobis distance of `count` measures beyond which there is a warning.
     pub fn warn(&self, count: usize) -> f64 {
         chi_squared::upper_quantile(self.warn_tail, count).sqrt()
     }
@@ -75,21 +76,20 @@ pub struct Feasibility {
     pub warn: f64,
     /// The distance beyond which a request is refused.
     pub refuse: f64,
-    /// What quarrels; empty for a feasible request.
+    /// The conflicts; empty for a feasible request.
     pub conflicts: Vec<Conflict>,
-    /// The given measures where they are feasible, else with the nearest values of all conflicts taken over: feasible.
+    /// The given measures, with the nearest feasible values in the place of conflicting ones; always feasible.
     pub nearest: GivenMeasures,
 }
 
 impl Feasibility {
-    /// Judges the given measures.
+    /// Judges the given measures (metres) of a person of this sex, by the prior of that sex.
     ///
     /// # Errors
-    /// [`crate::Error::Request`] for a measure that is not finite, [`crate::Error::Invalid`] for an error of theirs that
-    /// is not positive.
+    /// As [`SexPrior::project`], with `limits.noise`.
     pub fn assess(prior: &SexPrior, sex: Sex, given: &GivenMeasures, limits: &Limits) -> Result<Self> {
         let count = given.iter().flatten().count();
-        let distance = prior.distance_squared(given, limits.error)?.sqrt();
+        let distance = prior.distance_squared(given, limits.noise)?.sqrt();
         let mut result = Self {
             sex,
             count,
@@ -99,7 +99,7 @@ impl Feasibility {
             conflicts: Vec::new(),
             nearest: *given,
         };
-        // A distance that overflows counts as too far.
+        // An overflow counts as infeasible.
         if distance.is_nan() || distance > result.refuse {
             let search = Search::new(prior, given, limits)?;
             let sets = search.resolve(&mut result.nearest)?;
@@ -120,7 +120,7 @@ impl Feasibility {
         self.conflicts.is_empty()
     }
 
-    /// A warning when the measures are feasible but rarer together than the limit.
+    /// A warning when the measures are feasible, but beyond [`warn`](Self::warn).
     pub fn warning(&self) -> Option<String> {
         if !self.is_feasible() || self.distance <= self.warn {
             return None;
@@ -129,7 +129,7 @@ impl Feasibility {
         let rarity = if share < 1e-9 {
             "fewer than 1 in 1,000,000,000".to_owned()
         } else {
-            // Two digits: more would claim knowledge of tails that nobody has.
+            // Two significant digits: the tails are not known better.
             let one_in = 1.0 / share;
             let step = libm::pow(10.0, libm::floor(libm::log10(one_in)) - 1.0);
             format!("about 1 in {}", thousands((one_in / step).round() * step))
@@ -140,7 +140,7 @@ impl Feasibility {
         ))
     }
 
-    /// Why the request is refused; without conflicts for a feasible one.
+    /// The reason to refuse the request; without conflicts for a feasible one.
     pub fn infeasible(&self) -> Infeasible {
         Infeasible { conflicts: self.conflicts.clone() }
     }
@@ -165,7 +165,7 @@ struct Search<'a> {
     limits: &'a Limits,
     /// Indices of measures, one entry per name: both sides together where both are given.
     names: Vec<Vec<usize>>,
-    /// Refusing distance per number of measures, 0 to all.
+    /// Limit of feasibility per number of measures, from 0 to all.
     refuse: Vec<f64>,
 }
 
@@ -179,35 +179,35 @@ impl<'a> Search<'a> {
         Ok(Self { prior, limits, names, refuse })
     }
 
-    /// Replaces conflict after conflict by its nearest values until the whole is feasible; returns the conflicting
-    /// sets of measures.
+    /// Replaces one conflict after another by its nearest values until all measures together are feasible; returns the
+    /// conflicting sets of measures.
     fn resolve(&self, current: &mut GivenMeasures) -> Result<Vec<Vec<usize>>> {
         let mut sets = Vec::new();
         let everything: Vec<_> = self.names.iter().flatten().copied().collect();
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_CONFLICTS {
             if self.excess(&everything, current)? <= 1.0 {
                 return Ok(sets);
             }
             let set = self.smallest_conflict(current)?;
-            self.pull_inside(&set, current)?;
+            self.make_feasible(&set, current)?;
             sets.push(set);
         }
         if self.excess(&everything, current)? > 1.0 {
-            self.pull_inside(&everything, current)?;
+            self.make_feasible(&everything, current)?;
             sets.push(everything);
         }
         Ok(sets)
     }
 
-    /// Distance of these measures as a share of what is refused; above 1 they conflict.
+    /// Distance of these measures as a share of the limit of feasibility; above 1 they conflict.
     fn excess(&self, set: &[usize], values: &GivenMeasures) -> Result<f64> {
         let part = subset(values, set);
-        let distance = self.prior.distance_squared(&part, self.limits.error)?.sqrt();
+        let distance = self.prior.distance_squared(&part, self.limits.noise)?.sqrt();
         let excess = distance / self.refuse[set.len().min(MEASURE_COUNT)];
         Ok(if excess.is_nan() { f64::INFINITY } else { excess })
     }
 
-    /// The smallest set of names that conflicts by itself, the worst of that size.
+    /// A conflicting set of the fewest names possible, the worst of that size; larger than [`FULL_SEARCH`], a minimal one.
     fn smallest_conflict(&self, values: &GivenMeasures) -> Result<Vec<usize>> {
         for size in 1..=FULL_SEARCH.min(self.names.len()) {
             let mut worst: Option<(f64, Vec<usize>)> = None;
@@ -226,19 +226,19 @@ impl<'a> Search<'a> {
                 return Ok(set);
             }
         }
-        self.leave_out(values)
+        self.minimal_conflict(values)
     }
 
-    /// A conflicting set that stops conflicting whichever name is left out, by leaving out greedily.
-    fn leave_out(&self, values: &GivenMeasures) -> Result<Vec<usize>> {
+    /// A conflicting set that is feasible without any one of its names, found by greedy removal.
+    fn minimal_conflict(&self, values: &GivenMeasures) -> Result<Vec<usize>> {
         let mut kept: Vec<usize> = (0..self.names.len()).collect();
         let flatten =
             |kept: &[usize]| kept.iter().flat_map(|i| self.names[*i].iter().copied()).collect::<Vec<_>>();
         loop {
             let mut best: Option<(f64, Vec<usize>)> = None;
-            for leave in 0..kept.len() {
+            for removed in 0..kept.len() {
                 let mut rest = kept.clone();
-                rest.remove(leave);
+                rest.remove(removed);
                 let excess = self.excess(&flatten(&rest), values)?;
                 if excess > 1.0 && best.as_ref().is_none_or(|(most, _)| excess > *most) {
                     best = Some((excess, rest));
@@ -251,15 +251,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Moves these measures along the line to their mean until they are feasible, in whole millimetres; both sides of
-    /// a measure that were equal stay equal.
-    fn pull_inside(&self, set: &[usize], values: &mut GivenMeasures) -> Result<()> {
+    /// Moves these measures along the line to their mean until they are feasible, in whole millimetres; equal values of both
+    /// sides stay equal.
+    fn make_feasible(&self, set: &[usize], values: &mut GivenMeasures) -> Result<()> {
         let start = *values;
         let mean = self.prior.mean();
         let excess = self.excess(set, values)?;
         let mut scale = if excess.is_finite() { NEAREST_SCALE / excess.max(1.0) } else { 0.0 };
-        for attempt in 0..=PULLS {
-            if attempt == PULLS {
+        for attempt in 0..=MAX_SHRINKS {
+            if attempt == MAX_SHRINKS {
                 scale = 0.0;
             }
             for &i in set {
@@ -281,11 +281,11 @@ impl<'a> Search<'a> {
             for &i in set {
                 values[i] = values[i].map(|v| (v * 1000.0).round() / 1000.0);
             }
-            // Rounding and averaging can cost what the margin does not hold when the limits are very tight.
+            // Rounding and averaging can exceed the margin when the limits are very tight.
             if self.excess(set, values)? <= 1.0 {
                 return Ok(());
             }
-            scale *= PULL;
+            scale *= SHRINK;
         }
         for &i in set {
             values[i] = Some(mean[i]);
@@ -294,7 +294,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The entries of `set` alone.
+/// The entries of `set` only.
 fn subset(values: &GivenMeasures, set: &[usize]) -> GivenMeasures {
     let mut part = [None; MEASURE_COUNT];
     for &i in set {
@@ -318,7 +318,7 @@ fn next_combination(choice: &mut [usize], n: usize) -> bool {
     false
 }
 
-/// The conflict in words. `beside` says that the set conflicts only together with measures of earlier conflicts.
+/// A [`Conflict`] with its message. `beside`: the set conflicts only together with the nearest values of earlier conflicts.
 fn describe(
     set: &[usize],
     beside: bool,
@@ -342,7 +342,7 @@ fn describe(
         })
         .collect();
     let count = moves.len();
-    if count > SPELT_OUT {
+    if count > MAX_LISTED {
         let share = |m: &(String, f64, f64)| (m.2 - m.1).abs() / m.1.abs().max(f64::MIN_POSITIVE);
         moves.sort_by(|a, b| share(b).total_cmp(&share(a)));
         moves.truncate(3);
@@ -350,7 +350,7 @@ fn describe(
     let asked_text =
         list(&moves.iter().map(|m| format!("{} {} m", m.0, metres(m.1))).collect::<Vec<_>>(), "and");
     let nearest_text = list(&moves.iter().map(|m| format!("{} m", metres(m.2))).collect::<Vec<_>>(), "and");
-    let message = if count > SPELT_OUT {
+    let message = if count > MAX_LISTED {
         format!(
             "{count} measures do not go together for a {sex}, most of all {asked_text}: nearest feasible are {nearest_text}"
         )

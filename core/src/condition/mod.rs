@@ -1,7 +1,7 @@
-//! From a request to the condition of the network, and from its answer to exactly the asked measures.
+//! From a request to the network's condition, and from the decoded body to one that has exactly the given measures.
 //!
-//! [`Request`] → [`Prepared`] (checked, [`Feasibility`], filled and projected by the [`Prior`]) → the network decodes →
-//! [`solve()`] on the given measures → [`Report`].
+//! [`Request`] → [`Prepared`] (checked, judged by [`Feasibility`], filled and projected by the [`Prior`]) → decoder →
+//! [`solve()`] for the given measures → [`Report`].
 
 mod chi_squared;
 mod error;
@@ -14,7 +14,7 @@ mod solve;
 mod text;
 
 pub use crate::error::{Conflict, ConflictMeasure};
-pub use error::{FILL_ERROR, JUDGING_ERROR, PROJECTION_ERROR};
+pub use error::{FEASIBILITY_NOISE, FILL_NOISE, PROJECTION_NOISE};
 pub use feasibility::{Feasibility, Limits};
 pub use prepare::Prepared;
 pub use prior::{Conditional, GivenMeasures, Prior, QUANTILE_COUNT, SexPrior};

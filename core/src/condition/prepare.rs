@@ -1,6 +1,6 @@
-//! A request made ready for the network: checked, its sex decided, its conflicts found, its open measures filled.
+//! A request prepared for the network: checked, its sex decided, its conflicts found, its open measures filled.
 
-use super::error::PROJECTION_ERROR;
+use super::error::PROJECTION_NOISE;
 use super::feasibility::{Feasibility, Limits};
 use super::prior::{Conditional, GivenMeasures, Prior, SexPrior};
 use super::request::{Fill, MeasureRange, Request};
@@ -12,29 +12,30 @@ use crate::{Error, Result};
 /// The stream of [`Random`] that open measures are drawn from.
 const FILL_STREAM: u64 = 2;
 
-/// Draws of the open measures before the mean is taken: what is given leaves no one plausible.
+/// Draws of the open measures after which the mean is taken, for given measures beside which no draw is plausible.
 const MOST_DRAWS: usize = 60;
 
-/// What the network and the solve need, and what the report says about how it came about. Metres.
+/// The inputs of the network and of the solve, with what the report says about their origin. Metres.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The sex that was given, or the likelier one.
+    /// The given sex, or the likelier one.
     pub sex: Sex,
-    /// The measures to be met exactly: the given ones, or the nearest feasible ones where the request allows that.
+    /// The measures to be met exactly: the given ones; where they are infeasible and the request allows it, the nearest
+    /// feasible ones.
     pub given: GivenMeasures,
     /// All measures: the given ones and the filled ones.
     pub filled: Measurements,
-    /// The filled measures pulled towards the plausible: the condition of the network.
+    /// `filled` after [`SexPrior::project`]: the measures that the network is conditioned on.
     pub projected: Measurements,
-    /// Lower end of each measure's 90 % interval beside the given ones; a given one itself.
+    /// Lower end of each open measure's 90 % interval, conditioned on the given ones; the value of a given one.
     pub low90: Measurements,
-    /// Upper end of that interval.
+    /// Upper end of that interval; the value of a given one.
     pub high90: Measurements,
-    /// The latent vector.
+    /// The latent vector z.
     pub z: Vec<f64>,
-    /// Sentences about what is unusual or was assumed.
+    /// Sentences about what was assumed and what is unusual.
     pub warnings: Vec<String>,
-    /// Conflicts that the nearest feasible request resolved.
+    /// The conflicts that were resolved by replacing the request with the nearest feasible one.
     pub conflicts: Vec<Conflict>,
 }
 
@@ -42,8 +43,8 @@ impl Prepared {
     /// Prepares a request for a network of `latent_size` latent dimensions.
     ///
     /// # Errors
-    /// [`Error::Request`] for what [`Request::check`] refuses; [`Error::Infeasible`] for measures that no one person
-    /// has, unless the request asks for the nearest instead.
+    /// As [`Request::check`]; [`Error::Infeasible`] for measures that no person has together, unless the request allows
+    /// the nearest feasible ones.
     pub fn new(
         request: &Request,
         prior: &Prior,
@@ -78,7 +79,7 @@ impl Prepared {
             sex,
             given: feasibility.nearest,
             filled,
-            projected: prior.project(&filled, PROJECTION_ERROR)?,
+            projected: prior.project(&filled, PROJECTION_NOISE)?,
             low90,
             high90,
             z: request.latent(latent_size),
@@ -88,21 +89,21 @@ impl Prepared {
     }
 }
 
-/// Draws the open measures until each lies among those of people of this sex: the Gaussian's tails reach beyond
-/// anybody. Draws that keep failing are pulled towards the mean.
+/// Draws the open measures until each is within the quantiles of its sex, as the Gaussian's tails reach beyond real
+/// people. Draws are scaled towards the mean more with each failure.
 fn plausible_sample(prior: &SexPrior, conditional: &Conditional, seed: u64) -> Measurements {
     let mut random = Random::new(seed, FILL_STREAM);
     let mean = conditional.mean();
     let mut scale = 1.0;
     for _ in 0..MOST_DRAWS {
         let draw = conditional.sample(&mut random);
-        let pulled: Measurements = std::array::from_fn(|i| mean[i] + scale * (draw[i] - mean[i]));
-        let among_people = MeasureId::all().zip(conditional.given()).all(|(id, given)| {
-            let percentile = prior.percentile(id, pulled[id.index()]);
+        let scaled: Measurements = std::array::from_fn(|i| mean[i] + scale * (draw[i] - mean[i]));
+        let plausible = MeasureId::all().zip(conditional.given()).all(|(id, given)| {
+            let percentile = prior.percentile(id, scaled[id.index()]);
             *given || (percentile > 0.0 && percentile < 100.0)
         });
-        if among_people {
-            return pulled;
+        if plausible {
+            return scaled;
         }
         scale *= 0.9;
     }
@@ -114,9 +115,9 @@ fn guess_sex(request: &Request, prior: &Prior, limits: &Limits, warnings: &mut V
         warnings.push("sex not given, nor any measure: female assumed".to_owned());
         return Ok(Sex::Female);
     }
-    let posterior = prior.sex_posterior(&request.measures, limits.error)?;
+    let posterior = prior.sex_posterior(&request.measures, limits.noise)?;
     let sex = if posterior[0] >= posterior[1] { Sex::Female } else { Sex::Male };
-    // Never 100 %: the data is not the world.
+    // Never 100 %: the model's people are only a sample.
     let percent = (100.0 * posterior[sex.index()]).floor().min(99.0);
     warnings.push(format!("sex not given: {sex} is likelier ({percent:.0} %)"));
     Ok(sex)

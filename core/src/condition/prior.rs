@@ -1,11 +1,11 @@
-//! What is known about a person before anything is measured: per sex, a Gaussian over the measures and their
-//! quantiles.
+//! The prior over measures: per sex, a Gaussian N(μ, S) and the quantiles of each measure.
 //!
-//! Three uses: measures that were not given are filled from the Gaussian conditioned on those that were; a full vector
-//! is pulled towards the plausible ([`SexPrior::project`]) before the network sees it; and a sex that was not given is
-//! judged by which Gaussian explains the measures better.
+//! Three uses: open measures are filled from the Gaussian conditioned on the given ones; a full vector is shrunk towards
+//! the mean ([`SexPrior::project`]) before the network sees it; and a sex that was not given is inferred from the
+//! likelihoods of the given measures. In formulas G are the given measures, U the open ones, A their values and e the standard
+//! deviation of the measurement noise.
 
-use super::error::FILL_ERROR;
+use super::error::FILL_NOISE;
 use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
 use crate::random::Random;
@@ -27,7 +27,7 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// From flat arrays, female first: `mean` 2 × M (m), `covariance` 2 × M × M (m²), `quantiles` 2 × M × 101 (m), where M is
+    /// From flat arrays, row-major, female first: `mean` 2 × M (m), `covariance` 2 × M × M (m²), `quantiles` 2 × M × 101 (m), where M is
     /// [`MEASURE_COUNT`].
     ///
     /// # Errors
@@ -61,17 +61,17 @@ impl Prior {
         }
     }
 
-    /// Probability of each sex, in the order of [`Sex::index`], from the given measures alone; both sexes count as
-    /// equally frequent, so nothing given means one half each.
+    /// Probability of each sex, in the order of [`Sex::index`], from the given measures, read with noise of standard
+    /// deviation `noise` (metres). Both sexes are equally frequent: one half each when nothing is given.
     ///
     /// # Errors
-    /// [`Error::Request`] for a measure that is not finite.
-    pub fn sex_posterior(&self, given: &GivenMeasures, error: f64) -> Result<[f64; 2]> {
-        let female = self.sexes[0].log_likelihood(given, error)?;
-        let male = self.sexes[1].log_likelihood(given, error)?;
-        // exp of a large number is infinite, so the quotient is still 0 or 1.
+    /// As [`SexPrior::project`].
+    pub fn sex_posterior(&self, given: &GivenMeasures, noise: f64) -> Result<[f64; 2]> {
+        let female = self.sexes[0].log_likelihood(given, noise)?;
+        let male = self.sexes[1].log_likelihood(given, noise)?;
+        // An overflow of exp to infinity still gives 0.
         let p = 1.0 / (1.0 + libm::exp(male - female));
-        // Measures so absurd that both likelihoods overflow say nothing.
+        // NaN where both log-likelihoods overflow: no information.
         let p = if p.is_nan() { 0.5 } else { p };
         Ok([p, 1.0 - p])
     }
@@ -93,7 +93,7 @@ impl SexPrior {
     ///
     /// # Errors
     /// [`Error::Invalid`] for wrong sizes, numbers that are not finite, a covariance that is not symmetric or not
-    /// positive definite beside [`FILL_ERROR`], and quantiles that fall.
+    /// positive definite with [`FILL_NOISE`] added, and quantiles that descend.
     pub fn new(mean: &[f64], covariance: &[f64], quantiles: &[f64]) -> Result<Self> {
         let n = MEASURE_COUNT;
         for (what, data, expected) in [
@@ -113,7 +113,7 @@ impl SexPrior {
         for (i, a) in MeasureId::all().enumerate() {
             for (j, b) in MeasureId::all().enumerate().take(i) {
                 let (lower, upper) = (covariance[i * n + j], covariance[j * n + i]);
-                // Looser than f32 storage, far tighter than anything that matters.
+                // Looser than the rounding of f32, far tighter than any effect on results.
                 if (lower - upper).abs() > 1e-6 * largest {
                     let message = format!("not symmetric at {a}, {b}: {lower} and {upper}");
                     return Err(Error::invalid("prior covariance", message));
@@ -125,7 +125,7 @@ impl SexPrior {
         }
         let all: Vec<_> = (0..n).collect();
         if symmetric.iter().step_by(n + 1).any(|v| *v < 0.0)
-            || noisy_factor(&symmetric, &all, FILL_ERROR).is_none()
+            || noisy_factor(&symmetric, &all, FILL_NOISE).is_none()
         {
             return Err(Error::invalid("prior covariance", "expected a positive definite matrix"));
         }
@@ -149,8 +149,8 @@ impl SexPrior {
         &self.covariance
     }
 
-    /// The share of people, 0 to 100, whose measure is at most `value` metres: linear between the stored quantiles,
-    /// 0 below the smallest body of the data and 100 above the largest.
+    /// Percentage of people, 0 to 100, whose measure is at most `value` metres: linear between the stored quantiles, 0
+    /// below the smallest body of the data and 100 from the largest on.
     pub fn percentile(&self, id: MeasureId, value: f64) -> f64 {
         let row = &self.quantiles[id.index() * QUANTILE_COUNT..(id.index() + 1) * QUANTILE_COUNT];
         let above = row.partition_point(|q| *q <= value);
@@ -162,14 +162,15 @@ impl SexPrior {
         }
     }
 
-    /// The distribution of all measures once some are given, each believed up to [`FILL_ERROR`].
+    /// The distribution of all measures conditioned on the given ones (metres), which were read with noise e =
+    /// [`FILL_NOISE`].
     ///
     /// # Errors
     /// [`Error::Request`] for a given measure that is not finite.
     pub fn condition(&self, given: &GivenMeasures) -> Result<Conditional> {
         let n = MEASURE_COUNT;
         let (rows, offset) = self.offsets(given)?;
-        let factor = self.factor(&rows, FILL_ERROR)?;
+        let factor = self.factor(&rows, FILL_NOISE)?;
         let mut weights = offset;
         factor.solve(&mut weights);
 
@@ -180,7 +181,7 @@ impl SexPrior {
             });
         }
 
-        // S_UU − S_UG (S_GG + e²I)⁻¹ S_GU as a difference of inner products of the half-solved columns.
+        // S_UU − S_UG (S_GG + e²I)⁻¹ S_GU, the second term as inner products of the columns of L⁻¹ S_GU.
         let half: Vec<Vec<f64>> = (0..n)
             .map(|u| {
                 let mut column: Vec<_> = rows.iter().map(|g| self.covariance[g * n + u]).collect();
@@ -198,37 +199,38 @@ impl SexPrior {
         Ok(Conditional { given: std::array::from_fn(|i| given[i].is_some()), mean, covariance })
     }
 
-    /// The most probable true measures behind a full vector that was read with a normal error of `error` metres:
-    /// A* = μ + S (S + e²I)⁻¹ (A − μ). Pulls rounded or unlikely vectors to where the network was trained.
+    /// The posterior mean of the true measures behind a full vector A (metres) that was read with Gaussian noise of standard
+    /// deviation `noise` (metres): μ + S (S + e²I)⁻¹ (A − μ). It moves rounded or unlikely vectors towards the training data.
     ///
     /// # Errors
-    /// [`Error::Request`] for a value that is not finite, [`Error::Invalid`] for an error that is not positive.
-    pub fn project(&self, measures: &Measurements, error: f64) -> Result<Measurements> {
+    /// [`Error::Request`] for a measure that is not finite, [`Error::Invalid`] for noise with which S + e²I is not positive
+    /// definite.
+    pub fn project(&self, measures: &Measurements, noise: f64) -> Result<Measurements> {
         let n = MEASURE_COUNT;
         let (rows, mut weights) = self.offsets(&measures.map(Some))?;
-        self.factor(&rows, error)?.solve(&mut weights);
+        self.factor(&rows, noise)?.solve(&mut weights);
         Ok(std::array::from_fn(|i| {
             let row = &self.covariance[i * n..(i + 1) * n];
             self.mean[i] + row.iter().zip(&weights).map(|(s, w)| s * w).sum::<f64>()
         }))
     }
 
-    /// Squared Mahalanobis distance of the given measures from the mean, under S_GG + e²I; 0 when nothing is given.
+    /// Squared Mahalanobis distance of the given measures from the mean, with covariance S_GG + e²I; 0 when nothing is given.
     ///
     /// # Errors
     /// As [`SexPrior::project`].
-    pub fn distance_squared(&self, given: &GivenMeasures, error: f64) -> Result<f64> {
+    pub fn distance_squared(&self, given: &GivenMeasures, noise: f64) -> Result<f64> {
         let (rows, offset) = self.offsets(given)?;
-        Ok(self.factor(&rows, error)?.quadratic_form(&offset))
+        Ok(self.factor(&rows, noise)?.quadratic_form(&offset))
     }
 
-    /// Log-likelihood of the given measures under S_GG + e²I, without the constant that depends on their number alone.
+    /// Log-likelihood of the given measures, with covariance S_GG + e²I, up to a constant that depends on their number only.
     ///
     /// # Errors
     /// As [`SexPrior::project`].
-    pub fn log_likelihood(&self, given: &GivenMeasures, error: f64) -> Result<f64> {
+    pub fn log_likelihood(&self, given: &GivenMeasures, noise: f64) -> Result<f64> {
         let (rows, offset) = self.offsets(given)?;
-        let factor = self.factor(&rows, error)?;
+        let factor = self.factor(&rows, noise)?;
         Ok(-0.5 * (factor.quadratic_form(&offset) + factor.log_determinant()))
     }
 
@@ -251,27 +253,27 @@ impl SexPrior {
         Ok((rows, offset))
     }
 
-    fn factor(&self, rows: &[usize], error: f64) -> Result<Cholesky> {
-        noisy_factor(&self.covariance, rows, error).ok_or_else(|| {
-            Error::invalid("measurement error", format!("expected a positive number of metres, got {error}"))
+    fn factor(&self, rows: &[usize], noise: f64) -> Result<Cholesky> {
+        noisy_factor(&self.covariance, rows, noise).ok_or_else(|| {
+            Error::invalid("measurement error", format!("expected a positive number of metres, got {noise}"))
         })
     }
 }
 
-/// Cholesky factor of the rows and columns `rows` of a covariance of all measures, with e² added to the diagonal.
-fn noisy_factor(covariance: &[f64], rows: &[usize], error: f64) -> Option<Cholesky> {
+/// Cholesky factor L of the rows and columns `rows` of a covariance of all measures, with e² added to the diagonal.
+fn noisy_factor(covariance: &[f64], rows: &[usize], noise: f64) -> Option<Cholesky> {
     let size = rows.len();
     let mut part = Vec::with_capacity(size * size);
     for &i in rows {
         for &j in rows {
-            let noise = if i == j { error * error } else { 0.0 };
-            part.push(covariance[i * MEASURE_COUNT + j] + noise);
+            let variance = if i == j { noise * noise } else { 0.0 };
+            part.push(covariance[i * MEASURE_COUNT + j] + variance);
         }
     }
     Cholesky::new(&part, size)
 }
 
-/// All measures once some are given: a Gaussian over those that were left open.
+/// All measures conditioned on the given ones: a Gaussian over the open ones.
 #[derive(Clone, Debug)]
 pub struct Conditional {
     given: [bool; MEASURE_COUNT],
@@ -286,25 +288,25 @@ impl Conditional {
         &self.given
     }
 
-    /// The likeliest value of each measure, metres; a given measure is as it was given.
+    /// Conditional mean of each measure, metres; the given value of a given one.
     pub fn mean(&self) -> &Measurements {
         &self.mean
     }
 
     /// Standard deviation of each measure, metres; 0 for a given one.
     pub fn standard_deviation(&self) -> Measurements {
-        // Rounding may leave a variance a hair below zero.
+        // Rounding may leave a variance slightly below zero.
         std::array::from_fn(|i| self.covariance[i * (MEASURE_COUNT + 1)].max(0.0).sqrt())
     }
 
-    /// Lower and upper end of the central 90 % of each measure, metres; a given one is both ends itself.
+    /// Lower and upper ends of the central 90 % interval of each measure, metres; both are the value of a given one.
     pub fn interval90(&self) -> (Measurements, Measurements) {
         let deviation = self.standard_deviation();
         let end = |sign: f64| std::array::from_fn(|i| self.mean[i] + sign * HALF_INTERVAL_90 * deviation[i]);
         (end(-1.0), end(1.0))
     }
 
-    /// One draw of all measures; the given ones stay as they were given.
+    /// One draw of all measures, metres; the given ones keep their values.
     pub fn sample(&self, random: &mut Random) -> Measurements {
         let open: Vec<_> = (0..MEASURE_COUNT).filter(|i| !self.given[*i]).collect();
         let part: Vec<_> = open
@@ -315,7 +317,7 @@ impl Conditional {
         let deviation = self.standard_deviation();
         let step = match Cholesky::with_jitter(&part, open.len()) {
             Some(factor) => factor.multiply(&normals),
-            // Cannot happen for a checked prior; independent draws are still a plausible person.
+            // Not for a checked prior; independent draws are a fallback that is still plausible.
             None => open.iter().zip(&normals).map(|(i, x)| deviation[*i] * x).collect(),
         };
         let mut sample = self.mean;

@@ -1,4 +1,4 @@
-//! What came of a request: per measure what was asked and what the body has, how the rest was filled, what was odd.
+//! The report on a generated body: requested and obtained measures, how open ones were filled, and warnings.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use super::solve::SolveOutcome;
 use crate::error::{Conflict, Infeasible};
 use crate::measure::{MeasureId, Sex};
 
-/// Measures that a table for people shows even when they were not given.
+/// Measures that the printed table shows even when they were not given.
 const ALWAYS_SHOWN: [&str; 4] = ["height", "chest_circumference", "waist_circumference", "hip_circumference"];
 
 /// Where the value of a measure came from.
@@ -21,25 +21,25 @@ pub enum Filled {
     /// From the request.
     #[serde(rename = "given")]
     Given,
-    /// The likeliest value beside the given measures.
+    /// The likeliest value, conditioned on the given measures.
     #[serde(rename = "prior mean")]
     PriorMean,
-    /// Drawn from what is plausible beside the given measures.
+    /// Drawn from the distribution conditioned on the given measures.
     #[serde(rename = "prior sample")]
     PriorSample,
-    /// Between the bodies of two requests.
+    /// Interpolated between the bodies of two requests.
     #[serde(rename = "interpolated")]
     Interpolated,
 }
 
-/// One measure of a body; metres unless said.
+/// One measure of a body; metres unless stated.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureReport {
     /// Identifier, with its side.
     pub name: &'static str,
-    /// What the request gives; `None` for an open measure.
+    /// The value in the request; `None` for an open measure.
     pub asked: Option<f64>,
-    /// What the body has.
+    /// The value of the body.
     pub obtained: f64,
     /// Obtained − asked; `None` for an open measure.
     pub residual: Option<f64>,
@@ -47,23 +47,23 @@ pub struct MeasureReport {
     pub given: bool,
     /// Where the value came from.
     pub filled: Filled,
-    /// Lower end of the 90 % of people with the given measures; the value itself for a measure that is given or
-    /// interpolated.
+    /// Lower end of the interval that holds 90 % of people with the given measures; for a measure that is given or
+    /// interpolated, its value.
     pub low90: f64,
     /// Upper end of that interval.
     pub high90: f64,
-    /// Share of people of this sex, 0 to 100, who have at most the obtained value.
+    /// Percentage of people of this sex, 0 to 100, whose value is at most the obtained one.
     pub percentile: f64,
 }
 
-/// The account of one body. Serialises to the JSON of `--report`; prints as a table for people.
+/// The report on one body. Serialises to the JSON of `--report`; displays as a table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// All measures, in order.
     pub measures: Vec<MeasureReport>,
-    /// Sentences about what is unusual.
+    /// Sentences about what was assumed and what is unusual.
     pub warnings: Vec<String>,
-    /// Which given measures did not go together; empty unless a request was replaced by the nearest feasible one.
+    /// Which given measures contradicted each other; empty unless the request was replaced by the nearest feasible one.
     pub conflicts: Vec<Conflict>,
     /// The request's seed.
     pub seed: u64,
@@ -79,17 +79,17 @@ pub struct Report {
     pub volume_m3: f64,
     /// Body mass index, kg/m².
     pub bmi: f64,
-    /// Steps of the exact solve.
+    /// Gauss–Newton steps of the exact solve.
     pub iterations: usize,
-    /// Largest |obtained − asked| that the solve left over the measures it aimed at, metres: the given ones, the nearest
-    /// feasible ones where the request was replaced by those, or all between two requests.
+    /// Largest |obtained − target| of the exact solve, metres. Targets are the given measures, the nearest feasible ones where
+    /// those replaced them, or all interpolated measures between two requests.
     pub solve_residual: f64,
     /// Whether the solve reached its tolerance.
     pub converged: bool,
 }
 
 impl Report {
-    /// The account of the body that `prepared` and `outcome` led to; `mass` in kg and `volume` in m³ are the body's.
+    /// The report on the body of `prepared` and `outcome`, of this mass (kg) and volume (m³).
     pub fn new(
         request: &Request,
         prepared: &Prepared,
@@ -145,8 +145,8 @@ impl Report {
         }
     }
 
-    /// The same account of a body between two requests: nothing was given, everything was interpolated, and the
-    /// odd of both ends is told.
+    /// This report for a body between two requests: no measure is given, all are interpolated, and it has the warnings and
+    /// conflicts of both ends.
     pub(crate) fn interpolated(mut self, ends: [&Prepared; 2]) -> Self {
         for measure in &mut self.measures {
             (measure.asked, measure.residual, measure.given) = (None, None, false);
@@ -162,7 +162,7 @@ impl Report {
 
     /// The JSON of `--report`, indented.
     pub fn to_json(&self) -> String {
-        // Strings for keys and plain numbers: nothing here that serialising can refuse.
+        // Cannot fail: keys are strings and values plain numbers and text.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
@@ -175,8 +175,8 @@ fn add_new<T: Clone + PartialEq>(to: &mut Vec<T>, from: &[T]) {
     }
 }
 
-/// The JSON of `--report` for a request that is refused: the measures as they were asked, with `null` for all that only
-/// a body has, and the conflicts.
+/// The JSON of `--report` for a refused request: the requested measures, the conflicts, and `null` for what only a body
+/// has.
 pub fn refusal_json(request: &Request, why: &Infeasible) -> String {
     let measures = MeasureId::all().zip(&request.measures).map(|(id, asked)| {
         json!({
@@ -210,7 +210,7 @@ impl fmt::Display for Report {
             "{:<28} {:>9} {:>9} {:>9} {:>10}  90 % interval",
             "", "asked", "obtained", "off by", "percentile"
         )?;
-        // Sides that were treated alike and came out alike share a line.
+        // Both sides share a row where they were given alike and differ by less than half a millimetre.
         let values = std::array::from_fn(|i| self.measures.get(i).map(|m| m.obtained));
         let shown = |name: &str| ALWAYS_SHOWN.contains(&name);
         for group in group_by(&values, |left, right| (left - right).abs() < 5e-4) {

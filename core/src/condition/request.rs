@@ -1,4 +1,4 @@
-//! What a user asks for: any subset of the measures, a sex, a seed or a latent vector; read, checked, written.
+//! The request: any subset of the measures, a sex, a seed or a latent vector; parsing, checks, writing.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,23 +17,23 @@ use crate::{Error, Result, Side};
 /// The stream of [`Random`] that a latent vector is drawn from.
 const LATENT_STREAM: u64 = 1;
 
-/// The largest number, up or down, that a latent vector given by hand may hold: entries are normally distributed with
-/// variance 1, and nobody is six deviations off.
+/// Largest absolute value of an entry of a given latent vector: entries are standard normal, and six deviations occur in
+/// nobody.
 pub const LATENT_LIMIT: f64 = 6.0;
 
 /// How measures that a request leaves open are filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fill {
-    /// With their likeliest values beside the given measures.
+    /// With their likeliest values, conditioned on the given measures.
     #[default]
     Mean,
-    /// With a draw from what is plausible beside the given measures; the seed chooses it.
+    /// With a draw from their distribution, conditioned on the given measures; the seed chooses it.
     Sample,
 }
 
 impl Fill {
-    /// Every way.
+    /// All variants.
     pub const ALL: [Self; 2] = [Self::Mean, Self::Sample];
 
     /// `mean` or `sample`, as in JSON and on the command line.
@@ -65,27 +65,27 @@ pub struct MeasureRange {
     pub max: f64,
 }
 
-/// A person to be made.
+/// What a body is generated from.
 ///
-/// The same request gives the same person. The default asks for nothing: the likeliest woman.
+/// The same request gives the same body. The default gives nothing: the likeliest woman.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The sex; `None` leaves it to the measures to decide.
+    /// The sex; `None` to infer it from the given measures.
     pub sex: Option<Sex>,
     /// The given measures in metres, in the order of [`MeasureId`]; `None` where one is left open.
     pub measures: GivenMeasures,
-    /// 0 asks for the likeliest person; any other number for one of the people whom the measures allow.
+    /// 0 for the likeliest person; any other number for a random one with the given measures.
     pub seed: u64,
-    /// The latent vector by hand instead of by seed, each entry normally distributed with variance 1 and at most
-    /// [`LATENT_LIMIT`] from zero.
+    /// The latent vector, to be used instead of one drawn from the seed. Its entries are standard normal over people, and at
+    /// most [`LATENT_LIMIT`] in absolute value.
     pub z: Option<Vec<f64>>,
     /// How open measures are filled.
     pub fill: Fill,
-    /// Whether an infeasible request is replaced by the nearest feasible one, with a warning, instead of refused.
+    /// Whether to replace an infeasible request by the nearest feasible one, with a warning, instead of refusing it.
     pub nearest: bool,
 }
 
-/// The file format; names of measures are checked afterwards, so that the error can name the likeliest one.
+/// The JSON format; names of measures are checked afterwards, so that errors can suggest the nearest one.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RequestFile {
@@ -103,7 +103,7 @@ struct RequestFile {
     nearest: bool,
 }
 
-/// A JSON object whose keys come once each, in alphabetical order: `arm_length` before `arm_length_left`.
+/// A JSON object without duplicate keys, sorted by key: `arm_length` comes before `arm_length_left`, which overrides it.
 #[derive(Default)]
 struct Pairs(BTreeMap<String, Value>);
 
@@ -146,17 +146,17 @@ impl Default for Request {
 }
 
 impl Request {
-    /// Reads JSON such as `{"sex": "female", "measures": {"height": 1.70, "arm_length": 0.33}, "seed": 7}`.
+    /// Parses JSON such as `{"sex": "female", "measures": {"height": 1.70, "arm_length": 0.33}, "seed": 7}`.
     ///
-    /// All fields may be left out: `sex`, `measures`, `seed`, `z` (numbers), `fill` (`"mean"` or `"sample"`), `nearest`.
-    /// A measure without its side sets both sides, whatever the order; one with its side goes before it. `null` is
-    /// the same as leaving a measure out.
+    /// All fields are optional: `sex`, `measures`, `seed`, `z` (numbers), `fill` (`"mean"` or `"sample"`), `nearest`.
+    /// A measure without its side sets both sides, and one with its side overrides that, in any order. `null` is the same
+    /// as leaving a measure out.
     ///
     /// # Errors
-    /// [`Error::Request`] with the field, or with line and column where the text is not such JSON. Values are checked
-    /// by [`Request::check`], not here.
+    /// [`Error::Request`] naming the field, or line and column where the text is not such JSON. Values are checked by
+    /// [`Request::check`] only.
     pub fn from_json(text: &str) -> Result<Self> {
-        // A derived reader would also take an array of the fields in order.
+        // A derived deserializer also accepts an array of the fields in order.
         if !text.trim_start().starts_with('{') {
             let message =
                 "expected a JSON object such as {\"sex\": \"female\", \"measures\": {\"height\": 1.7}}";
@@ -189,7 +189,7 @@ impl Request {
         Ok(request)
     }
 
-    /// Writes what [`Request::from_json`] reads; both sides become one name where they agree.
+    /// Writes the JSON that [`Request::from_json`] reads; two sides of equal value become one name.
     ///
     /// Values that are not finite, which [`Request::check`] refuses, are written as `null`.
     pub fn to_json(&self) -> String {
@@ -211,11 +211,10 @@ impl Request {
         Value::from(object).to_string()
     }
 
-    /// Gives a measure in metres; a name without its side sets both sides.
+    /// Sets a measure to a value in metres; a name without its side sets both sides.
     ///
     /// # Errors
-    /// [`Error::Request`] for a name that is not a measure, with the likeliest ones. The value is checked by
-    /// [`Request::check`].
+    /// [`Error::Request`] for an unknown name, with the nearest ones. The value is checked by [`Request::check`] only.
     pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
         for id in known(name)? {
             self.measures[id.index()] = Some(value);
@@ -237,7 +236,8 @@ impl Request {
         MeasureId::all().zip(&self.measures).filter_map(|(id, value)| value.map(|v| (id, v)))
     }
 
-    /// The latent vector of `size` entries: [`Request::z`] where given, else drawn from the seed, else zero.
+    /// The latent vector: [`Request::z`] where given, whatever its length; else `size` entries drawn from the seed, or
+    /// zeros for seed 0.
     pub fn latent(&self, size: usize) -> Vec<f64> {
         match (&self.z, self.seed) {
             (Some(z), _) => z.clone(),
@@ -246,12 +246,11 @@ impl Request {
         }
     }
 
-    /// Refuses what no body can be made from: values that are not finite, not positive or outside their range, plain
-    /// contradictions such as a waist larger than the stature, and a latent vector that is not `latent_size` numbers
-    /// within [`LATENT_LIMIT`].
+    /// Checks that every value is finite and within its range, that there are no evident contradictions such as a waist
+    /// larger than the stature, and that a latent vector has `latent_size` entries within [`LATENT_LIMIT`].
     ///
     /// # Errors
-    /// [`Error::Request`] for the first field that is wrong, with what was expected, what came, and a hint when the
+    /// [`Error::Request`] for the first field that is wrong, with what was expected, what was found, and a hint when the
     /// value fits in another unit.
     pub fn check(&self, ranges: &[MeasureRange; MEASURE_COUNT], latent_size: usize) -> Result<()> {
         for group in groups(&self.measures) {
@@ -277,18 +276,18 @@ impl Request {
 
 /// Measures of one name: one, or both sides.
 pub(crate) struct Group {
-    /// The name as a user would write it: without its side when both sides are in the group.
+    /// The name as in a request: without its side when both sides are in the group.
     pub(crate) name: String,
-    /// One or two measures, never none.
+    /// One or two measures.
     pub(crate) ids: Vec<MeasureId>,
 }
 
-/// The given measures, both sides of one measure together where they have the same value.
+/// The given measures, with both sides in one group where their values are equal.
 pub(crate) fn groups(measures: &GivenMeasures) -> Vec<Group> {
     group_by(measures, |left, right| left.to_bits() == right.to_bits())
 }
 
-/// The given measures, both sides of one measure together where both are given and `same` says so.
+/// The given measures, with both sides in one group where both are given and `same` of left and right holds.
 pub(crate) fn group_by(measures: &GivenMeasures, same: impl Fn(f64, f64) -> bool) -> Vec<Group> {
     let mut result = Vec::new();
     for (id, value) in MeasureId::all().zip(measures) {
@@ -304,7 +303,7 @@ pub(crate) fn group_by(measures: &GivenMeasures, same: impl Fn(f64, f64) -> bool
     result
 }
 
-/// The measures of a name, or the error that names the likeliest ones.
+/// The measures of a name, or the error that suggests the nearest ones.
 fn known(name: &str) -> Result<Vec<MeasureId>> {
     expand_name(name).ok_or_else(|| {
         let message = match name.to_ascii_lowercase().as_str() {
@@ -317,7 +316,7 @@ fn known(name: &str) -> Result<Vec<MeasureId>> {
     })
 }
 
-/// The up to three known names most like the given one, best first.
+/// Up to three known names that are most similar to the given one, best first.
 fn nearest_names(name: &str) -> Vec<&'static str> {
     let wanted = name.trim().to_ascii_lowercase().replace([' ', '-'], "_");
     match wanted.as_str() {
@@ -328,7 +327,7 @@ fn nearest_names(name: &str) -> Vec<&'static str> {
     let mut names: Vec<_> = MeasureId::all().flat_map(|id| [id.base_name(), id.name()]).collect();
     names.sort_unstable();
     names.dedup();
-    // A name that holds every word of the wanted one (`waist`, `left_arm_length`) beats one that is merely similar.
+    // Names that contain every word of the wanted one (`waist`, `left_arm_length`) come before merely similar ones.
     let words: Vec<_> = wanted.split('_').filter(|w| !w.is_empty()).collect();
     let lacks = |candidate: &str| !candidate_has_words(candidate, &words);
     names.sort_by_cached_key(|candidate| {
@@ -336,7 +335,7 @@ fn nearest_names(name: &str) -> Vec<&'static str> {
     });
     names.truncate(3);
     if let Some(best) = names.first() {
-        // Further guesses only where they are about as good as the first.
+        // Further suggestions only where they are about as good as the first.
         let (first_lacks, closest) = (lacks(best), crate::error::edit_distance(&wanted, best));
         names.retain(|n| lacks(n) == first_lacks && crate::error::edit_distance(&wanted, n) <= closest + 2);
     }
@@ -372,13 +371,13 @@ fn check_value(name: &str, value: f64, range: MeasureRange) -> Result<()> {
     Err(Error::request(name, message))
 }
 
-/// A number as a user would type it, at most four decimals.
+/// A number with at most four decimals and no trailing zeros.
 fn plain(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Contradictions that no body of any shape can resolve; subtler ones are the prior's to find.
+/// Checks for contradictions that hold for bodies of any shape; [`Feasibility`](super::Feasibility) finds the subtler ones.
 fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
     let value = |id: MeasureId| measures[id.index()];
     let larger = |field: MeasureId, value: f64, than: MeasureId, limit: f64, why: &str| {
@@ -390,7 +389,7 @@ fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
     if let Some(height) = value(MeasureId::HEIGHT) {
         for (id, measure) in MeasureId::all().zip(measures) {
             let Some(measure) = *measure else { continue };
-            // The largest chests of short people come near their stature.
+            // The largest chests of short people come close to their stature.
             let limit = if id.name() == "chest_circumference" { 1.15 * height } else { height };
             if id != MeasureId::HEIGHT && measure >= limit {
                 let why = "it cannot be larger than the stature";
@@ -427,7 +426,7 @@ fn check_contradictions(measures: &GivenMeasures) -> Result<()> {
     Ok(())
 }
 
-/// Of each side: a measure and one that it is smaller than on every body, the latter of that side or of the middle.
+/// Per side: a measure and a larger one of every body, which is central or of the same side.
 const SMALLER_OF_SIDES: [(&str, &str); 5] = [
     ("heel_to_ball_length", "heel_to_toe_length"),
     ("foot_width", "heel_to_toe_length"),
@@ -436,7 +435,7 @@ const SMALLER_OF_SIDES: [(&str, &str); 5] = [
     ("forearm_circumference", "chest_circumference"),
 ];
 
-/// The measure of this name: of the middle, or on this side.
+/// The measure of this name without side: central, or on this side.
 fn named(base: &str, side: Side) -> Option<MeasureId> {
     MeasureId::from_name(base).or_else(|| MeasureId::on_side(base, side))
 }

@@ -1,45 +1,45 @@
-//! The exact solve: the smallest change of a decoded body that gives it exactly the asked measures.
+//! The exact solve: the smallest change of a decoded body that gives it exactly the given measures.
 //!
-//! Gauss–Newton on min (c − c₀)ᵀ Σ⁻¹ (c − c₀) subject to m(c) = A over the given measures, with c the coefficients of
-//! the shape basis, c₀ what the decoder said and Σ how uncertain each coefficient is. The paper has no such step: its
-//! tables leave errors of centimetres, a tailor does not.
+//! Gauss–Newton on min (c − c₀)ᵀ Σ⁻¹ (c − c₀) subject to m(c) = A over the given measures: c are the shape coefficients, c₀
+//! those from the decoder, Σ the diagonal matrix of their variances, m the measures and A their given values. The paper has
+//! no such step and errors of centimetres in its tables.
 
 use super::prior::GivenMeasures;
 use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements};
 use crate::{Error, Result};
 
-/// Added to the Gram matrix, whose diagonal is scaled to 1 first: small enough to cost no accuracy, it only keeps
+/// Ridge ε added to the diagonal of the Gram matrix, which is scaled to 1 first: too small to cost accuracy, it keeps
 /// rounding from making the matrix indefinite.
 const RIDGE: f64 = 1e-14;
 
-/// How often a matrix that a ridge did not make definite is tried again with ten times the ridge: until the ridge is this
-/// share of the diagonal. Beyond, the step is the ridge's and no longer the measures'.
-const RIDGE_MOST: f64 = 1e-3;
+/// Largest ridge: while the matrix is not positive definite, the ridge grows tenfold up to this. A larger one would
+/// determine the step more than the measures do.
+const MAX_RIDGE: f64 = 1e-3;
 
-/// What the ridge grows by after a step that failed: measures that contradict each other ask for endless steps along
-/// what they share, and a ridge turns those into a compromise.
+/// Factor on the ridge after a step that failed: nearly contradictory measures give huge steps along nearly dependent
+/// directions, which a ridge turns into a compromise.
 const RIDGE_GROWTH: f64 = 1e4;
 
-/// Steps in a row that may fail to improve on the point they came from. Tapes have kinks where the hull changes corners; a few
-/// such steps get over one, more of them mean that there is nothing beyond.
-const FAILURES: usize = 4;
+/// Steps in a row without improvement after which the solve stops. Tapes have kinks where the hull changes corners; a few
+/// such steps cross one, more mean that no better point is in reach.
+const MAX_FAILURES: usize = 4;
 
-/// Below this largest residual, metres, the next step is expected to be the last, and its derivatives are not computed
-/// before it has failed to be.
+/// Largest residual, metres, below which the next step is expected to be the last, so that its Jacobian is computed only
+/// if it was not.
 const NEARLY_DONE: f64 = 3e-4;
 
-/// A body as the solver sees it: coefficients in, measures and their derivatives out.
+/// A body as the solver sees it: measures and their derivatives as a function of coefficients.
 pub trait MeasuredShape {
     /// Number of coefficients K.
     fn dim(&self) -> usize;
 
-    /// The measures, metres, of the body with the coefficients `c` (K of them). Where `jacobian` is given it has
-    /// [`MEASURE_COUNT`] × K entries, row-major, of any content, and is filled with the derivatives.
+    /// The measures, metres, of the body with the K coefficients `c`. `jacobian` has [`MEASURE_COUNT`] × K entries,
+    /// row-major, and is overwritten with the derivatives of the measures (rows) with respect to the coefficients (columns).
     fn measure(&self, c: &[f64], jacobian: Option<&mut [f64]>) -> Measurements;
 }
 
-/// When the solve is content, and when it gives up.
+/// When the solve stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveOptions {
     /// Largest residual of a given measure that counts as solved, metres.
@@ -54,27 +54,28 @@ impl Default for SolveOptions {
     }
 }
 
-/// What a solve arrived at.
+/// The result of a solve.
 #[derive(Clone, Debug)]
 pub struct SolveOutcome {
     /// The coefficients of the best body found.
     pub coefficients: Vec<f64>,
     /// Its measures, metres.
     pub obtained: Measurements,
-    /// Largest |asked − obtained| over the given measures, metres; 0 when nothing is given.
+    /// Largest |given − obtained| over the given measures, metres; 0 when nothing is given.
     pub residual_max: f64,
     /// Gauss–Newton steps taken.
     pub iterations: usize,
     /// Whether `residual_max` is within the tolerance.
     pub converged: bool,
-    /// Length of the change in standard deviations: √((c − c₀)ᵀ Σ⁻¹ (c − c₀)).
+    /// Mahalanobis length of the change, in standard deviations: √((c − c₀)ᵀ Σ⁻¹ (c − c₀)).
     pub move_distance: f64,
 }
 
-/// Finds the coefficients nearest to `start` whose given measures are as asked.
+/// Finds the coefficients nearest to `start` (K, metres) whose body has the given measures (metres).
 ///
-/// `variances` holds the variance of each coefficient; one of zero keeps its coefficient where it is. Measures that are
-/// not given float. A request that no body meets exactly ends with the best body found and `converged` false.
+/// `variances` holds the variance of each coefficient, m²; a variance of zero keeps the coefficient at its start. Measures
+/// that are not given are free. Where no body has the given measures, the result is the best one found, with `converged`
+/// false.
 ///
 /// # Errors
 /// [`Error::Invalid`] when `start` or `variances` do not have K finite entries, when a variance is negative, and when
@@ -121,7 +122,7 @@ pub fn solve<S: MeasuredShape + ?Sized>(
     let mut iterations = 0;
     let mut failures = 0;
     let mut ridge = RIDGE;
-    while at.largest > options.tolerance && iterations < options.max_iterations && failures < FAILURES {
+    while at.largest > options.tolerance && iterations < options.max_iterations && failures < MAX_FAILURES {
         if !at.has_jacobian {
             at = problem.evaluate(at.coefficients, true);
         }
@@ -154,15 +155,15 @@ pub fn solve<S: MeasuredShape + ?Sized>(
     })
 }
 
-/// A body on the way.
+/// An iterate.
 #[derive(Clone)]
 struct Point {
     coefficients: Vec<f64>,
     measures: Measurements,
-    /// Largest absolute residual and sum of squared residuals of the given measures; infinite for a broken body.
+    /// Largest absolute residual and sum of squared residuals of the given measures; infinite where a measure is not finite.
     largest: f64,
     squares: f64,
-    /// Whether the problem's Jacobian is the one of this point.
+    /// Whether [`Problem::jacobian`] is the one at this point.
     has_jacobian: bool,
 }
 
@@ -170,9 +171,9 @@ struct Problem<'a, S: ?Sized> {
     shape: &'a S,
     start: &'a [f64],
     variances: &'a [f64],
-    /// Index and asked value of each given measure.
+    /// Index and given value, metres, of each given measure.
     rows: Vec<(usize, f64)>,
-    /// [`MEASURE_COUNT`] × K, of the last point that was evaluated with it.
+    /// [`MEASURE_COUNT`] × K, at the last point that was evaluated with its Jacobian.
     jacobian: Vec<f64>,
 }
 
@@ -180,7 +181,7 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
     fn evaluate(&mut self, coefficients: Vec<f64>, has_jacobian: bool) -> Point {
         let jacobian = has_jacobian.then_some(self.jacobian.as_mut_slice());
         let measures = self.shape.measure(&coefficients, jacobian);
-        let residuals = self.rows.iter().map(|(i, asked)| (asked - measures[*i]).abs());
+        let residuals = self.rows.iter().map(|(i, given)| (given - measures[*i]).abs());
         let largest = residuals.clone().fold(0.0, f64::max);
         let squares: f64 = residuals.map(|r| r * r).sum();
         let (largest, squares) =
@@ -188,16 +189,16 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
         Point { coefficients, measures, largest, squares, has_jacobian }
     }
 
-    /// Where the measures would be as asked if they were linear; see [`Targets`]. `None` when the derivatives are not
-    /// finite.
+    /// The points that have the given measures in the linearisation at `at`; `None` when the derivatives are not finite or
+    /// the Gram matrix is not positive definite even with [`MAX_RIDGE`].
     fn targets(&self, at: &Point, mut ridge: f64) -> Option<Targets> {
         let k = self.start.len();
         let n = self.rows.len();
-        // Rows of J Σ^½, scaled to length 1: the Gram matrix then has a unit diagonal.
+        // Rows of J Σ^½, scaled to length 1, which gives the Gram matrix a unit diagonal.
         let mut scaled = Vec::with_capacity(n * k);
         let mut residual = Vec::with_capacity(n);
         let mut moved = Vec::with_capacity(n);
-        for &(i, asked) in &self.rows {
+        for &(i, given) in &self.rows {
             let row = &self.jacobian[i * k..(i + 1) * k];
             let first = scaled.len();
             scaled.extend(row.iter().zip(self.variances).map(|(j, v)| j * v.sqrt()));
@@ -205,14 +206,14 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
             if !length.is_finite() {
                 return None;
             }
-            // A measure that no coefficient moves takes no part.
+            // A measure that no coefficient changes is left out.
             let factor = if length > 0.0 { 1.0 / length } else { 0.0 };
             for x in &mut scaled[first..] {
                 *x *= factor;
             }
             let change: f64 =
                 row.iter().zip(&at.coefficients).zip(self.start).map(|((j, c), c0)| j * (c - c0)).sum();
-            residual.push((asked - at.measures[i]) * factor);
+            residual.push((given - at.measures[i]) * factor);
             moved.push(change * factor);
         }
         let mut gram = vec![0.0; n * n];
@@ -234,11 +235,11 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
             }
             match Cholesky::new(&regular, n) {
                 Some(factor) => break factor,
-                None if ridge < RIDGE_MOST => ridge *= 10.0,
+                None if ridge < MAX_RIDGE => ridge *= 10.0,
                 None => return None,
             }
         };
-        let from = |base: &[f64], mut right: Vec<f64>| {
+        let target_from = |base: &[f64], mut right: Vec<f64>| {
             factor.solve(&mut right);
             let mut target = base.to_vec();
             for (row, multiplier) in scaled.chunks_exact(k.max(1)).zip(&right) {
@@ -249,14 +250,17 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
             target.iter().all(|c| c.is_finite()).then_some(target)
         };
         let whole = residual.iter().zip(&moved).map(|(r, m)| r + m).collect();
-        Some(Targets { nearest: from(self.start, whole)?, correction: from(&at.coefficients, residual)? })
+        Some(Targets {
+            nearest: target_from(self.start, whole)?,
+            correction: target_from(&at.coefficients, residual)?,
+        })
     }
 
     /// The next point, and whether it is better than the last.
     ///
-    /// The nearest target is taken if it at least halves the residual. Else its sideways move has crossed kinks, and
-    /// the correction alone is followed, in ever shorter steps until the residual falls; if it never does, the best of
-    /// them is the next point.
+    /// The nearest target is taken if it at least halves the residual norm. Otherwise its tangential part has crossed kinks,
+    /// and a backtracking line search goes towards the correction alone; if the residual never falls enough, the best
+    /// point tried is the next one.
     fn search(&mut self, at: &Point, targets: &Targets) -> (Point, bool) {
         let want_jacobian = at.largest > NEARLY_DONE;
         let mut best = self.evaluate(targets.nearest.clone(), want_jacobian);
@@ -283,11 +287,11 @@ impl<S: MeasuredShape + ?Sized> Problem<'_, S> {
     }
 }
 
-/// Where the next step could lead.
+/// Targets of the next step: points that have the given measures if these are linear. m and J are taken at c.
 struct Targets {
-    /// c₀ + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m + J(c − c₀)): of all points that meet the measures, the one nearest to the start.
+    /// c₀ + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m + J(c − c₀)): the one nearest to the start.
     nearest: Vec<f64>,
-    /// c + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m): the one nearest to the current point.
+    /// c + ΣJᵀ (JΣJᵀ + ε)⁻¹ (A − m): the one nearest to the current point c.
     correction: Vec<f64>,
 }
 

@@ -1,10 +1,10 @@
-//! A made-up population for tests: two factors (size, girth) and independent rests, both sexes, no model file.
+//! A synthetic population for tests: two factors (size, girth) plus independent residuals, both sexes, no model file.
 
 use super::prior::{Prior, QUANTILE_COUNT, SexPrior};
 use super::request::MeasureRange;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements};
 
-/// Mean of a woman's measures, and the standard deviations that size, girth and all else give them, by name without side.
+/// By name without side: mean of women's measures, and the standard deviations due to size, girth and the residual, metres.
 const TABLE: &[(&str, f64, f64, f64, f64)] = &[
     ("waist_circumference", 0.80, 0.02, 0.13, 0.020),
     ("chest_circumference", 1.00, 0.03, 0.10, 0.025),
@@ -36,7 +36,7 @@ fn entry(id: MeasureId) -> (usize, (&'static str, f64, f64, f64, f64)) {
     TABLE.iter().copied().enumerate().find(|(_, row)| row.0 == id.base_name()).unwrap()
 }
 
-/// The prior of one sex; `size` and `girth` shift the two factors.
+/// The prior of one sex; `size` and `girth` shift the mean by that many deviations of the two factors.
 pub(crate) fn sex_prior(size: f64, girth: f64) -> SexPrior {
     let n = MEASURE_COUNT;
     let mean: Measurements = std::array::from_fn(|i| {
@@ -47,7 +47,7 @@ pub(crate) fn sex_prior(size: f64, girth: f64) -> SexPrior {
     for a in MeasureId::all() {
         for b in MeasureId::all() {
             let ((ka, (_, _, sa, ga, ra)), (kb, (_, _, sb, gb, rb))) = (entry(a), entry(b));
-            // Both sides share all but 1 % of the variance of the rest.
+            // Both sides share 99 % of the variance of the residual.
             let rest = if a == b { 1.0 } else { 0.99 * f64::from(u8::from(ka == kb)) };
             covariance[a.index() * n + b.index()] = sa * sb + ga * gb + rest * ra * rb;
         }
@@ -55,13 +55,13 @@ pub(crate) fn sex_prior(size: f64, girth: f64) -> SexPrior {
     let mut quantiles = Vec::new();
     for i in 0..n {
         let deviation = covariance[i * n + i].sqrt();
-        // Any rising table does; 50 % is the mean.
+        // Any ascending table serves; 50 % is the mean.
         quantiles.extend((0..QUANTILE_COUNT).map(|q| mean[i] + 3.0 * deviation * (q as f64 - 50.0) / 50.0));
     }
     SexPrior::new(&mean, &covariance, &quantiles).unwrap()
 }
 
-/// Women, and men a factor and a half taller.
+/// Women, and men larger by one and a half deviations of size.
 pub(crate) fn prior() -> Prior {
     Prior::new(sex_prior(0.0, 0.0), sex_prior(1.5, 0.0))
 }

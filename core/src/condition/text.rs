@@ -1,6 +1,6 @@
-//! Numbers and lists as people read them in messages.
+//! Numbers and lists in messages.
 
-/// A length for a message: two to four decimals, exponents only for what is no length at all.
+/// A length in metres for a message: two to four decimals, an exponent for values that no length has.
 pub(crate) fn metres(value: f64) -> String {
     if !value.is_finite() || value.abs() >= 1e7 || (value != 0.0 && value.abs() < 5e-5) {
         return format!("{value:e}");
@@ -14,7 +14,7 @@ pub(crate) fn metres(value: f64) -> String {
     }
 }
 
-/// `a`, `a and b`, `a, b and c`.
+/// Joins items with commas and `last`: for `and`, `a`, `a and b`, `a, b and c`.
 pub(crate) fn list<S: AsRef<str>>(items: &[S], last: &str) -> String {
     match items {
         [] => String::new(),

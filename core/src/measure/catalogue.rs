@@ -1,5 +1,5 @@
-//! The measures there are: one table, a row per measure, from which names, order, sides, parts of the body and
-//! standards follow.
+//! The catalogue of measures: one table, a row per measure, from which names, order, sides, parts of the body and
+//! standards are derived.
 
 use crate::Side;
 
@@ -21,7 +21,7 @@ pub enum BodyPart {
 }
 
 impl BodyPart {
-    /// All of them, from the top down.
+    /// All parts, from head to foot.
     pub const ALL: [Self; 6] = [Self::Head, Self::Trunk, Self::Arm, Self::Hand, Self::Leg, Self::Foot];
 
     /// Its name in lower case, such as `trunk`.
@@ -37,28 +37,28 @@ impl BodyPart {
     }
 }
 
-/// A measure, both sides together.
+/// A measure; one row for both sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// Its name without the side.
+    /// The name without the side.
     base: &'static str,
-    /// Its names on the left and on the right; `None` for a measure of the middle.
+    /// The names of the left and the right measure; `None` for a central one.
     sides: Option<[&'static str; 2]>,
     part: BodyPart,
     /// The nearest measure of a published standard or survey: ISO 8559-1:2017 (garment sizing), ISO 7250-1:2017
-    /// (technological design) and ANSUR II (Gordon et al. 2014). "Nearest" is not "same": ours are read in a T-pose
-    /// and between vertices.
+    /// (technological design) and ANSUR II (Gordon et al. 2014). Nearest, not the same: ours are taken in the T-pose,
+    /// between points of the mesh.
     standard: Option<&'static str>,
 }
 
-/// A row of a measure of the middle.
+/// A row for a central measure.
 macro_rules! central {
     ($base:literal, $part:ident, $standard:expr) => {
         Row { base: $base, sides: None, part: BodyPart::$part, standard: $standard }
     };
 }
 
-/// A row of a measure that is taken on both sides.
+/// A row for a measure that is taken on both sides.
 macro_rules! sided {
     ($base:literal, $part:ident, $standard:expr) => {
         Row {
@@ -70,10 +70,10 @@ macro_rules! sided {
     };
 }
 
-/// The rows of the paper's table "statistics-anthro".
+/// The measures of the paper's table "statistics-anthro".
 ///
-/// The order is that of every array of measures and of the model file: what is in the middle, then all of the left, then
-/// all of the right. A row more changes the model file.
+/// Their order defines that of every array of measures, in the model file too: central ones, then all of the left, then
+/// all of the right. Another row therefore needs a newly trained model.
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
     central!("waist_circumference", Trunk, Some("ISO 8559-1 waist girth; ANSUR II waistcircumference")),
@@ -117,11 +117,11 @@ pub(super) struct Entry {
     pub(super) side: Option<Side>,
     pub(super) part: BodyPart,
     pub(super) standard: Option<&'static str>,
-    /// Place of the same measure on the other side; its own in the middle.
+    /// Index of the same measure on the other side; of itself for a central one.
     pub(super) mirrored: usize,
 }
 
-/// Number of measures that so many rows make, each side counted.
+/// Number of measures in these rows, with both sides counted.
 const fn count(rows: &[Row]) -> usize {
     let (mut count, mut r) = (0, 0);
     while r < rows.len() {
@@ -131,7 +131,7 @@ const fn count(rows: &[Row]) -> usize {
     count
 }
 
-/// The measures in order: the middle, the left, the right. `N` is their [`count`].
+/// The measures in order: central, left, right. `N` is their [`count`].
 const fn entries<const N: usize>(rows: &[Row]) -> [Entry; N] {
     let per_side = N - rows.len();
     let central = rows.len() - per_side;
@@ -146,12 +146,12 @@ const fn entries<const N: usize>(rows: &[Row]) -> [Entry; N] {
                 next += 1;
             }
             Some([left, right]) => {
-                let (at_left, at_right) = (next_sided, next_sided + per_side);
+                let (left_index, right_index) = (next_sided, next_sided + per_side);
                 let entry =
-                    Entry { name: left, base, side: Some(Side::Left), part, standard, mirrored: at_right };
-                entries[at_left] = entry;
-                entries[at_right] =
-                    Entry { name: right, side: Some(Side::Right), mirrored: at_left, ..entry };
+                    Entry { name: left, base, side: Some(Side::Left), part, standard, mirrored: right_index };
+                entries[left_index] = entry;
+                entries[right_index] =
+                    Entry { name: right, side: Some(Side::Right), mirrored: left_index, ..entry };
                 next_sided += 1;
             }
         }
@@ -160,18 +160,18 @@ const fn entries<const N: usize>(rows: &[Row]) -> [Entry; N] {
     entries
 }
 
-/// Measures in order. There is one catalogue, [`CATALOGUE`]; tests make larger ones.
+/// Measures in order. The library has one catalogue, [`CATALOGUE`]; tests make a larger one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Catalogue(pub(super) &'static [Entry]);
 
 impl Catalogue {
-    /// Place of a measure that there is, for constants: a name that is none does not compile.
-    pub(super) const fn place(self, name: &str) -> usize {
-        let mut place = 0;
-        while !same(self.0[place].name.as_bytes(), name.as_bytes()) {
-            place += 1;
+    /// Index of the measure of this name, for constants: in a constant an unknown name does not compile.
+    pub(super) const fn index_of(self, name: &str) -> usize {
+        let mut index = 0;
+        while !same(self.0[index].name.as_bytes(), name.as_bytes()) {
+            index += 1;
         }
-        place
+        index
     }
 
     /// Names in order.
@@ -179,22 +179,22 @@ impl Catalogue {
         self.0.iter().map(|entry| entry.name)
     }
 
-    /// Place of the measure of exactly this name.
+    /// Index of the measure of exactly this name.
     pub(super) fn find(self, name: &str) -> Option<usize> {
         self.0.iter().position(|entry| entry.name == name)
     }
 
-    /// Places of the measures that a user's name stands for: one, or both sides when the side is left out.
+    /// Indices of the measures that a user's name stands for: one, or both sides when the side is left out.
     pub(super) fn expand(self, name: &str) -> Option<Vec<usize>> {
-        if let Some(place) = self.find(name) {
-            return Some(vec![place]);
+        if let Some(index) = self.find(name) {
+            return Some(vec![index]);
         }
-        let sides: Vec<_> = (0..self.0.len()).filter(|&place| self.0[place].base == name).collect();
+        let sides: Vec<_> = (0..self.0.len()).filter(|&index| self.0[index].base == name).collect();
         (!sides.is_empty()).then_some(sides)
     }
 }
 
-/// Whether two texts are equal; `==` of texts is not for constants yet.
+/// Whether two names are equal; `==` of slices is not `const` yet.
 const fn same(a: &[u8], b: &[u8]) -> bool {
     let (mut same, mut i) = (a.len() == b.len(), 0);
     while same && i < a.len() {

@@ -1,4 +1,4 @@
-//! The catalogue, and what a measure more takes: a row here and a definition, no other code of this room.
+//! The catalogue; another measure takes a row in it and a definition, and no other code of this module.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ const LARGER_ENTRIES: [Entry; count(&LARGER_ROWS)] = entries(&LARGER_ROWS);
 const LARGER: Catalogue = Catalogue(&LARGER_ENTRIES);
 
 #[test]
-fn a_row_more_is_a_measure_more() {
+fn another_row_is_another_measure() {
     assert_eq!(LARGER.0.len(), MEASURE_COUNT + 3);
     let mut names: Vec<&str> = CATALOGUE.names().collect();
     let right = CATALOGUE.0.iter().position(|entry| entry.side == Some(Side::Right)).unwrap();
@@ -39,14 +39,14 @@ fn a_row_more_is_a_measure_more() {
         assert_eq!(mirrored.mirrored, place);
         assert_eq!((mirrored.base, mirrored.side), (entry.base, entry.side.map(Side::mirrored)));
         assert_eq!((mirrored.part, mirrored.standard), (entry.part, entry.standard));
-        assert_eq!(Side::part_measure_name(entry.name), (entry.base, entry.side));
+        assert_eq!(Side::split_measure_name(entry.name), (entry.base, entry.side));
     }
     assert_eq!(LARGER.0[right].part, BodyPart::Hand);
     assert_eq!(LARGER.0[right].standard, Some("ANSUR II wristbreadth"));
 }
 
 #[test]
-fn a_measure_more_is_defined_and_read() {
+fn another_measure_is_defined_and_evaluated() {
     // A pyramid on four vertices: every measure is the straight distance between two of them.
     let surface = [DVec3::ZERO, DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0];
     let definition = |(place, name): (usize, &str)| {

@@ -1,4 +1,4 @@
-//! Where each measure lies on the body: data over the vertices of the finest level of detail.
+//! Where each measure is taken on the body: data over the vertices of LOD 0.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -8,20 +8,20 @@ use super::catalogue::CATALOGUE;
 use super::names::MeasureId;
 use crate::{Error, Result};
 
-/// How a measure is read.
+/// How a measure is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// Perimeter of the convex hull of the points, projected along the normal.
     Tape,
-    /// Perimeter of the convex hull of the cut of the triangulated surface by the plane through the mean of the
-    /// points with the normal; only the listed edges are cut.
+    /// Perimeter of the convex hull of a planar cut of the triangulated surface. The plane has the definition's normal
+    /// and goes through the mean of the points; only the listed edges are cut.
     Slice,
-    /// Distance between two points, or how far apart they are along the axis.
+    /// Distance between two points, or the absolute value of its component along the axis.
     Length,
 }
 
-/// A place on the surface: a weighted sum of vertices, weights summing to one.
+/// A point on the surface: vertices of LOD 0 with weights that sum to one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Point(pub Vec<(u32, f64)>);
@@ -30,15 +30,15 @@ pub struct Point(pub Vec<(u32, f64)>);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
-    /// Identifier.
+    /// Identifier of the measure, with its side.
     pub name: String,
-    /// How it is read.
+    /// How it is computed.
     pub kind: Kind,
     /// A loop's points, a slice's landmarks or a length's two ends.
     pub points: Vec<Point>,
-    /// Unit normal of the plane of a tape or slice; zero for a length.
+    /// Unit normal, in model space, of the plane of a tape or slice; zero for a length.
     pub normal: DVec3,
-    /// Unit axis that a length is measured along; `None` for the straight distance.
+    /// Unit axis, in model space, that a length is measured along; `None` for the straight distance.
     pub axis: Option<DVec3>,
     /// Edges, diagonals 0–2 of the quads included, that a slice cuts; empty otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -51,19 +51,19 @@ impl Definition {
         MeasureId::from_name(&self.name)?.standard()
     }
 
-    /// Every vertex that the measure depends on.
+    /// Every vertex that the measure depends on; a vertex may come more than once.
     pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
         let points = self.points.iter().flat_map(|p| p.0.iter().map(|t| t.0));
         points.chain(self.edges.iter().flatten().copied())
     }
 
     fn validate(&self, vertex_count: usize) -> std::result::Result<(), String> {
-        let need = match self.kind {
+        let least = match self.kind {
             Kind::Tape => 3,
             Kind::Slice => 1,
             Kind::Length => 2,
         };
-        if self.points.len() < need || (self.kind == Kind::Length && self.points.len() != 2) {
+        if self.points.len() < least || (self.kind == Kind::Length && self.points.len() != 2) {
             return Err(format!("{} points do not make a {:?}", self.points.len(), self.kind));
         }
         if let Some(v) = self.vertices().find(|v| *v as usize >= vertex_count) {
@@ -96,19 +96,19 @@ pub struct Definitions {
     hash: String,
 }
 
-/// Vertices of the surface that the definitions index.
+/// Number of vertices of LOD 0, which the definitions index.
 const SURFACE_VERTICES: usize = 53_514;
 
 impl Definitions {
     /// The definitions of this version of the library: `model/measures.json`.
     ///
     /// # Errors
-    /// Never for the file that the library is built with; a test holds that.
+    /// None for the file that the library is built with; a test reads it.
     pub fn embedded() -> Result<Self> {
         Self::from_json(include_str!("../../../model/measures.json"), SURFACE_VERTICES)
     }
 
-    /// Reads definitions over a surface of so many vertices.
+    /// Parses definitions over a surface of `vertex_count` vertices.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the measure that is missing, out of order or inconsistent.
@@ -128,13 +128,13 @@ impl Definitions {
         MeasureId::all().zip(&self.list)
     }
 
-    /// SHA-256 of the file they came from, as hexadecimal digits: a model records which it was trained with.
+    /// SHA-256 of the JSON, in hexadecimal; a model file records the one that it was trained with.
     pub fn hash(&self) -> &str {
         &self.hash
     }
 }
 
-/// Reads the definitions of these measures, in this order, over a surface of so many vertices.
+/// Parses the definitions of these measures, in this order, over a surface of `vertex_count` vertices.
 pub(super) fn read_list<'a>(
     json: &str,
     names: impl ExactSizeIterator<Item = &'a str>,

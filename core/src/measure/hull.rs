@@ -1,8 +1,8 @@
-//! The tape: perimeter of the convex hull of points in a plane, with its gradient.
+//! Perimeter of the convex hull of points in a plane, with its gradient: what a tape reads.
 
 use glam::DVec2;
 
-/// The hull's corners, counter-clockwise, as numbers of the given points (Andrew's monotone chain, 1979).
+/// Indices of the hull's corners, counter-clockwise (Andrew's monotone chain, 1979).
 pub(super) fn convex_hull(points: &[DVec2]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
@@ -32,7 +32,7 @@ pub(super) fn convex_hull(points: &[DVec2]) -> Vec<usize> {
     hull
 }
 
-/// Perimeter of the convex hull and, for each of its corners, the derivative by the corner's place.
+/// Perimeter of the convex hull and, per corner, its index in `points` and the derivative with respect to its position.
 pub(super) fn hull_perimeter(points: &[DVec2]) -> (f64, Vec<(usize, DVec2)>) {
     let hull = convex_hull(points);
     let n = hull.len();

@@ -10,7 +10,7 @@ use serde::Serialize;
 /// capacity), which leaves 1,015 kg/m³.
 pub const BODY_DENSITY: f64 = 1_015.0;
 
-/// What follows from the volume that the skin encloses.
+/// What follows from the volume that the surface encloses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mass {
     /// Enclosed volume, m³.
@@ -29,12 +29,13 @@ impl Mass {
     }
 }
 
-/// Volume enclosed by a closed surface of quads, each split along its diagonal 0–2, m³ (divergence theorem).
+/// Volume enclosed by a closed surface of quads, each split along its diagonal 0–2, by the divergence theorem: m³ for
+/// positions in metres, positive where faces are counter-clockwise from outside.
 pub fn enclosed_volume(at: impl Fn(u32) -> DVec3, quads: &[[u32; 4]]) -> f64 {
     let mut six_times = 0.0;
     for quad in quads {
         let [a, b, c, d] = quad.map(&at);
-        // a·(b×c) + a·(c×d), with one product less.
+        // a·(b×c) + a·(c×d) = a·((b − d)×c).
         six_times += a.dot((b - d).cross(c));
     }
     six_times / 6.0

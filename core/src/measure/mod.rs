@@ -1,9 +1,8 @@
-//! Tape measures: what they are called, where they lie on the body and how they are read.
+//! Tape measures: their names, their definitions on the body and their evaluation.
 //!
-//! A [`Definition`] is data: landmarks, loops and planes over the vertices of the finest level of detail. A
-//! circumference is what a tailor's tape reads, the perimeter of the convex hull of its points, because a tape
-//! spans hollows; the raw edge loop reads 50 mm more at the hip. Every measure has an analytic gradient, which
-//! the exact solve needs.
+//! A [`Definition`] is data: landmarks, loops and planes over the vertices of LOD 0. A circumference is what a tailor's
+//! tape reads, the perimeter of the convex hull of its points, because a tape spans hollows; the raw edge loop is 50 mm
+//! longer at the hip. Every measure has an analytic gradient, which the exact solve needs.
 
 mod catalogue;
 mod definition;

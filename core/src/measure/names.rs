@@ -1,4 +1,4 @@
-//! The identifiers of the measures and of the two sexes.
+//! Identifiers of the measures and of the two sexes.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,31 +14,31 @@ pub struct MeasureId(u8);
 
 impl MeasureId {
     /// The stature, `height`.
-    pub const HEIGHT: Self = Self(CATALOGUE.place("height") as u8);
+    pub const HEIGHT: Self = Self(CATALOGUE.index_of("height") as u8);
     /// `waist_circumference`.
-    pub const WAIST: Self = Self(CATALOGUE.place("waist_circumference") as u8);
+    pub const WAIST: Self = Self(CATALOGUE.index_of("waist_circumference") as u8);
 
-    /// All measures, in order: those of the middle, of the left, of the right.
+    /// All measures, in order: central, left, right.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
         (0..MEASURE_COUNT as u8).map(Self)
     }
 
-    /// The measure at this place of the order, if there is one.
+    /// The measure of this index; `None` from [`MEASURE_COUNT`] on.
     pub fn from_index(index: usize) -> Option<Self> {
         (index < MEASURE_COUNT).then_some(Self(index as u8))
     }
 
-    /// The measure with exactly this identifier, sides spelt out.
+    /// The measure of exactly this identifier, with its side.
     pub fn from_name(name: &str) -> Option<Self> {
         CATALOGUE.find(name).map(Self::at)
     }
 
-    /// The measure of this name without its side, on this side.
+    /// The measure on this side of a name without its side, such as `arm_length`.
     pub fn on_side(base: &str, side: Side) -> Option<Self> {
         Self::all().find(|id| id.base_name() == base && id.side() == Some(side))
     }
 
-    /// Place in the order, `0..MEASURE_COUNT`.
+    /// Index in every array of measures, `0..MEASURE_COUNT`.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
@@ -48,12 +48,12 @@ impl MeasureId {
         self.entry().name
     }
 
-    /// The identifier without its side, such as `arm_length`: what [`expand_name`] takes for both sides.
+    /// The identifier without its side, such as `arm_length`, which [`expand_name`] expands to both sides.
     pub fn base_name(self) -> &'static str {
         self.entry().base
     }
 
-    /// The side of the body that it is taken on; `None` for a measure of the middle.
+    /// The side of the body that it is taken on; `None` for a central measure.
     pub fn side(self) -> Option<Side> {
         self.entry().side
     }
@@ -73,9 +73,9 @@ impl MeasureId {
         Self::at(self.entry().mirrored)
     }
 
-    /// The measure at a place of the catalogue.
-    fn at(place: usize) -> Self {
-        Self(place as u8)
+    /// The measure of an index in the catalogue.
+    fn at(index: usize) -> Self {
+        Self(index as u8)
     }
 
     fn entry(self) -> &'static Entry {
@@ -89,7 +89,7 @@ impl std::fmt::Display for MeasureId {
     }
 }
 
-/// The measures that a user's name stands for: one, or both sides when the side is left out.
+/// The measures that a user's name stands for: one, or both sides when the side is left out; `None` for an unknown name.
 pub fn expand_name(name: &str) -> Option<Vec<MeasureId>> {
     Some(CATALOGUE.expand(name)?.into_iter().map(MeasureId::at).collect())
 }
@@ -105,7 +105,7 @@ pub enum Sex {
 }
 
 impl Sex {
-    /// Both, in the order of [`Sex::index`].
+    /// Both sexes, in the order of [`Sex::index`].
     pub const ALL: [Self; 2] = [Self::Female, Self::Male];
 
     /// 0 for female, 1 for male.
@@ -163,7 +163,7 @@ mod tests {
             assert_eq!(MeasureId::from_index(i), Some(id));
             assert_eq!(id.mirrored().mirrored(), id);
             assert_eq!(id.side().map(Side::mirrored), id.mirrored().side());
-            assert_eq!(Side::part_measure_name(id.name()), (id.base_name(), id.side()));
+            assert_eq!(Side::split_measure_name(id.name()), (id.base_name(), id.side()));
         }
         assert_eq!(MeasureId::from_index(MEASURE_COUNT), None);
         assert_eq!(MeasureId::HEIGHT.name(), "height");

@@ -1,4 +1,4 @@
-//! Reading a measure off a body, with its derivative by every vertex.
+//! Evaluation of measures on a body, with the derivative with respect to every vertex.
 
 use glam::{DVec2, DVec3};
 
@@ -7,13 +7,13 @@ use super::definition::{Definition, Definitions, Kind, Point};
 use super::hull::hull_perimeter;
 use super::names::{MeasureId, Measurements};
 
-/// Derivative of a measure by the places of the vertices it depends on, metre per metre; a vertex may appear more than
-/// once, and its derivatives then add.
+/// Sparse derivative of a measure with respect to vertex positions, metre per metre; the entries of a vertex that comes
+/// more than once add up.
 pub type Gradient = Vec<(u32, DVec3)>;
 
 impl Point {
-    /// The place, metres, on a body whose vertices `at` gives.
-    pub fn place(&self, at: impl Fn(u32) -> DVec3) -> DVec3 {
+    /// The point's position on a body; `at` gives the positions of vertices, in the same unit and space.
+    pub fn position(&self, at: impl Fn(u32) -> DVec3) -> DVec3 {
         self.0.iter().map(|&(v, w)| at(v) * w).sum()
     }
 
@@ -23,8 +23,8 @@ impl Point {
 }
 
 impl Definitions {
-    /// Reads all measures of a body, metres, in the order of [`MeasureId`]. `at` gives the place, metres, of a vertex
-    /// of level 0.
+    /// Evaluates all measures of a body, metres, in the order of [`MeasureId`]. `at` gives the position of a vertex of LOD 0,
+    /// metres, model space.
     pub fn read_all(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Measurements {
         let mut out = [0.0; MEASURE_COUNT];
         for (id, definition) in self.iter() {
@@ -33,14 +33,14 @@ impl Definitions {
         out
     }
 
-    /// Reads one measure, metres; `at` as for [`Definitions::read_all`].
+    /// Evaluates one measure, metres; `at` as for [`Definitions::read_all`].
     pub fn read(&self, id: MeasureId, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
         self.get(id).read(at)
     }
 }
 
 impl Definition {
-    /// Reads the measure, metres; `at` gives the places of the vertices that the definition names.
+    /// Evaluates the measure, metres; `at` gives the positions of the vertices that the definition names.
     pub fn read(&self, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
         self.evaluate(at, None)
     }
@@ -60,7 +60,7 @@ impl Definition {
 
     fn length(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
         let [from, to] = [&self.points[0], &self.points[1]];
-        let between = to.place(at) - from.place(at);
+        let between = to.position(at) - from.position(at);
         let (value, direction) = match self.axis {
             Some(axis) => {
                 let along = between.dot(axis);
@@ -81,7 +81,7 @@ impl Definition {
             .points
             .iter()
             .map(|p| {
-                let x = p.place(at);
+                let x = p.position(at);
                 DVec2::new(x.dot(e1), x.dot(e2))
             })
             .collect();
@@ -98,14 +98,14 @@ impl Definition {
         let n = self.normal;
         let (e1, e2) = n.any_orthonormal_pair();
         let share = 1.0 / self.points.len() as f64;
-        let level: f64 = self.points.iter().map(|p| p.place(at).dot(n)).sum::<f64>() * share;
-        // Cut edges: [a, b], and how far from a to b the plane is.
+        let level: f64 = self.points.iter().map(|p| p.position(at).dot(n)).sum::<f64>() * share;
+        // Cut edges [a, b] with the parameter t of the cut, at a + t (b − a).
         let mut cuts: Vec<([u32; 2], f64)> = Vec::new();
         let mut flat = Vec::new();
         for &[a, b] in &self.edges {
             let (xa, xb) = (at(a), at(b));
             let (ha, hb) = (xa.dot(n) - level, xb.dot(n) - level);
-            // Half open, so that a vertex exactly on the plane is cut once and not never.
+            // Half open: a vertex exactly on the plane counts as above, so that the cut through it is not lost.
             if (ha < 0.0) != (hb < 0.0) {
                 let t = ha / (ha - hb);
                 let x = xa + (xb - xa) * t;
@@ -115,20 +115,20 @@ impl Definition {
         }
         let (perimeter, corners) = hull_perimeter(&flat);
         if let Some(gradient) = gradient {
-            let mut by_level = 0.0;
+            let mut level_derivative = 0.0;
             for (corner, g) in corners {
                 let ([a, b], t) = cuts[corner];
                 let direction = e1 * g.x + e2 * g.y;
                 let along = at(b) - at(a);
-                // The cut slides along its edge as the plane or the edge's ends move.
+                // The cut moves along its edge by 1 / (along · n) per unit that the plane moves along n.
                 let slide = direction.dot(along) / along.dot(n);
-                let of_ends = direction - n * slide;
-                gradient.push((a, of_ends * (1.0 - t)));
-                gradient.push((b, of_ends * t));
-                by_level += slide;
+                let end_derivative = direction - n * slide;
+                gradient.push((a, end_derivative * (1.0 - t)));
+                gradient.push((b, end_derivative * t));
+                level_derivative += slide;
             }
             for point in &self.points {
-                point.add_gradient(n * (by_level * share), gradient);
+                point.add_gradient(n * (level_derivative * share), gradient);
             }
         }
         perimeter
@@ -139,7 +139,7 @@ impl Definition {
 mod tests {
     use super::*;
 
-    /// A wobbly barrel: rings of points, so that tapes and slices have something to span.
+    /// A barrel of uneven rings of points, with hollows for tapes and slices to span.
     fn barrel() -> (Vec<DVec3>, Vec<[u32; 2]>) {
         let (rings, around) = (6, 16);
         let mut points = Vec::new();

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
 
-/// How fine the body's mesh is.
+/// A level of detail of the body's mesh.
 ///
-/// Level 0 is the subdivided surface. The vertices of level 1 are the first vertices of level 0; levels 2 and 3
-/// are index lists over those of level 1, of about 25 % and 6 % of its faces.
+/// LOD 0 is the subdivided surface. The vertices of LOD 1 are the first vertices of LOD 0; LODs 2 and 3 are index lists
+/// over those of LOD 1, with about 25 % and 6 % of its faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub enum Lod {
@@ -26,7 +26,7 @@ impl Lod {
     /// All levels, finest first.
     pub const ALL: [Self; 4] = [Self::Lod0, Self::Lod1, Self::Lod2, Self::Lod3];
 
-    /// 0 for the finest.
+    /// The level's number, 0 for the finest.
     pub fn index(self) -> usize {
         self as usize
     }

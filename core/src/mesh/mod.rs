@@ -1,4 +1,4 @@
-//! Surfaces: topology of the cage, Catmull-Clark subdivision, vertex normals and levels of detail.
+//! Quad meshes: topology, Catmull-Clark subdivision, vertex normals and levels of detail.
 
 mod lod;
 mod normals;

@@ -1,8 +1,8 @@
 //! One level of Catmull-Clark subdivision of a closed quad mesh (Catmull and Clark 1978), as a sparse stencil.
 //!
-//! The refined vertices are ordered: one vertex point per cage vertex, then one edge point per edge, then one
-//! face point per face. So the first vertices of the refined mesh are the cage's own, moved to the smooth
-//! surface, which is what the first level of detail below the finest is made of.
+//! The order of the refined vertices: one vertex point per cage vertex, then one edge point per edge, then one
+//! face point per face. The first vertices of the refined mesh are therefore the cage's own, moved to the refined
+//! surface; LOD 1 consists of them.
 
 use glam::{DVec3, Vec3};
 
@@ -14,7 +14,8 @@ use crate::{Error, Result};
 pub struct Subdivision {
     refined: Topology,
     edges: Vec<[u32; 2]>,
-    // Compressed rows: refined vertex r is the weighted sum over offsets[r]..offsets[r + 1].
+    /// Compressed sparse rows: refined vertex r is the sum of `weights[i]` · cage vertex `indices[i]` over i in
+    /// `offsets[r]..offsets[r + 1]`.
     offsets: Vec<u32>,
     indices: Vec<u32>,
     weights: Vec<f32>,
@@ -59,7 +60,7 @@ impl Subdivision {
 
         let mut rows = Rows::default();
         for v in 0..v_count {
-            // (Q + 2R + (n - 3) S) / n with Q the mean of face points, R of edge midpoints, S the vertex.
+            // (Q + 2R + (n − 3) S) / n: Q is the mean of the face points around, R that of the edge midpoints, S the vertex.
             let n = vertex_faces[v].len() as f64;
             if n < 3.0 || vertex_edges[v].len() != vertex_faces[v].len() {
                 return Err(Error::invalid("topology", format!("vertex {v} is not inside a closed surface")));
@@ -129,7 +130,7 @@ impl Subdivision {
         self.indices[range.clone()].iter().copied().zip(self.weights[range].iter().copied())
     }
 
-    /// Refines positions: `cage` has one point per cage vertex, the result one per refined vertex.
+    /// Refines positions, in any unit and space: `cage` has one point per cage vertex, the result one per refined vertex.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the number of points is not the cage's.
@@ -147,7 +148,7 @@ impl Subdivision {
         Ok(out)
     }
 
-    /// As [`refine`](Self::refine), in double precision: what measurements of record are taken on.
+    /// As [`refine`](Self::refine), in double precision, for measuring.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the number of points is not the cage's.
@@ -160,7 +161,7 @@ impl Subdivision {
 
     /// Number of the cage's vertices.
     pub fn cage_len(&self) -> usize {
-        // One vertex point per cage vertex, one edge point per edge, one face point per face, which gave four quads.
+        // One vertex point per cage vertex, one edge point per edge, one face point per face; each face became four quads.
         self.refined.vertex_count - self.edges.len() - self.refined.quads.len() / 4
     }
 
@@ -174,7 +175,8 @@ impl Subdivision {
     }
 }
 
-/// Texture coordinates are refined linearly: midpoints of edges and centres of faces, per chart.
+/// Texture coordinates and faces over them, refined linearly per chart: corners stay, then midpoints of edges, then
+/// centres of faces.
 fn refine_uvs(cage: &Topology) -> (Vec<[f32; 2]>, Vec<[u32; 4]>) {
     let (edges, face_edges) = edges_of(&cage.quad_uvs);
     let at = |i: u32| cage.uvs[i as usize];
@@ -197,7 +199,7 @@ fn refine_uvs(cage: &Topology) -> (Vec<[f32; 2]>, Vec<[u32; 4]>) {
     (uvs, quad_uvs)
 }
 
-/// Collects compressed rows; entries of one row that name the same column are merged.
+/// Builds compressed sparse rows; entries of one row in the same column are added up.
 #[derive(Default)]
 struct Rows {
     row: std::collections::BTreeMap<u32, f64>,
@@ -240,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn cube_follows_the_rules_of_1978() {
+    fn a_cube_is_refined_as_in_the_paper_of_1978() {
         let (cage, points) = cube();
         let cc = Subdivision::new(&cage).unwrap();
         assert_eq!((cc.refined().vertex_count, cc.refined().quads.len()), (8 + 12 + 6, 24));

@@ -9,9 +9,9 @@ use crate::{Error, Result};
 pub struct Topology {
     /// Number of vertices that the quads index into.
     pub vertex_count: usize,
-    /// Four vertices per face, counter-clockwise seen from outside.
+    /// Four vertices per face, counter-clockwise as seen from outside.
     pub quads: Vec<[u32; 4]>,
-    /// Texture coordinates, v upwards (the OBJ convention).
+    /// Texture coordinates, v pointing up as in OBJ.
     pub uvs: Vec<[f32; 2]>,
     /// Four texture coordinates per face, corner by corner as in `quads`.
     pub quad_uvs: Vec<[u32; 4]>,
@@ -21,7 +21,7 @@ impl Topology {
     /// Checks that every index is in range and that both lists of faces are equally long.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the first face that is wrong.
+    /// [`Error::Invalid`] with both numbers of faces, or with the first face that has an index out of range.
     pub fn validate(&self) -> Result<()> {
         if self.quads.len() != self.quad_uvs.len() {
             return Err(Error::invalid(
@@ -51,8 +51,8 @@ impl Topology {
     }
 }
 
-/// The edges of a quad mesh, numbered in the order in which walking the faces corner by corner first meets
-/// them, and for each face corner the edge to the next corner.
+/// The edges of a quad mesh, lower vertex first, in the order in which they first occur corner by corner over the faces;
+/// and per face the number of the edge from each corner to the next.
 pub fn edges_of(quads: &[[u32; 4]]) -> (Vec<[u32; 2]>, Vec<[u32; 4]>) {
     let mut numbers = std::collections::HashMap::with_capacity(quads.len() * 2);
     let mut edges = Vec::with_capacity(quads.len() * 2);

@@ -1,4 +1,4 @@
-//! What is the same for everybody: topology, levels of detail, accessories, skeleton and skin weights.
+//! What all bodies share: topology, levels of detail, accessories, joint tree and skin weights.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,24 +13,24 @@ use crate::{Error, Result};
 pub struct Accessory {
     /// `eyes`, `teeth`, `tongue` or `lashes`.
     pub name: String,
-    /// First of its points among the points of the shape space.
+    /// Index of its first point among the points of the shape space.
     pub start: usize,
     /// Topology over its own vertices.
     pub topology: Topology,
 }
 
-/// Triangles over some of the cage's vertices.
+/// A level of detail below the cage: triangles over a subset of the cage's vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReducedMesh {
-    /// The vertices in use, ascending.
+    /// The cage vertices in use, ascending.
     pub vertices: Vec<u32>,
-    /// Triangles over places in `vertices`.
+    /// Triangles of indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
-    /// Texture coordinates of the corners, as numbers of the cage's.
+    /// Texture coordinates of the corners, as indices into the cage's.
     pub triangle_uvs: Vec<[u32; 3]>,
 }
 
-/// The constant half of every body.
+/// What all bodies share: everything but positions and normals.
 #[derive(Debug)]
 pub struct Character {
     cage: Topology,
@@ -39,18 +39,19 @@ pub struct Character {
     reduced: [ReducedMesh; 2],
     accessories: Vec<Accessory>,
     joint_tree: Arc<JointTree>,
-    // Of the mean body: cage, then accessories.
+    /// Points of the mean body, metres: cage, then accessories.
     mean: Vec<Vec3>,
-    // Of the cage, then of the accessories.
+    /// Skin weights of the same points.
     weights: SkinWeights,
     refined_weights: OnceLock<Result<SkinWeights>>,
 }
 
 impl Character {
-    /// Puts the parts together; `mean` are the points of the mean body, metres: the cage's, then the accessories'.
+    /// Assembles a character. `weights` and `mean` (metres, model space) have one row per point: those of the cage, then those
+    /// of the accessories in order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when they do not fit: see each part.
+    /// [`Error::Invalid`] naming the part that is inconsistent or of another size.
     pub fn new(
         cage: Topology,
         reduced: [ReducedMesh; 2],
@@ -76,7 +77,7 @@ impl Character {
         if mean.len() != points {
             return Err(Error::invalid("mean body", format!("expected {points} points, got {}", mean.len())));
         }
-        // Only now: it makes arrays as long as the cage says that it is.
+        // After the checks of size: it allocates by the cage's number of vertices.
         let subdivision = Subdivision::new(&cage)?;
         for mesh in &reduced {
             let fits = mesh.triangles.len() == mesh.triangle_uvs.len()
@@ -104,22 +105,22 @@ impl Character {
         })
     }
 
-    /// The cage, which is also the topology of level 1.
+    /// The cage, which is also the topology of LOD 1.
     pub fn cage(&self) -> &Topology {
         &self.cage
     }
 
-    /// The step from the cage to level 0.
+    /// The subdivision of the cage that gives LOD 0.
     pub fn subdivision(&self) -> &Subdivision {
         &self.subdivision
     }
 
-    /// Faces around the vertices of level 0.
+    /// Faces around the vertices of LOD 0.
     pub fn faces_around(&self) -> &VertexFaces {
         &self.faces_around
     }
 
-    /// The index lists of levels 2 and 3; `None` for the others.
+    /// The index lists of LODs 2 and 3; `None` for the others.
     pub fn reduced(&self, lod: Lod) -> Option<&ReducedMesh> {
         match lod {
             Lod::Lod0 | Lod::Lod1 => None,
@@ -128,7 +129,7 @@ impl Character {
         }
     }
 
-    /// Number of the body's vertices at a level.
+    /// Number of the body's vertices at a level of detail, without accessories.
     pub fn vertex_count(&self, lod: Lod) -> usize {
         match self.reduced(lod) {
             Some(mesh) => mesh.vertices.len(),
@@ -137,7 +138,7 @@ impl Character {
         }
     }
 
-    /// Eyes, teeth, tongue, lashes.
+    /// Eyes, teeth, tongue and lashes, in the order of their points.
     pub fn accessories(&self) -> &[Accessory] {
         &self.accessories
     }
@@ -147,12 +148,12 @@ impl Character {
         &self.joint_tree
     }
 
-    /// Number of points that the shape space must have.
+    /// Number of points of cage and accessories, which the shape space must have too.
     pub fn point_count(&self) -> usize {
         self.weights.len()
     }
 
-    /// Points of an accessory of the mean body, metres: what decisions are made on that hold for everybody.
+    /// Points of an accessory of the mean body, metres: for decisions that have to be the same for all bodies.
     pub fn accessory_mean(&self, accessory: &Accessory) -> &[Vec3] {
         let end = accessory.start + accessory.topology.vertex_count;
         self.mean.get(accessory.start..end).unwrap_or_default()
@@ -163,7 +164,7 @@ impl Character {
         self.weights.rows(accessory.start..accessory.start + accessory.topology.vertex_count)
     }
 
-    /// Skin weights of the body at level 0; the first rows are those of level 1.
+    /// Skin weights of the body at LOD 0; the first rows are those of LOD 1.
     ///
     /// # Errors
     /// None for a character that [`Character::new`] accepted.

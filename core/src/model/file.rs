@@ -1,10 +1,9 @@
-//! The model file: safetensors with everything that training decided.
+//! The model file: a safetensors file with everything that training produced.
 //!
-//! Format version 2. Arrays are named below in [`ModelParts::to_bytes`]; the metadata entry `anthronet` is JSON:
-//! names and parents of the joints, accessories, the networks' configuration, hashes of the topology and of the
-//! measure definitions, how the model was made and scored, and a checksum: the SHA-256 of the whole file with the
-//! checksum's own 64 digits as zeros, so that a change anywhere in the file is found. Sizes in the file are checked
-//! against each other and never trusted.
+//! Format version 2. [`ModelParts::to_bytes`] names the arrays. The metadata entry `anthronet` is JSON: names and parents of
+//! the joints, names of the accessories, the networks' configuration, hashes of the topology and of the measure definitions,
+//! provenance, and a checksum: the SHA-256 of the whole file with the checksum's own 64 digits as zeros, which detects a
+//! change anywhere in the file. Sizes in the file are checked against each other before they are used.
 
 use glam::Vec3;
 use half::f16;
@@ -25,7 +24,7 @@ use crate::{Error, Result};
 /// Version of the file's layout; a file of another version is refused.
 pub const FORMAT_VERSION: u32 = 2;
 
-/// How the model was made and how well it does; shown by `info`, trusted by nothing.
+/// How the model was trained, and its scores; for information only, shown by `info`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Version of the data set.
@@ -45,45 +44,44 @@ pub struct Provenance {
 pub struct ModelParts {
     /// The body's cage.
     pub cage: Topology,
-    /// Levels 2 and 3.
+    /// LODs 2 and 3.
     pub reduced: [ReducedMesh; 2],
     /// Eyes, teeth, tongue, lashes; their points follow the cage's.
     pub accessories: Vec<Accessory>,
-    /// Mean body, three numbers a point, metres.
+    /// Points of the mean body, three coordinates each, metres; those of the cage, then of the accessories.
     pub mean: Vec<f32>,
-    /// First components, `(components, coordinates)`, as half floats; metre per metre, as all components.
+    /// First components, `(components, coordinates)`, as half floats, metre per metre.
     pub fine: Vec<f16>,
-    /// Remaining components, `(components, coordinates)`, as bytes.
+    /// Remaining components, `(components, coordinates)`, as bytes to be multiplied by `scales`.
     pub coarse: Vec<i8>,
-    /// What a byte is worth, per remaining component.
+    /// Scale of each remaining component, metre per metre.
     pub scales: Vec<f32>,
-    /// Deviation of each coefficient, metres.
+    /// Standard deviation of each coefficient over people, metres.
     pub deviations: Vec<f64>,
     /// Joint names, parents first.
     pub joint_names: Vec<String>,
     /// Joint parents; only the first joint has none.
     pub joint_parents: Vec<Option<u32>>,
-    /// Mean heads, then mean tails of the joints, `(2, joints, 3)`, metres.
+    /// Heads, then tails of the joints of the mean body, `(2, joints, 3)`, metres.
     pub joint_mean: Vec<f32>,
-    /// How the coefficients move them, `(2 * 3 * joints, components)`, metre per metre.
+    /// Derivatives of those with respect to the coefficients, `(2 * joints * 3, components)`, metre per metre.
     pub joint_rows: Vec<f32>,
-    /// Skin weights of cage and accessories as [`crate::skeleton::SkinWeights::new`] takes them: offsets of the rows, joints,
-    /// weights.
+    /// Skin weights of cage and accessories, the arguments of [`SkinWeights::new`]: offsets of the rows, joints, weights.
     pub skin: (Vec<u32>, Vec<u16>, Vec<f32>),
     /// Per sex, female first: means `(2, M)` in m, covariances `(2, M, M)` in m², quantiles `(2, M, 101)` in m;
     /// M is [`MEASURE_COUNT`].
     pub prior: [Vec<f64>; 3],
     /// Per measure the smallest and largest value that a request may give, `(M, 2)`, metres.
     pub ranges: Vec<f64>,
-    /// Mean and deviation that measures are standardised with, one per measure, metres.
+    /// Mean and standard deviation that measures are standardised with, one each per measure, metres.
     pub standardisation: [Vec<f64>; 2],
-    /// Decoder and encoder.
+    /// Weights of decoder and encoder.
     pub networks: Tensors,
     /// Their configuration.
     pub config: GeneratorConfig,
-    /// SHA-256 of the measure definitions that the model was made with.
+    /// SHA-256, in hexadecimal, of the measure definitions that the model was trained with.
     pub definitions_hash: String,
-    /// How the model was made.
+    /// How the model was trained.
     pub provenance: Provenance,
 }
 
@@ -99,7 +97,7 @@ struct Metadata {
     sha256: String,
 }
 
-/// What stands in the place of the checksum while it is taken.
+/// Placeholder for the checksum while it is computed.
 const NO_CHECKSUM: [u8; 64] = [b'0'; 64];
 
 const METADATA_KEY: &str = "anthronet";
@@ -154,7 +152,8 @@ impl ModelParts {
             arrays.add(&format!("measures.{name}"), Dtype::F64, vec![data.len()], data);
         }
         for (name, tensor) in &self.networks {
-            // Half floats suffice for what the solve corrects; the linear paths carry whole bodies and stay exact.
+            // Half floats suffice for errors that the solve corrects; the linear skip and biases carry most of a body and keep
+            // single precision.
             if name.starts_with("skip") || name.ends_with("bias") {
                 arrays.add(&format!("network.{name}"), Dtype::F32, tensor.shape.clone(), &tensor.data);
             } else {
@@ -181,15 +180,15 @@ impl ModelParts {
         Ok(bytes)
     }
 
-    /// Reads a file's bytes and holds them against their checksum.
+    /// Reads a file's bytes and verifies their checksum.
     ///
     /// # Errors
-    /// [`Error::Model`] naming `origin` and what does not fit.
+    /// [`Error::Model`] naming `origin` and what is wrong.
     pub fn from_bytes(bytes: &[u8], origin: &str) -> Result<Self> {
         Self::read(bytes, origin, true)
     }
 
-    /// Reads bytes; without `verify` the checksum is not taken.
+    /// As [`from_bytes`](Self::from_bytes), but verifies the checksum only if `verify`.
     pub(super) fn read(bytes: &[u8], origin: &str, verify: bool) -> Result<Self> {
         let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
         let (_, header) = SafeTensors::read_metadata(bytes)
@@ -232,7 +231,7 @@ impl ModelParts {
             accessories.push(Accessory { name, start, topology });
             start += vertices;
         }
-        // Before anything as large as these counts is made from them.
+        // Before anything is allocated by these counts.
         let mean: Vec<f32> = reader.get("shape.mean", Dtype::F32)?;
         if mean.len() != 3 * start {
             return Err(fail(format!(
@@ -282,7 +281,7 @@ impl ModelParts {
         })
     }
 
-    /// The constant half of every body.
+    /// What all bodies share.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the parts do not fit together.
@@ -319,15 +318,15 @@ impl ModelParts {
         )
     }
 
-    /// What is known of people before anything is measured.
+    /// The priors over measures of both sexes.
     ///
     /// # Errors
-    /// When a covariance is none.
+    /// As [`Prior::from_slices`].
     pub fn prior(&self) -> Result<Prior> {
         Prior::from_slices(&self.prior[0], &self.prior[1], &self.prior[2])
     }
 
-    /// Accepted values per measure.
+    /// The range of values of each measure, metres.
     ///
     /// # Errors
     /// [`Error::Invalid`] when there are not [`MEASURE_COUNT`] pairs that ascend.
@@ -340,7 +339,7 @@ impl ModelParts {
     }
 }
 
-/// SHA-256 of a cage's connectivity, as hexadecimal digits.
+/// SHA-256 of a cage's connectivity, in hexadecimal.
 pub fn topology_hash(cage: &Topology) -> String {
     let mut hash = Sha256::new();
     hash.update((cage.vertex_count as u64).to_le_bytes());
@@ -354,31 +353,31 @@ fn hex(digest: &[u8]) -> String {
     digest.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Where the header ends: its length stands in the first eight bytes.
+/// Offset of the header's end; the header's length is in the first eight bytes.
 fn header_end(bytes: &[u8]) -> usize {
     let length = bytes.first_chunk().map_or(0, |b| u64::from_le_bytes(*b));
     usize::try_from(length).map_or(bytes.len(), |n| n.saturating_add(8).min(bytes.len()))
 }
 
-/// Where `what` first begins in `within`.
+/// Offset of the first occurrence of `what` in `within`.
 fn find(within: &[u8], what: &[u8]) -> Option<usize> {
     within.windows(what.len()).position(|w| w == what)
 }
 
-/// Compares the checksum that a file carries with the one that its bytes have.
-fn verify_checksum(bytes: &[u8], carried: &str) -> std::result::Result<(), String> {
-    let place = find(&bytes[..header_end(bytes)], carried.as_bytes())
-        .filter(|_| carried.len() == NO_CHECKSUM.len())
+/// Compares the checksum stored in a file with the one computed from its bytes.
+fn verify_checksum(bytes: &[u8], stored: &str) -> std::result::Result<(), String> {
+    let place = find(&bytes[..header_end(bytes)], stored.as_bytes())
+        .filter(|_| stored.len() == NO_CHECKSUM.len())
         .ok_or_else(|| "metadata: sha256: expected 64 hexadecimal digits".to_owned())?;
     let mut hash = Sha256::new();
     hash.update(&bytes[..place]);
     hash.update(NO_CHECKSUM);
     hash.update(&bytes[place + NO_CHECKSUM.len()..]);
-    let taken = hex(&hash.finalize());
-    if taken == carried {
+    let computed = hex(&hash.finalize());
+    if computed == stored {
         return Ok(());
     }
-    Err(format!("the SHA-256 of the file is {taken}, its header says {carried}: the file is damaged"))
+    Err(format!("the SHA-256 of the file is {computed}, its header says {stored}: the file is damaged"))
 }
 
 #[derive(Default)]
@@ -424,7 +423,7 @@ impl Reader<'_> {
         Error::Model { origin: self.origin.to_owned(), message }
     }
 
-    /// The array's content as a list of `T`, whose size must divide it.
+    /// The array's content as a list of `T`.
     fn get<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
         &self,
         name: &str,

@@ -1,4 +1,4 @@
-//! The generator: from a request to the coefficients of a body that has exactly the given measures.
+//! The generator: from a request to the shape coefficients of a body that has exactly the given measures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -20,10 +20,10 @@ use crate::{Error, Result};
 /// Environment variable that names a model file to use instead of the embedded one.
 pub const MODEL_VARIABLE: &str = "ANTHRONET_MODEL";
 
-/// Added to each coefficient's deviation (in squares) in the metric of the exact solve, metres: 0.26 mm over the whole
-/// cage. People hardly vary along the last components; without it a foot that is asked to differ from the other by
-/// a millimetre more than feet do would be paid for by the whole body.
-const SCULPT: f64 = 0.03;
+/// Standard deviation, metres, whose square is added to the variance of every coefficient in the metric of the exact solve;
+/// over the whole cage it amounts to 0.26 mm per vertex. People hardly vary along the last components: without it, feet
+/// that differ by a millimetre more than people's do would change the whole body.
+const ISOTROPIC_DEVIATION: f64 = 0.03;
 
 /// A loaded model: immutable, shared between threads, cheap to clone.
 #[derive(Clone)]
@@ -48,12 +48,12 @@ struct Shared {
     provenance: Provenance,
 }
 
-/// A request met: coefficients, and how they came about.
+/// A solved request: coefficients and the intermediate results.
 #[derive(Clone, Debug)]
 pub struct Solved {
-    /// What the network was asked.
+    /// The request as prepared for the network.
     pub prepared: Prepared,
-    /// The coefficients before the exact solve.
+    /// The coefficients from the decoder, before the exact solve, metres.
     pub decoded: Vec<f64>,
     /// The exact solve's result.
     pub outcome: SolveOutcome,
@@ -82,17 +82,17 @@ impl Model {
     /// # Errors
     /// None; a test opens it.
     pub fn embedded() -> Result<Self> {
-        // Without the checksum: what is wrong with these bytes is wrong with the program around them, and taking it
-        // would add a fifth to the time of every start. A test opens the same bytes with it.
+        // Without verifying the checksum: these bytes are as intact as the program around them, and it would add a fifth to
+        // the time of every start. A test verifies it.
         let bytes = include_bytes!("../../../model/anthronet.safetensors");
         let origin = "(embedded)";
         Self::from_parts(&ModelParts::read(bytes, origin, false)?, origin)
     }
 
-    /// A model file.
+    /// Opens a model file.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be read, [`Error::Model`] when it is no model that fits this library.
+    /// [`Error::Io`] when it cannot be read, [`Error::Model`] when it is damaged or does not match this library.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| Error::Io {
@@ -103,10 +103,10 @@ impl Model {
         Self::read(&bytes, &path.display().to_string())
     }
 
-    /// A model from a file's bytes.
+    /// Reads a model from the bytes of a file.
     ///
     /// # Errors
-    /// [`Error::Model`] when they are no model that fits this library.
+    /// [`Error::Model`] when they are damaged or do not match this library.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         Self::read(bytes, "(memory)")
     }
@@ -115,10 +115,10 @@ impl Model {
         Self::from_parts(&ModelParts::from_bytes(bytes, origin)?, origin)
     }
 
-    /// Puts a model together.
+    /// Builds a model from its parts; `origin` names it in errors.
     ///
     /// # Errors
-    /// [`Error::Model`] when the parts do not fit together or this library.
+    /// [`Error::Model`] when the parts contradict each other or do not match this library.
     pub fn from_parts(parts: &ModelParts, origin: &str) -> Result<Self> {
         let named = |e: Error| match e {
             Error::Model { message, origin: inner } => {
@@ -167,12 +167,13 @@ impl Model {
                 .ok_or_else(|| fail(format!("standardisation: expected {MEASURE_COUNT} usable numbers")))
         };
         let decoder = Decoder::from_tensors(&parts.config, &parts.networks).map_err(named)?;
-        // A model may come without its encoder, but not with a broken one.
+        // The encoder is optional, but a part of one is an error.
         let encoder = Encoder::is_in(&parts.networks)
             .then(|| Encoder::from_tensors(&parts.config, &parts.networks).map_err(named))
             .transpose()?;
         let measured = MeasuredSpace::new(&space, character.subdivision(), &definitions);
-        let variances = space.deviations().iter().map(|s| s * s + SCULPT * SCULPT).collect();
+        let variances =
+            space.deviations().iter().map(|s| s * s + ISOTROPIC_DEVIATION * ISOTROPIC_DEVIATION).collect();
         Ok(Self {
             shared: Arc::new(Shared {
                 origin: origin.to_owned(),
@@ -193,12 +194,12 @@ impl Model {
         })
     }
 
-    /// What is the same for everybody.
+    /// What all bodies share.
     pub fn character(&self) -> &Arc<Character> {
         &self.shared.character
     }
 
-    /// Where each measure lies.
+    /// Where each measure is taken.
     pub fn definitions(&self) -> &Definitions {
         &self.shared.definitions
     }
@@ -213,12 +214,12 @@ impl Model {
         &self.shared.measured
     }
 
-    /// What is known of people before anything is measured.
+    /// The priors over measures of both sexes.
     pub fn prior(&self) -> &Prior {
         &self.shared.prior
     }
 
-    /// Values that a request may give, metres, in the order of the measures.
+    /// The values that a request may give, metres, in the order of [`MeasureId`](crate::measure::MeasureId).
     pub fn ranges(&self) -> &[MeasureRange; MEASURE_COUNT] {
         &self.shared.ranges
     }
@@ -228,20 +229,20 @@ impl Model {
         self.shared.decoder.latent_len()
     }
 
-    /// How the model was made and scored.
+    /// How the model was trained, and its scores.
     pub fn provenance(&self) -> &Provenance {
         &self.shared.provenance
     }
 
-    /// The coefficients that the network gives for a full set of measures, before any solve.
+    /// The coefficients (metres) that the decoder gives for all measures (metres) and z, before any solve.
     pub fn decode(&self, measures: &Measurements, sex: Sex, z: &[f64]) -> Vec<f64> {
-        self.shared.decoder.decode_exact(&self.standardised(measures), sex, z)
+        self.shared.decoder.decode_f64(&self.standardised(measures), sex, z)
     }
 
     /// The encoder's mean of z for a body with these measures (metres) and coefficients (metres).
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the model file carries no encoder, or for another number of coefficients.
+    /// [`Error::Invalid`] when the model has no encoder, or for another number of coefficients.
     pub fn encode(&self, measures: &Measurements, sex: Sex, coefficients: &[f64]) -> Result<Vec<f64>> {
         let encoder =
             self.shared.encoder.as_ref().ok_or_else(|| Error::invalid("encoder", "the model has none"))?;
@@ -253,10 +254,10 @@ impl Model {
         std::array::from_fn(|i| (measures[i] - mean[i]) / deviation[i])
     }
 
-    /// Meets a request: check, fill, project, decode, solve.
+    /// Solves a request: checks, fills and projects its measures, decodes and does the exact solve.
     ///
     /// # Errors
-    /// [`Error::Request`] for a bad field, [`Error::Infeasible`] for measures that no one person has.
+    /// As [`Prepared::new`].
     pub fn solve(&self, request: &Request) -> Result<Solved> {
         let shared = &self.shared;
         let prepared =
@@ -266,7 +267,7 @@ impl Model {
         Ok(Solved { prepared, decoded, outcome })
     }
 
-    /// The body nearest to the given coefficients that has the given measures.
+    /// The body nearest to these coefficients (metres) that has the given measures (metres).
     ///
     /// # Errors
     /// As [`solve()`].
@@ -284,7 +285,7 @@ impl Model {
         self.shared.measured.measure(coefficients, None)
     }
 
-    /// Where the joints of the body with these coefficients begin and end, pelvis at the origin, metres.
+    /// Heads and tails of the bones of the body with these coefficients, metres, with the pelvis at the origin.
     pub fn joints_of(&self, coefficients: &[f64]) -> BonePositions {
         let k = self.shared.space.components();
         let at = |i: usize| {
@@ -292,11 +293,11 @@ impl Model {
             let sum: f64 = row.iter().zip(coefficients).map(|(r, c)| f64::from(*r) * c).sum();
             (f64::from(self.shared.joint_mean[i]) + sum) as f32
         };
-        let place = |j: usize| Vec3::new(at(3 * j), at(3 * j + 1), at(3 * j + 2));
+        let position = |j: usize| Vec3::new(at(3 * j), at(3 * j + 1), at(3 * j + 2));
         let joints = self.shared.character.joint_tree().len();
         BonePositions {
-            heads: (0..joints).map(place).collect(),
-            tails: (joints..2 * joints).map(place).collect(),
+            heads: (0..joints).map(position).collect(),
+            tails: (joints..2 * joints).map(position).collect(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a model is, for programs.
+//! The JSON description of a model.
 
 use serde_json::json;
 
@@ -6,8 +6,8 @@ use super::Model;
 use crate::mesh::Lod;
 
 impl Model {
-    /// Measures with definitions, standards and ranges (metres), joints with parents, vertices per level of detail,
-    /// versions and scores: the JSON of `anthronet info --json`.
+    /// The JSON of `anthronet info --json`: measures with definitions, standards and ranges (metres), joints with parents,
+    /// vertices per level of detail, versions and scores.
     pub fn info(&self) -> serde_json::Value {
         let (character, ranges) = (self.character(), self.ranges());
         let measures = self.definitions().iter().map(|(id, definition)| {

@@ -1,8 +1,8 @@
-//! Measuring a mesh at any level of detail: from its vertices back to the surface that measures are defined on.
+//! Measuring a mesh at any level of detail: reconstruction of the surface that measures are defined on.
 //!
-//! Level 0 is that surface. Level 1 is its first vertices, the cage's vertices after one Catmull-Clark step: that step
-//! is undone exactly, then taken again. Levels 2 and 3 are some of those vertices: the body of the shape space nearest
-//! to them is fitted, which for bodies of this model is the body itself.
+//! LOD 0 is that surface. LOD 1 consists of its first vertices, the vertex points of the Catmull-Clark step: the step is
+//! inverted to get the cage, which is then subdivided again. LODs 2 and 3 are subsets of those vertices: the nearest body of
+//! the shape space is fitted to them, which for bodies of this model is the body itself.
 
 use glam::{DVec3, Vec3};
 
@@ -13,13 +13,17 @@ use crate::measure::{Mass, MeasureId, Measurements, enclosed_volume};
 use crate::mesh::{Lod, Subdivision};
 use crate::{Error, Result};
 
-/// What a fit to few vertices is held to the mean body by: (10 µm)², against a deviation of each coefficient.
+/// Ridge of the fit to few vertices, (10 µm)²: a coefficient one standard deviation off costs as much as a coordinate 10 µm
+/// off.
 const RIDGE: f64 = 1e-10;
 
-/// What the tape and the scales say of a mesh.
+/// Relaxation of the Richardson iteration, below its limit of 2 for eigenvalues up to 1.
+const RELAXATION: f64 = 1.5;
+
+/// The measures and mass of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredMesh {
-    /// The level of detail that the mesh was recognised as, by its number of vertices.
+    /// The mesh's level of detail, inferred from its number of vertices.
     pub lod: Lod,
     /// All measures, metres.
     pub measurements: Measurements,
@@ -28,11 +32,11 @@ pub struct MeasuredMesh {
 }
 
 impl Model {
-    /// Measures a body in its bind pose at any level of detail: `vertices` are those of the body alone, in model order,
-    /// metres, +Y up; where it stands does not matter.
+    /// Measures a body in its bind pose at any level of detail: `vertices` are those of the body without accessories, in
+    /// model order, metres, +Y up; where it stands does not matter.
     ///
-    /// Levels 0 and 1 are measured exactly, whatever their shape. Of levels 2 and 3 the nearest body of the model is
-    /// measured: exact to 0.05 mm for bodies of this model, an estimate for others.
+    /// LODs 0 and 1 are measured exactly, whatever their shape. For LODs 2 and 3 the nearest body of the model is measured:
+    /// exact to 0.05 mm for bodies of this model, an estimate for others.
     ///
     /// # Errors
     /// As [`Model::surface_of_mesh`].
@@ -45,15 +49,15 @@ impl Model {
         Ok(MeasuredMesh { lod, measurements, mass })
     }
 
-    /// The vertices of level 0 of a body whose vertices of any level are given, as [`Model::measure_mesh`] takes them:
-    /// metres, in model order, with the level that their number tells.
+    /// Reconstructs the vertices of LOD 0 (metres, model order) from those of any level of detail, which are as for
+    /// [`Model::measure_mesh`]; with the level, inferred from their number.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a number of vertices that is no level's, for one that is not finite or further than a
-    /// kilometre from the origin, and for vertices that do not determine a body.
+    /// [`Error::Invalid`] for a number of vertices that no level has, for a coordinate that is not finite or beyond a
+    /// kilometre, and for vertices that do not determine a body.
     pub fn surface_of_mesh(&self, vertices: &[Vec3]) -> Result<(Lod, Vec<DVec3>)> {
-        /// Metres: beyond any character, and far from where numbers lose what a tape needs.
-        const FAR: f32 = 1_000.0;
+        /// Largest coordinate, metres: far beyond any character, and still precise enough to be measured.
+        const MAX_COORDINATE: f32 = 1_000.0;
         let character = self.character();
         let Some(lod) = Lod::ALL.into_iter().find(|lod| character.vertex_count(*lod) == vertices.len())
         else {
@@ -61,16 +65,18 @@ impl Model {
             let message = format!("expected {known} vertices in the model's order, got {}", vertices.len());
             return Err(Error::invalid("body", message));
         };
-        if let Some(i) = vertices.iter().position(|p| !(p.abs().max_element() <= FAR && p.is_finite())) {
-            let message = format!("vertex {i}: expected metres below {FAR}, got {}", vertices[i]);
+        if let Some(i) =
+            vertices.iter().position(|p| !(p.abs().max_element() <= MAX_COORDINATE && p.is_finite()))
+        {
+            let message = format!("vertex {i}: expected metres below {MAX_COORDINATE}, got {}", vertices[i]);
             return Err(Error::invalid("body", message));
         }
         let points: Vec<DVec3> = vertices.iter().map(|p| p.as_dvec3()).collect();
         let subdivision = character.subdivision();
         let cage = match character.reduced(lod) {
             None if lod == Lod::Lod0 => return Ok((lod, points)),
-            None => undo_subdivision(subdivision, &points),
-            Some(mesh) => fit(self.shape_space(), subdivision, &mesh.vertices, &points),
+            None => invert_subdivision(subdivision, &points),
+            Some(mesh) => fit_cage(self.shape_space(), subdivision, &mesh.vertices, &points),
         };
         let cage =
             cage.ok_or_else(|| Error::invalid("body", "its vertices determine no body of this model"))?;
@@ -78,24 +84,24 @@ impl Model {
     }
 }
 
-/// The cage whose Catmull-Clark vertex points are these. The step's matrix has eigenvalues between 0 and 1, so that
-/// Richardson's iteration converges; `None` if it does not.
-fn undo_subdivision(subdivision: &Subdivision, points: &[DVec3]) -> Option<Vec<DVec3>> {
-    /// Metres; far below what a file's single precision resolves.
+/// The cage that has these Catmull-Clark vertex points, by Richardson iteration with relaxation [`RELAXATION`]. It converges,
+/// as the matrix from cage to vertex points has eigenvalues in (0, 1]; `None` if it does not.
+fn invert_subdivision(subdivision: &Subdivision, points: &[DVec3]) -> Option<Vec<DVec3>> {
+    /// Metres; far below the resolution of single precision.
     const TOLERANCE: f64 = 1e-11;
-    const STEP: f64 = 1.5;
     let mut cage = points.to_vec();
     for _ in 0..20_000 {
         let mut worst = 0.0_f64;
         let residuals: Vec<DVec3> = (0..points.len())
             .map(|v| {
-                let moved: DVec3 = subdivision.stencil(v).map(|(i, w)| cage[i as usize] * f64::from(w)).sum();
-                points[v] - moved
+                let vertex_point: DVec3 =
+                    subdivision.stencil(v).map(|(i, w)| cage[i as usize] * f64::from(w)).sum();
+                points[v] - vertex_point
             })
             .collect();
         for (vertex, residual) in cage.iter_mut().zip(residuals) {
             worst = worst.max(residual.abs().max_element());
-            *vertex += residual * STEP;
+            *vertex += residual * RELAXATION;
         }
         if worst < TOLERANCE {
             return Some(cage);
@@ -104,15 +110,16 @@ fn undo_subdivision(subdivision: &Subdivision, points: &[DVec3]) -> Option<Vec<D
     None
 }
 
-/// The cage of the body of the shape space nearest to some level-1 vertices, up to a shift: files stand on the ground.
-fn fit(
+/// The cage of the body of the shape space that is nearest to a subset of the vertices of LOD 1, up to a translation, as
+/// bodies in files stand on the ground.
+fn fit_cage(
     space: &ShapeSpace,
     subdivision: &Subdivision,
     vertices: &[u32],
     points: &[DVec3],
 ) -> Option<Vec<DVec3>> {
     let count = space.components();
-    // Unknowns: coefficients in standard deviations, then the shift in metres.
+    // Unknowns: coefficients in standard deviations, then the translation in metres.
     let unknowns = count + 3;
     let mut rows = Vec::with_capacity(points.len() * 3);
     let mut right = Vec::with_capacity(points.len() * 3);
@@ -148,7 +155,7 @@ mod tests {
     use crate::mesh::Topology;
 
     #[test]
-    fn subdivision_is_undone() {
+    fn subdivision_is_inverted() {
         // A torus of 6 by 5 quads.
         let at = |i: u32, j: u32| (i % 6) * 5 + j % 5;
         let quads: Vec<[u32; 4]> = (0..30)
@@ -162,7 +169,7 @@ mod tests {
             .map(|v| DVec3::new(f64::from(v * 7 % 11), f64::from(v * 5 % 13), f64::from(v * 3 % 17)))
             .collect();
         let refined = subdivision.refine_f64(&cage).unwrap();
-        let back = undo_subdivision(&subdivision, &refined[..30]).unwrap();
+        let back = invert_subdivision(&subdivision, &refined[..30]).unwrap();
         for (a, b) in back.iter().zip(&cage) {
             assert!(a.distance(*b) < 1e-9, "{a} for {b}");
         }

@@ -1,10 +1,10 @@
-//! Measures as a function of coefficients, with derivatives: what the exact solve turns.
+//! Measures as a function of shape coefficients, with derivatives, for the exact solve.
 //!
-//! Only the places that some measure reads are kept: each is a row of the shape space pushed through the
-//! subdivision's stencil. Reading those rows is what a solve spends its time on, so that as few as possible are read,
-//! and those of a measure's derivative while they are still in the cache: along an axis that a measure does not see no
-//! coordinate is computed, and a slice, which has many vertices but cuts few, looks at most of them only far enough to
-//! know on which side of the plane they are.
+//! Only points that some measure depends on are kept: three rows of the shape space each, combined by the subdivision's
+//! stencil. A solve spends its time on reading those rows. Therefore coordinates along an axis that does not affect a
+//! measure are not computed; a slice, which has many vertices but cuts few edges, computes the height of most vertices only
+//! to the precision that decides their side of the plane; and a measure's derivative follows its value at once, while the
+//! rows are in the cache.
 
 use glam::DVec3;
 use multiversion::multiversion;
@@ -14,26 +14,28 @@ use crate::condition::MeasuredShape;
 use crate::measure::{Definition, Definitions, Gradient, Kind, MEASURE_COUNT, Measurements, Point};
 use crate::mesh::Subdivision;
 
-/// The measured places of the shape space.
+/// The points of the shape space that measures depend on.
 #[derive(Clone, Debug)]
 pub struct MeasuredSpace {
     components: usize,
     measures: Vec<Measure>,
+    /// The points of the mean body, metres.
     mean: Vec<DVec3>,
-    // Three rows of `components` per place.
+    /// Three rows of `components` per point, for x, y and z, metre per metre.
     rows: Vec<f32>,
 }
 
-/// A measure over places instead of vertices.
+/// A measure whose definition indexes the points of [`MeasuredSpace`] instead of vertices.
 #[derive(Clone, Debug)]
 struct Measure {
     definition: Definition,
-    // Place and axis of the coordinates that are always computed.
+    /// Point and axis of the coordinates that are always computed.
     coordinates: Vec<(u32, usize)>,
+    /// For a slice across an axis.
     slice: Option<Slice>,
 }
 
-/// The vertices of a slice whose plane is square to an axis.
+/// The vertices of a slice whose plane is perpendicular to an axis.
 #[derive(Clone, Debug)]
 struct Slice {
     axis: usize,
@@ -42,21 +44,21 @@ struct Slice {
 
 #[derive(Clone, Debug)]
 struct SliceVertex {
-    place: u32,
-    // Length of the row along the axis from each of `STAGES` on.
-    rest: [f64; STAGES.len()],
+    point: u32,
+    /// Norm of the rest of its row along the axis, from each of [`STAGES`] on.
+    tail_norms: [f64; STAGES.len()],
 }
 
-/// Numbers of components after which a vertex of a slice may be far enough from the plane to be left there.
+/// Numbers of components after which the bound on the rest of the sum may already decide a vertex's side of the plane.
 const STAGES: [usize; 2] = [64, 128];
 
-/// Added to the distance that the other components can move such a vertex, metres: far above rounding.
+/// Added to that bound, metres: far above rounding.
 const MARGIN: f64 = 1e-9;
 
 impl MeasuredSpace {
-    /// Collects the places that the definitions read.
+    /// Collects the points that the definitions depend on.
     pub fn new(space: &ShapeSpace, subdivision: &Subdivision, definitions: &Definitions) -> Self {
-        let mut places: Vec<Vec<(u32, f64)>> = Vec::new();
+        let mut points: Vec<Vec<(u32, f64)>> = Vec::new();
         let mut add = |terms: &[(u32, f64)]| {
             let mut over_cage = std::collections::BTreeMap::new();
             for &(vertex, weight) in terms {
@@ -64,79 +66,78 @@ impl MeasuredSpace {
                     *over_cage.entry(i).or_insert(0.0) += weight * f64::from(w);
                 }
             }
-            places.push(over_cage.into_iter().collect());
-            (places.len() - 1) as u32
+            points.push(over_cage.into_iter().collect());
+            (points.len() - 1) as u32
         };
         let mut measures: Vec<Measure> = definitions
             .iter()
             .map(|(_, definition)| {
                 let mut own = definition.clone();
                 own.points = definition.points.iter().map(|p| Point(vec![(add(&p.0), 1.0)])).collect();
-                let mut of_vertex = std::collections::BTreeMap::new();
+                let mut point_of_vertex = std::collections::BTreeMap::new();
                 for end in own.edges.iter_mut().flatten() {
-                    *end = *of_vertex.entry(*end).or_insert_with_key(|v| add(&[(*v, 1.0)]));
+                    *end = *point_of_vertex.entry(*end).or_insert_with_key(|v| add(&[(*v, 1.0)]));
                 }
-                Measure::new(own, of_vertex.into_values().collect())
+                Measure::new(own, point_of_vertex.into_values().collect())
             })
             .collect();
 
         let k = space.components();
-        let mut rows = vec![0.0_f32; places.len() * 3 * k];
+        let mut rows = vec![0.0_f32; points.len() * 3 * k];
         for component in 0..k {
-            for (place, terms) in places.iter().enumerate() {
+            for (point, terms) in points.iter().enumerate() {
                 let mut sum = [0.0; 3];
-                for &(point, w) in terms {
-                    let b = space.component(component, point as usize);
+                for &(i, w) in terms {
+                    let b = space.component(component, i as usize);
                     for axis in 0..3 {
                         sum[axis] += w * b[axis];
                     }
                 }
                 for axis in 0..3 {
-                    rows[(3 * place + axis) * k + component] = sum[axis] as f32;
+                    rows[(3 * point + axis) * k + component] = sum[axis] as f32;
                 }
             }
         }
         for slice in measures.iter_mut().filter_map(|m| m.slice.as_mut()) {
             for vertex in &mut slice.vertices {
-                let row = &rows[(3 * vertex.place as usize + slice.axis) * k..][..k];
-                vertex.rest = STAGES.map(|stage| norm(row.iter().skip(stage).map(|x| f64::from(*x))));
+                let row = &rows[(3 * vertex.point as usize + slice.axis) * k..][..k];
+                vertex.tail_norms = STAGES.map(|stage| norm(row.iter().skip(stage).map(|x| f64::from(*x))));
             }
         }
-        let mean = places
+        let mean = points
             .iter()
             .map(|terms| terms.iter().map(|&(p, w)| space.mean_point(p as usize).as_dvec3() * w).sum())
             .collect();
         Self { components: k, measures, mean, rows }
     }
 
-    fn row(&self, place: u32, axis: usize) -> &[f32] {
-        &self.rows[(3 * place as usize + axis) * self.components..][..self.components]
+    fn row(&self, point: u32, axis: usize) -> &[f32] {
+        &self.rows[(3 * point as usize + axis) * self.components..][..self.components]
     }
 
-    fn coordinate(&self, place: u32, axis: usize, c: &[f64]) -> f64 {
-        self.mean[place as usize][axis] + dot(self.row(place, axis), c)
+    fn coordinate(&self, point: u32, axis: usize, c: &[f64]) -> f64 {
+        self.mean[point as usize][axis] + dot(self.row(point, axis), c)
     }
 
-    /// Computes where the places are that a measure of this body reads; coordinates that it does not see stay as they
-    /// are.
-    fn place(&self, measure: &Measure, c: &[f64], at: &mut [DVec3]) {
-        for &(place, axis) in &measure.coordinates {
-            at[place as usize][axis] = self.coordinate(place, axis, c);
+    /// Writes the coordinates that a measure of this body depends on to `at`, and leaves all others as they are.
+    fn update(&self, measure: &Measure, c: &[f64], at: &mut [DVec3]) {
+        for &(point, axis) in &measure.coordinates {
+            at[point as usize][axis] = self.coordinate(point, axis, c);
         }
         let Some(Slice { axis, vertices }) = &measure.slice else { return };
         let axis = *axis;
         let points = &measure.definition.points;
         let share = 1.0 / points.len() as f64;
-        let level: f64 = points.iter().map(|p| p.place(|v| at[v as usize])[axis] * share).sum();
-        let rest = STAGES.map(|stage| norm(c.iter().skip(stage).copied()));
-        for SliceVertex { place, rest: of_row } in vertices {
-            let row = self.row(*place, axis);
-            // What the other components add is at most the product of the lengths (Cauchy-Schwarz).
-            let near = STAGES.iter().zip(of_row).zip(&rest).find_map(|((&stage, a), b)| {
-                let height = self.mean[*place as usize][axis] + dot(row.get(..stage)?, c.get(..stage)?);
+        let level: f64 = points.iter().map(|p| p.position(|v| at[v as usize])[axis] * share).sum();
+        let tail_norms_of_c = STAGES.map(|stage| norm(c.iter().skip(stage).copied()));
+        for SliceVertex { point, tail_norms } in vertices {
+            let row = self.row(*point, axis);
+            // The rest of the sum is at most the product of the norms (Cauchy–Schwarz).
+            let rough = STAGES.iter().zip(tail_norms).zip(&tail_norms_of_c).find_map(|((&stage, a), b)| {
+                let height = self.mean[*point as usize][axis] + dot(row.get(..stage)?, c.get(..stage)?);
                 ((height - level).abs() > a * b + MARGIN).then_some(height)
             });
-            at[*place as usize][axis] = near.unwrap_or_else(|| self.coordinate(*place, axis, c));
+            at[*point as usize][axis] = rough.unwrap_or_else(|| self.coordinate(*point, axis, c));
         }
         let mut cut: Vec<u32> = measure
             .definition
@@ -148,33 +149,34 @@ impl MeasuredSpace {
             .collect();
         cut.sort_unstable();
         cut.dedup();
-        for place in cut {
-            at[place as usize] = DVec3::from_array([0, 1, 2].map(|axis| self.coordinate(place, axis, c)));
+        for point in cut {
+            at[point as usize] = DVec3::from_array([0, 1, 2].map(|axis| self.coordinate(point, axis, c)));
         }
     }
 }
 
 impl Measure {
-    /// `vertices` are the places of the ends of a slice's edges.
+    /// `vertices` are the points at the ends of a slice's edges.
     fn new(definition: Definition, vertices: Vec<u32>) -> Self {
-        // The axis that the direction lies along, if any: the others are then not seen, or it alone is.
+        // A tape along an axis does not depend on the coordinate along it; a slice across an axis and a length along one
+        // depend on that coordinate alone, but for the vertices of cut edges.
         let along = |v: DVec3| [DVec3::X, DVec3::Y, DVec3::Z].iter().position(|axis| v.abs() == *axis);
         let normal = along(definition.normal);
-        let seen = |axis: &usize| match definition.kind {
+        let affects = |axis: &usize| match definition.kind {
             Kind::Tape => normal != Some(*axis),
             Kind::Slice => normal.is_none_or(|normal| normal == *axis),
             Kind::Length => definition.axis.and_then(along).is_none_or(|along| along == *axis),
         };
         let points = definition.points.iter().flat_map(|p| p.0.iter().map(|term| term.0));
         let mut coordinates: Vec<(u32, usize)> =
-            points.flat_map(|place| (0..3).filter(seen).map(move |axis| (place, axis))).collect();
+            points.flat_map(|point| (0..3).filter(affects).map(move |axis| (point, axis))).collect();
         let slice = match normal.filter(|_| definition.kind == Kind::Slice) {
             Some(axis) => {
-                let vertex = |place| SliceVertex { place, rest: [0.0; STAGES.len()] };
+                let vertex = |point| SliceVertex { point, tail_norms: [0.0; STAGES.len()] };
                 Some(Slice { axis, vertices: vertices.into_iter().map(vertex).collect() })
             }
             None => {
-                coordinates.extend(vertices.iter().flat_map(|place| (0..3).map(move |axis| (*place, axis))));
+                coordinates.extend(vertices.iter().flat_map(|point| (0..3).map(move |axis| (*point, axis))));
                 None
             }
         };
@@ -192,7 +194,7 @@ impl MeasuredShape for MeasuredSpace {
         let mut out = [0.0; MEASURE_COUNT];
         let mut gradient = Gradient::new();
         for (i, (value, measure)) in out.iter_mut().zip(&self.measures).enumerate() {
-            self.place(measure, c, &mut at);
+            self.update(measure, c, &mut at);
             let Some(jacobian) = jacobian.as_deref_mut() else {
                 *value = measure.definition.read(|v| at[v as usize]);
                 continue;
@@ -201,8 +203,8 @@ impl MeasuredShape for MeasuredSpace {
             *value = measure.definition.read_with_gradient(|v| at[v as usize], &mut gradient);
             let row = &mut jacobian[i * self.components..][..self.components];
             row.fill(0.0);
-            for &(place, g) in &gradient {
-                let [x, y, z] = [0, 1, 2].map(|axis| self.row(place, axis));
+            for &(point, g) in &gradient {
+                let [x, y, z] = [0, 1, 2].map(|axis| self.row(point, axis));
                 add(row, [x, y, z], g);
             }
         }
@@ -214,7 +216,7 @@ fn norm(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Adds rows along x, y and z, each times its weight.
+/// Adds a point's rows along x, y and z, each times its weight.
 #[multiversion(targets("x86_64+avx2"))]
 fn add(sums: &mut [f64], [x, y, z]: [&[f32]; 3], weights: DVec3) {
     for (((sum, &x), &y), &z) in sums.iter_mut().zip(x).zip(y).zip(z) {
@@ -222,7 +224,7 @@ fn add(sums: &mut [f64], [x, y, z]: [&[f32]; 3], weights: DVec3) {
     }
 }
 
-/// Sum of products in eight lanes: fast without fused operations, and in one order on every machine, however wide its
+/// Dot product in eight lanes: fast without fused operations, and in the same order on every machine, however wide its
 /// registers are.
 #[multiversion(targets("x86_64+avx2"))]
 fn dot(row: &[f32], c: &[f64]) -> f64 {

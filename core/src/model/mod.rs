@@ -1,4 +1,4 @@
-//! The trained model: its file, its networks, its shape space, and the path from a request to coefficients.
+//! The trained model: its file, character, shape space and networks, and the path from a request to shape coefficients.
 
 mod character;
 mod file;

@@ -1,32 +1,34 @@
-//! The shape space: a body's surface as mean plus a weighted sum of principal components, packed small.
+//! The shape space: a body's points as the mean plus a weighted sum of principal components, x = mean + B c.
 //!
-//! The first components are stored as half floats, the rest as bytes with one scale each: 0.03 mm of vertex error
-//! for a third of the size. Everything downstream, the exact solve included, works on these very numbers, so the
-//! packing costs no accuracy of measures.
+//! The first components are stored as half floats, the rest quantised to bytes with one scale each: a third of the size for
+//! 0.03 mm of vertex error. Everything downstream, the exact solve included, uses the quantised components, so quantisation
+//! costs no accuracy of measures.
 
 use glam::Vec3;
 use multiversion::multiversion;
 
 use crate::{Error, Result};
 
-/// Packed components over the coordinates of the cage and the accessories.
+/// Mean and quantised components over the coordinates of cage and accessories, in model space with the pelvis at the origin.
 #[derive(Clone, Debug)]
 pub struct ShapeSpace {
     mean: Vec<f32>,
-    // Component by component, `mean.len()` numbers each.
+    /// First components, one row of `mean.len()` numbers each, metre per metre.
     fine: Vec<f32>,
+    /// Remaining components, rows as in `fine`, to be multiplied by `scales`.
     coarse: Vec<i8>,
-    // One scale per coarse component.
+    /// One per coarse component, metre per metre.
     scales: Vec<f32>,
+    /// Standard deviation of each coefficient, metres.
     std: Vec<f64>,
 }
 
-/// Coordinates that are summed at a time: the sums stay in the first-level cache.
+/// Number of coordinates that are summed at a time, so that the sums stay in the L1 cache.
 const BLOCK: usize = 4_096;
 
 impl ShapeSpace {
-    /// From packed arrays: `mean` has three numbers per point, `fine` and `coarse` one row of that length per
-    /// component, `scales` one number per coarse component, `std` one deviation (metres) per component.
+    /// From arrays: `mean` has three coordinates (metres) per point, `fine` and `coarse` one row of that length per component,
+    /// `scales` one number per coarse component, `std` one standard deviation (metres) per component.
     ///
     /// # Errors
     /// [`Error::Invalid`] when sizes disagree or a number is not finite.
@@ -78,13 +80,13 @@ impl ShapeSpace {
         &self.std
     }
 
-    /// A point of the mean body, metres, pelvis at the origin. Panics for a point that is not there.
+    /// A point of the mean body, metres, pelvis at the origin. Panics for an index out of range.
     pub fn mean_point(&self, point: usize) -> Vec3 {
         Vec3::new(self.mean[3 * point], self.mean[3 * point + 1], self.mean[3 * point + 2])
     }
 
-    /// The points of the body with these coefficients (metres, one per component; missing ones count as zero),
-    /// pelvis at the origin.
+    /// The points, metres, of the body with these coefficients (metres, one per component; missing ones are zero), pelvis
+    /// at the origin.
     pub fn body(&self, coefficients: &[f64]) -> Vec<Vec3> {
         let n = self.mean.len();
         let mut out = self.mean.clone();
@@ -102,8 +104,8 @@ impl ShapeSpace {
         out.chunks_exact(3).map(Vec3::from_slice).collect()
     }
 
-    /// How far a coefficient of one moves a point along x, y and z, exactly as [`body`](Self::body) uses it: metre per
-    /// metre. Panics for a component or a point that is not there.
+    /// The entries of B for a component and a point: the derivative of its x, y and z with respect to the coefficient, metre
+    /// per metre, as [`body`](Self::body) uses it. Panics for an index out of range.
     pub fn component(&self, component: usize, point: usize) -> [f64; 3] {
         let n = self.mean.len();
         let fine = self.fine.len() / n;
@@ -119,8 +121,8 @@ impl ShapeSpace {
         [at(0), at(1), at(2)]
     }
 
-    /// Coefficients of the body nearest to the given points (the first points of the space, such as the cage):
-    /// metres, one per component; exact for orthonormal components.
+    /// Coefficients, metres, of the body nearest to `points` (metres; the first points of the space, such as the cage's):
+    /// Bᵀ (x − mean), which is the least-squares solution where the components are orthonormal over those points.
     pub fn project(&self, points: &[Vec3]) -> Vec<f64> {
         let n = self.mean.len();
         let fine = self.fine.len() / n;
@@ -145,7 +147,7 @@ impl ShapeSpace {
     }
 }
 
-// Decoding a body spends its time here. Wider registers give the same bits: every sum is on its own.
+// Most of the time to decode a body is spent here. Wider registers give the same bits, as no sum is split over lanes.
 
 #[multiversion(targets("x86_64+avx2"))]
 fn add_fine(sums: &mut [f32], weights: &[f32], rows: &[f32], stride: usize, start: usize) {
@@ -157,7 +159,7 @@ fn add_coarse(sums: &mut [f32], weights: &[f32], rows: &[i8], stride: usize, sta
     add_rows(sums, weights, |k| &rows[k * stride + start..], f32::from);
 }
 
-/// Adds weighted rows, four at a time: the sums are read and written a quarter as often.
+/// Adds weighted rows, four at a time, so that the sums are read and written a quarter as often.
 #[inline(always)]
 fn add_rows<'a, T: Copy + 'a>(
     sums: &mut [f32],
@@ -184,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn packing_is_undone_the_same_way_everywhere() {
+    fn bodies_are_the_mean_plus_scaled_components() {
         let n = 3 * 2_000;
         let wave = |k: usize, i: usize| libm::sin((k * 31 + i * 7) as f64) as f32;
         let fine: Vec<f32> = (0..2 * n).map(|i| wave(i / n, i % n)).collect();

@@ -1,4 +1,4 @@
-//! What the generator is told, and what encoder and decoder both make of it.
+//! The condition vector, and the layers on it that encoder and decoder share.
 
 use super::config::{CONDITION_COUNT, GeneratorConfig};
 use super::dense::{Block, Dense, dense_shapes};
@@ -13,7 +13,7 @@ pub(super) fn skip_shapes(shapes: &mut Shapes, config: &GeneratorConfig) {
     }
 }
 
-/// Measures and sex → features h_a, and the linear skip, which reads the same numbers.
+/// Condition vector → features h_a; and the linear skip from the same vector to the output.
 #[derive(Clone, Debug)]
 pub(super) struct Condition {
     pub(super) fourier: Fourier,
@@ -41,7 +41,7 @@ impl Condition {
     }
 }
 
-/// The numbers of the condition: the standardised measures, then −1 for female or 1 for male.
+/// The condition vector: the standardised measures, then −1 for female or 1 for male.
 pub fn condition_vector(measures_standardised: &Measurements, sex: Sex) -> [f64; CONDITION_COUNT] {
     let mut condition = [0.0; CONDITION_COUNT];
     condition[..MEASURE_COUNT].copy_from_slice(measures_standardised);

@@ -1,4 +1,4 @@
-//! What defines a generator network: its sizes and the weights of its losses (paper sections 5.3 and 9.1).
+//! Configuration of a generator network: its sizes and the weights of its losses (paper sections 5.3 and 9.1).
 
 use serde::{Deserialize, Serialize};
 
@@ -6,14 +6,14 @@ use crate::measure::MEASURE_COUNT;
 use crate::network::fourier::FourierConfig;
 use crate::{Error, Result};
 
-/// What the condition encoder is given: the measures, standardised, and the sex.
+/// Length of the condition vector: the standardised measures and the sex.
 pub const CONDITION_COUNT: usize = MEASURE_COUNT + 1;
 
-/// The most shape coefficients that a configuration may ask for.
+/// Largest number of shape coefficients in a configuration.
 pub const MAX_COEFFICIENTS: usize = 4096;
-/// The largest latent vector.
+/// Largest length of the latent vector.
 pub const MAX_LATENT: usize = 256;
-/// The largest multiple of the paper's layer widths.
+/// Largest multiple of the paper's layer widths.
 pub const MAX_WIDTH: usize = 16;
 
 /// Sizes and losses of the conditional variational autoencoder.
@@ -29,8 +29,8 @@ pub struct GeneratorConfig {
     pub latent: usize,
     /// Multiple of the paper's layer widths (128, 256, 64).
     pub width: usize,
-    /// Adds the linear least-squares prediction from the condition to the output, so that the network learns
-    /// what it leaves over. The paper has none.
+    /// Adds the linear least-squares prediction from the condition to the output, so that the network learns its
+    /// residual. The paper has none.
     pub skip: bool,
     /// Adds linear paths from the mesh to the latent mean and from z to the output. The paper has none.
     pub latent_skip: bool,
@@ -42,8 +42,8 @@ pub struct GeneratorConfig {
     pub beta: f64,
     /// Weight γ of the Laplacian loss, in mm².
     pub gamma: f64,
-    /// The network's outputs are multiplied by (deviation of the coefficient)^this, which keeps the small
-    /// coefficients visible to the optimiser. 0 is the paper's plain output, 1 whitens.
+    /// Exponent p in 0..=1: the last layer's outputs are multiplied by σᵖ, σ being the standard deviation of the
+    /// coefficient, so that the optimiser reaches the small coefficients. 0 is the paper's plain output, 1 whitens.
     pub scale_power: f64,
 }
 
@@ -80,8 +80,8 @@ pub struct Widths {
 impl GeneratorConfig {
     /// The network of the paper, with no linear paths: f = 8 Fourier components.
     ///
-    /// `scale_power` stays: it says in which unit the last layer speaks, not what the network can say, and without it
-    /// Adam never gets to the small coefficients.
+    /// `scale_power` keeps its default: it changes the unit of the last layer, not the functions that the network can
+    /// represent, and without it Adam never reaches the small coefficients.
     pub fn paper() -> Self {
         Self {
             fourier: FourierConfig { components: 8, ..FourierConfig::default() },
@@ -92,10 +92,10 @@ impl GeneratorConfig {
         }
     }
 
-    /// Refuses sizes that no honest file has, before anything is allocated from them.
+    /// Checks sizes against their limits, before anything is allocated from them.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the field, what was expected and what came.
+    /// [`Error::Invalid`] naming the field, what was expected and what was found.
     pub fn validate(&self) -> Result<()> {
         self.fourier.validate()?;
         let sizes = [

@@ -1,4 +1,4 @@
-//! From measures, sex and z to a body.
+//! The decoder: from measures, sex and z to shape coefficients.
 
 use super::condition::{Condition, condition_vector, skip_shapes};
 use super::config::{CONDITION_COUNT, GeneratorConfig};
@@ -7,7 +7,7 @@ use super::tensor::{Shapes, Tensors, take};
 use crate::Result;
 use crate::measure::{MEASURE_COUNT, Measurements, Sex};
 
-/// What [`Decoder::from_tensors`] reads.
+/// Names and shapes of the arrays that [`Decoder::from_tensors`] reads.
 pub fn decoder_shapes(config: &GeneratorConfig) -> Shapes {
     let widths = config.widths();
     let mut shapes = Shapes::new();
@@ -25,14 +25,14 @@ pub fn decoder_shapes(config: &GeneratorConfig) -> Shapes {
     shapes
 }
 
-/// Condition and latent vector → shape coefficients: all that generation needs.
+/// Condition and latent vector → shape coefficients; the only network that generation needs.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     latent: usize,
     condition: Condition,
     blocks: [Block; 3],
     output: Dense,
-    /// `(latent, K)`.
+    /// Shape `(latent, K)`.
     latent_skip: Option<Vec<f32>>,
 }
 
@@ -40,8 +40,9 @@ impl Decoder {
     /// Builds the network from its arrays.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) for an absurd configuration, [`Error::Model`](crate::Error::Model) naming the tensor that is missing, of
-    /// another shape or not finite. Tensors of other networks in the set are ignored.
+    /// [`Error::Invalid`](crate::Error::Invalid) for a configuration out of its limits,
+    /// [`Error::Model`](crate::Error::Model) naming the tensor that is missing, of another shape or not finite. Tensors of
+    /// other networks in the set are ignored.
     pub fn from_tensors(config: &GeneratorConfig, tensors: &Tensors) -> Result<Self> {
         config.validate()?;
         let shapes = decoder_shapes(config);
@@ -65,15 +66,15 @@ impl Decoder {
         self.output.outputs
     }
 
-    /// The K shape coefficients, metres, for standardised measures ((m − mean) / deviation). Of a z of another
-    /// length than [`Decoder::latent_len`], what is missing counts as zero and what is over is ignored.
+    /// The K shape coefficients, metres, for standardised measures ((m − mean) / deviation). A z shorter than
+    /// [`Decoder::latent_len`] is padded with zeros, a longer one is truncated.
     pub fn decode(&self, measures_standardised: &Measurements, sex: Sex, z: &[f32]) -> Vec<f64> {
         let z: Vec<f64> = z.iter().map(|&v| f64::from(v)).collect();
-        self.decode_exact(measures_standardised, sex, &z)
+        self.decode_f64(measures_standardised, sex, &z)
     }
 
     /// [`Decoder::decode`] with z in double precision.
-    pub fn decode_exact(&self, measures_standardised: &Measurements, sex: Sex, z: &[f64]) -> Vec<f64> {
+    pub fn decode_f64(&self, measures_standardised: &Measurements, sex: Sex, z: &[f64]) -> Vec<f64> {
         let condition = condition_vector(measures_standardised, sex);
         let mut x = self.padded(z);
         x.extend(self.condition.features(&condition));

@@ -1,4 +1,4 @@
-//! What the networks are built of: fully connected layers, and the paper's block of one.
+//! The layers of the networks: the fully connected layer, and the paper's core block around one.
 
 use super::tensor::{Shapes, Tensors, take};
 use crate::Result;
@@ -17,7 +17,7 @@ pub(super) fn block_shapes(shapes: &mut Shapes, name: &str, inputs: usize, outpu
 #[derive(Clone, Debug)]
 pub(super) struct Dense {
     pub(super) outputs: usize,
-    /// `(inputs, outputs)`.
+    /// Shape `(inputs, outputs)`.
     pub(super) weight: Vec<f32>,
     bias: Vec<f32>,
 }
@@ -35,7 +35,7 @@ impl Dense {
         out
     }
 
-    /// Maps tangents, `rows × inputs`, to `rows × outputs`.
+    /// Maps tangents of the input, `rows × inputs`, to those of the output, `rows × outputs` (forward mode).
     pub(super) fn tangents(&self, input: &[f64], rows: usize) -> Vec<f64> {
         let inputs = self.weight.len() / self.outputs;
         let mut out = vec![0.0; rows * self.outputs];
@@ -46,7 +46,7 @@ impl Dense {
     }
 }
 
-/// `out += x W`, with W of shape `(x.len(), out.len())`. Four rows of W at a time, so that `out` is read and
+/// `out += x W`, with W of shape `(x.len(), out.len())`. Takes four rows of W at a time, so that `out` is read and
 /// written a quarter as often; each output still adds its terms in the order of x.
 pub(super) fn add_product(x: &[f64], weight: &[f32], out: &mut [f64]) {
     let n = out.len();
@@ -70,7 +70,8 @@ pub(super) fn add_product(x: &[f64], weight: &[f32], out: &mut [f64]) {
     }
 }
 
-/// The paper's core block: fully connected layer, batch norm (folded), parametric ReLU with a slope per output.
+/// The paper's core block (section 5.3): fully connected layer with batch norm folded in, and parametric ReLU with a slope
+/// per output.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) dense: Dense,
@@ -93,7 +94,7 @@ impl Block {
         out
     }
 
-    /// The block's value, and tangents (`rows × inputs`) mapped through its derivative there.
+    /// The block's output, and tangents of the input (`rows × inputs`) mapped through its Jacobian to `rows × outputs`.
     pub(super) fn forward_with_tangents(
         &self,
         input: &[f64],

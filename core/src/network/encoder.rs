@@ -1,4 +1,4 @@
-//! From a body, its measures and sex to z.
+//! The encoder: from shape coefficients, measures and sex to z.
 
 use super::condition::{Condition, condition_vector, skip_shapes};
 use super::config::GeneratorConfig;
@@ -7,7 +7,7 @@ use super::tensor::{Shapes, Tensors, take};
 use crate::measure::{Measurements, Sex};
 use crate::{Error, Result};
 
-/// What [`Encoder::from_tensors`] reads.
+/// Names and shapes of the arrays that [`Encoder::from_tensors`] reads.
 pub fn encoder_shapes(config: &GeneratorConfig) -> Shapes {
     let widths = config.widths();
     let mut shapes = Shapes::new();
@@ -32,12 +32,12 @@ pub struct Encoder {
     fusion: [Block; 2],
     mean: Dense,
     log_variance: Dense,
-    /// `(K, latent)`.
+    /// Shape `(K, latent)`.
     mean_skip: Option<Vec<f32>>,
 }
 
 impl Encoder {
-    /// Whether the set has any array that only the encoder has: generation needs none of them.
+    /// Whether the set has any array that belongs to the encoder alone; a model may come without, as generation needs none.
     pub fn is_in(tensors: &Tensors) -> bool {
         tensors.keys().any(|name| ["mesh.", "fusion.", "latent_"].iter().any(|own| name.starts_with(own)))
     }
@@ -75,7 +75,7 @@ impl Encoder {
             return Err(Error::invalid("shape coefficients", message));
         }
         let condition = condition_vector(measures_standardised, sex);
-        // The skip leaves to the network what it does not explain; the encoder looks at just that.
+        // The networks model only what the linear skip leaves unexplained.
         let mut residual = coefficients.to_vec();
         if let Some(skip) = &self.condition.skip {
             for (r, s) in residual.iter_mut().zip(skip.forward(&condition)) {

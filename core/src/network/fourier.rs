@@ -12,13 +12,13 @@ use serde::{Deserialize, Serialize};
 use crate::random::Random;
 use crate::{Error, Result};
 
-/// The most components per scalar that a configuration may ask for.
+/// Largest number of components per scalar in a configuration.
 pub const MAX_COMPONENTS: usize = 256;
 
-/// The stream of a seed that the frequencies are drawn from.
+/// The stream of [`Random`] that the frequencies are drawn from.
 const FREQUENCY_STREAM: u64 = 3;
 
-/// What defines an encoding.
+/// Configuration of an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FourierConfig {
@@ -32,13 +32,13 @@ pub struct FourierConfig {
 
 impl Default for FourierConfig {
     fn default() -> Self {
-        // None: they only cost beside the linear skip (MODEL_CARD.md has the numbers).
+        // None: beside the linear skip they gain nothing (numbers in MODEL_CARD.md).
         Self { components: 0, sigma: 0.03, seed: 1 }
     }
 }
 
 impl FourierConfig {
-    /// Refuses absurd sizes and a σ that is negative, not finite or above 1000.
+    /// Checks that there are at most [`MAX_COMPONENTS`] and that σ is in 0..=1000.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the field.
@@ -58,13 +58,13 @@ impl FourierConfig {
         Ok(())
     }
 
-    /// How many numbers encode one scalar: 2f, or 1 without frequencies.
+    /// Length of the encoding of one scalar: 2f, or 1 without frequencies.
     pub fn width(&self) -> usize {
         if self.components == 0 { 1 } else { 2 * self.components }
     }
 }
 
-/// The encoding itself: frequencies for a fixed number of scalars.
+/// An encoding with its frequencies, for a fixed number of scalars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fourier {
     inputs: usize,
@@ -77,7 +77,7 @@ impl Fourier {
     /// Draws the frequencies for `inputs` scalars.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the configuration is absurd.
+    /// As [`FourierConfig::validate`].
     pub fn new(config: &FourierConfig, inputs: usize) -> Result<Self> {
         config.validate()?;
         let mut random = Random::new(config.seed, FREQUENCY_STREAM);
@@ -85,18 +85,18 @@ impl Fourier {
         Ok(Self { inputs, components: config.components, angular })
     }
 
-    /// How many scalars go in.
+    /// Number of scalars.
     pub fn input_len(&self) -> usize {
         self.inputs
     }
 
-    /// How many numbers come out: `inputs · 2f`, or `inputs` without frequencies.
+    /// Length of the encoding: `inputs · 2f`, or `inputs` without frequencies.
     pub fn output_len(&self) -> usize {
         if self.components == 0 { self.inputs } else { self.inputs * 2 * self.components }
     }
 
-    /// Appends the encoding of `input` to `out`; scalar by scalar, the f cosines and then the f sines.
-    /// Scalars beyond [`Fourier::input_len`] are ignored and missing ones contribute nothing.
+    /// Appends the encoding of `input` to `out`: per scalar, the f cosines and then the f sines. Scalars beyond
+    /// [`Fourier::input_len`] are ignored; missing ones append nothing.
     pub fn encode(&self, input: &[f64], out: &mut Vec<f64>) {
         if self.components == 0 {
             out.extend(input.iter().take(self.inputs));
@@ -108,9 +108,9 @@ impl Fourier {
         }
     }
 
-    /// Appends the derivative of the encoding with respect to the scalar that each number encodes, in the
-    /// order of [`Fourier::encode`]: the Jacobian is block diagonal with these blocks of [`Fourier::output_len`]
-    /// ÷ [`Fourier::input_len`] rows.
+    /// Appends the derivative of each number of the encoding with respect to its scalar, in the order of
+    /// [`Fourier::encode`]. All other entries of the Jacobian are zero: it is block diagonal, with blocks of
+    /// [`FourierConfig::width`] rows and one column.
     pub fn derivative(&self, input: &[f64], out: &mut Vec<f64>) {
         if self.components == 0 {
             out.extend(input.iter().take(self.inputs).map(|_| 1.0));

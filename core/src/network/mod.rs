@@ -1,8 +1,9 @@
-//! The generator's networks, the paper's 05_02 and 05_03: how large they are, what they are built of, and how they are
-//! evaluated: plain loops over stored weights, batch norm already folded in (paper sections 5.3 and 9.1).
+//! The generator's networks (paper sections 5.3 and 9.1): configuration, layers and inference, with batch norm folded
+//! into the stored weights.
 //!
-//! Weights are f32, sums are f64 in a fixed order, vectorised over outputs and never over the summed index,
-//! so a result has the same bits on every machine. A weight matrix has shape `(inputs, outputs)`: `y = x W + b`.
+//! Weights are f32. Sums are f64 in a fixed order, vectorised over outputs and never over the summed index, so a result
+//! has the same bits on every machine. A weight matrix W has shape `(inputs, outputs)`, row-major, and acts on row vectors:
+//! `y = x W + b`. In the diagram A are the standardised measures, c the shape coefficients:
 //!
 //! ```text
 //! A, sex ─ Fourier ─ condition ─┬──────────────── h_a ─────────────┐

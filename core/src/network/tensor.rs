@@ -16,10 +16,10 @@ pub struct Tensor {
 /// Arrays by name.
 pub type Tensors = BTreeMap<String, Tensor>;
 
-/// Names and shapes of the arrays, in the order of the names.
+/// Shapes of arrays by name.
 pub type Shapes = BTreeMap<String, Vec<usize>>;
 
-/// Takes one array out of the set, with its shape checked.
+/// Copies one array's data from the set; checks its shape, length and that all numbers are finite.
 pub(super) fn take(tensors: &Tensors, shapes: &Shapes, name: &str) -> Result<Vec<f32>> {
     let bad = |message: String| Error::Model { origin: format!("tensor `{name}`"), message };
     let expected = shapes.get(name).ok_or_else(|| bad("not part of this network".into()))?;

@@ -1,4 +1,4 @@
-//! A mesh of the scene as plain arrays in somebody's space: what graphics hardware draws, or what editors edit.
+//! The scene's meshes as plain arrays in a given space, to be drawn by graphics hardware or edited.
 
 use glam::Vec3;
 
@@ -9,31 +9,31 @@ use crate::skeleton::Influences;
 use crate::space::Space;
 use crate::{Error, Result};
 
-/// Which vertices and faces a mesh has.
+/// The vertices and faces of a buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
-    /// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+    /// For drawing: triangles only, and one texture coordinate per vertex, so that vertices at seams are duplicated.
     #[default]
     Render,
-    /// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+    /// For editing and measuring: the model's own vertices and quads, with texture coordinates per corner.
     Model,
 }
 
-/// A mesh of the scene, its material and its skin. Metres, in the space that was asked for.
+/// A mesh of the scene with its material and skin. Metres, in the space given to [`Scene::into_buffers`].
 #[derive(Clone, Debug)]
 pub struct MeshBuffers {
     /// Name, such as `Body`.
     pub name: String,
-    /// What it looks like.
+    /// The mesh's material.
     pub material: SceneMaterial,
     /// `(V, 3)`, metres.
     pub positions: Vec<[f32; 3]>,
     /// `(V, 3)`, unit length, or empty for none.
     pub normals: Vec<[f32; 3]>,
-    /// `(V, 2)` in the render layout, else `(T, 2)`, which the faces' corners point at. v grows downwards in the
-    /// library's own space, as in glTF, and upwards in the others, as their programs have it.
+    /// Texture coordinates: `(V, 2)` in the render layout, else `(T, 2)`, indexed by the corners of faces. v points down in
+    /// the library's own space, as in glTF, and up in Blender's and Unity's.
     pub uvs: Vec<[f32; 2]>,
-    /// Vertices of the triangles; in the model layout of the faces that are no quads.
+    /// Vertices of the triangles; in the model layout, of the faces that are not quads.
     pub triangles: Vec<[u32; 3]>,
     /// Texture coordinates of the triangles' corners; empty in the render layout.
     pub triangle_uvs: Vec<[u32; 3]>,
@@ -41,16 +41,16 @@ pub struct MeshBuffers {
     pub quads: Vec<[u32; 4]>,
     /// Texture coordinates of the quads' corners; empty in the render layout.
     pub quad_uvs: Vec<[u32; 4]>,
-    /// Which vertex of the model each vertex is, `(V)`.
+    /// The mesh's own vertex that each vertex is a copy of, `(V)`.
     pub sources: Vec<u32>,
-    /// Which joints each vertex follows.
+    /// Joints and weights of each vertex.
     pub influences: Influences,
-    /// Other shapes of the surface, `(V, 3)` each.
+    /// Morph targets, of `(V, 3)` displacements each.
     pub morph_targets: Vec<MorphTarget>,
 }
 
 impl Scene {
-    /// The meshes as arrays, in order.
+    /// The meshes as buffers in this layout and space, in order.
     ///
     /// # Errors
     /// [`Error::Invalid`] when a mesh has no material.
@@ -67,7 +67,7 @@ impl Scene {
                 Layout::Render => MeshBuffers::split(mesh, material),
                 Layout::Model => MeshBuffers::whole(mesh, material),
             };
-            buffers.bring_into(space);
+            buffers.convert_to(space);
             Ok(buffers)
         });
         buffers.collect()
@@ -75,7 +75,8 @@ impl Scene {
 }
 
 impl MeshBuffers {
-    /// The way from this surface to that of another body, at the same level of detail, in the same layout and space.
+    /// The displacements from this surface to that of another body, at the same level of detail and in the same layout and
+    /// space.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the two do not have the same vertices.
@@ -85,14 +86,13 @@ impl MeshBuffers {
             let message = format!("`{}`: expected the same {ours} vertices, got {theirs}", self.name);
             return Err(Error::invalid("blend shape", message));
         }
-        let way = |from: &[[f32; 3]], to: &[[f32; 3]]| {
-            let difference = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| b[i] - a[i]);
-            from.iter().zip(to).map(difference).collect()
+        let displacements = |from: &[[f32; 3]], to: &[[f32; 3]]| {
+            from.iter().zip(to).map(|(a, b)| std::array::from_fn(|i| b[i] - a[i])).collect()
         };
         Ok(MorphTarget {
             name: name.into(),
-            positions: way(&self.positions, &other.positions),
-            normals: way(&self.normals, &other.normals),
+            positions: displacements(&self.positions, &other.positions),
+            normals: displacements(&self.normals, &other.normals),
         })
     }
 
@@ -150,8 +150,8 @@ impl MeshBuffers {
         }
     }
 
-    /// From the library's own space into another.
-    fn bring_into(&mut self, space: Space) {
+    /// Converts from the library's own space.
+    fn convert_to(&mut self, space: Space) {
         if space == Space::YUp {
             return;
         }
@@ -189,7 +189,7 @@ mod tests {
         for layout in [Layout::Render, Layout::Model] {
             for space in [Space::YUp, Space::ZUp, Space::Unity] {
                 let there = first(layout, space);
-                // Mirrored positions turn the sign, corners that go round the other way turn it back.
+                // The reflection changes the sign of the volume, reversed faces change it back.
                 assert!((signed_volume(&there) - volume).abs() < 1e-4 * volume.abs(), "{layout:?} {space:?}");
                 assert_eq!(there.sources.len(), there.positions.len());
                 assert_eq!(
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blend_shape_leads_to_the_other_body() {
+    fn a_blend_shape_is_the_difference_to_the_other_body() {
         let one = arm(4).into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
         let mut scene = arm(4);
         scene.meshes[0].positions[1][0] += 0.5;
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn morph_targets_go_along() {
+    fn morph_targets_follow_layout_and_space() {
         for layout in [Layout::Render, Layout::Model] {
             let meshes = bulging(arm(4)).into_buffers(layout, Space::ZUp).unwrap();
             let (cushion, scene) = (&meshes[2], bulging(arm(4)));

@@ -1,4 +1,4 @@
-//! From a body to the neutral scene: one level of detail, its accessories, skin and materials.
+//! The scene of a body: one level of detail, with accessories, skin weights and materials.
 
 use glam::Vec3;
 use serde_json::json;
@@ -10,18 +10,19 @@ use crate::skeleton::Influences;
 use crate::skeleton::humanoid::{JointNames, renamed};
 use crate::{Body, Error, Result};
 
-/// What of a body goes into a scene, and how it looks.
+/// Options of the scene of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneOptions {
     /// Level of detail.
     pub lod: Lod,
-    /// Influences per vertex, 4 or 8. Some viewers read only 4.
+    /// Influences per vertex, 4 or 8. Some viewers support only 4.
     pub influences: usize,
-    /// What the joints are called.
+    /// Naming convention of the joints.
     pub joint_names: JointNames,
     /// Colour of the skin.
     pub skin_tone: SkinTone,
-    /// Eyes, teeth, tongue and lashes; levels 2 and 3 keep only the eyes, which the lids leave open.
+    /// Whether to include eyes, teeth, tongue and lashes. LODs 2 and 3 have only the eyes, without which
+    /// the openings between the lids would show.
     pub accessories: bool,
 }
 
@@ -37,8 +38,8 @@ impl Default for SceneOptions {
     }
 }
 
-/// Name, base colour (linear) and roughness of an accessory's material.
-const ACCESSORY_LOOKS: [(&str, &str, [f32; 4], f32); 4] = [
+/// Accessory, name of its mesh and material, base colour (linear) and roughness.
+const ACCESSORY_MATERIALS: [(&str, &str, [f32; 4], f32); 4] = [
     ("eyes", "Eyes", [0.80, 0.78, 0.75, 1.0], 0.2),
     ("teeth", "Teeth", [0.72, 0.66, 0.55, 1.0], 0.35),
     ("tongue", "Tongue", [0.45, 0.12, 0.11, 1.0], 0.45),
@@ -65,9 +66,9 @@ impl Scene {
         let character = body.character();
         for (index, accessory) in character.accessories().iter().enumerate() {
             let keep = options.accessories && (options.lod <= Lod::Lod1 || accessory.name == "eyes");
-            let look = ACCESSORY_LOOKS.iter().find(|look| look.0 == accessory.name);
+            let material = ACCESSORY_MATERIALS.iter().find(|material| material.0 == accessory.name);
             let (Some((positions, normals)), Some(&(_, title, color, roughness)), true) =
-                (body.accessory(index), look, keep)
+                (body.accessory(index), material, keep)
             else {
                 continue;
             };
@@ -141,15 +142,16 @@ fn body_mesh(body: &Body, options: &SceneOptions) -> Result<SceneMesh> {
     Ok(mesh)
 }
 
-/// Where iris and pupil end, degrees off the eye's forward axis: halfway between the eyeballs' rings of faces.
+/// Mesh, outer limit and base colour (linear) of the parts of an eyeball. Limits are angles from the eye's forward axis in
+/// degrees, halfway between the eyeball's rings of faces.
 const EYE_PARTS: [(&str, f32, [f32; 4]); 3] = [
     ("EyePupils", 11.5, [0.003, 0.003, 0.003, 1.0]),
     ("EyeIrises", 24.0, [0.075, 0.036, 0.016, 1.0]),
     ("Eyes", 180.0, [0.80, 0.78, 0.75, 1.0]),
 ];
 
-/// Eyeballs as white, iris and pupil, so that they look somewhere in programs that have no texture for them. Which face is
-/// which is told by the mean body's eyes, so that everybody's parts have the same faces.
+/// Splits eyeballs into white, iris and pupil meshes, so that eyes have a direction of gaze without a texture. Faces are
+/// assigned by the mean body's eyes, so that the parts have the same topology for all bodies.
 fn split_eyes(eyes: &SceneMesh, mean: &[Vec3]) -> Vec<(SceneMesh, [f32; 4])> {
     let at = |v: u32| mean.get(v as usize).copied().unwrap_or_default();
     let centre = |left: bool| {
@@ -176,17 +178,17 @@ fn split_eyes(eyes: &SceneMesh, mean: &[Vec3]) -> Vec<(SceneMesh, [f32; 4])> {
             parts.push((submesh(eyes, name, &faces), color));
         }
     }
-    // The white first: it is the largest.
+    // The white, which is the largest, comes first.
     parts.reverse();
     parts
 }
 
-/// Some faces of a mesh with only the vertices that they use.
+/// Some of the quads of a mesh, with only the vertices that they use.
 fn submesh(mesh: &SceneMesh, name: &str, faces: &[usize]) -> SceneMesh {
     let mut used: Vec<u32> = faces.iter().flat_map(|&f| mesh.quads.positions[f]).collect();
     used.sort_unstable();
     used.dedup();
-    let place = |v: u32| used.binary_search(&v).unwrap_or(0) as u32;
+    let index = |v: u32| used.binary_search(&v).unwrap_or(0) as u32;
     let n = mesh.influences_per_vertex;
     let rows = |v: &u32| *v as usize * n..(*v as usize + 1) * n;
     SceneMesh {
@@ -195,7 +197,7 @@ fn submesh(mesh: &SceneMesh, name: &str, faces: &[usize]) -> SceneMesh {
         normals: used.iter().map(|&v| mesh.normals[v as usize]).collect(),
         uvs: mesh.uvs.clone(),
         quads: Corners {
-            positions: faces.iter().map(|&f| mesh.quads.positions[f].map(place)).collect(),
+            positions: faces.iter().map(|&f| mesh.quads.positions[f].map(index)).collect(),
             uvs: faces.iter().map(|&f| mesh.quads.uvs[f]).collect(),
         },
         influences_per_vertex: n,

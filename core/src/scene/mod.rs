@@ -1,4 +1,4 @@
-//! The neutral [`Scene`]: what every file format is read into and written from, and what hosts fill meshes from.
+//! The neutral [`Scene`], which every file format is read into and written from; and buffers of its meshes for hosts.
 
 mod buffers;
 mod character;

@@ -1,35 +1,35 @@
-//! Morph targets: other shapes of a surface, and how much of each is in it over a motion.
+//! Morph targets: displacements of a surface to other shapes, and their weights over the clips.
 
 use super::scene::{Scene, SceneMesh};
 use crate::{Error, Result};
 
-/// Displacements of a surface to another shape, also called shape key or blend shape. Times the target's weight, they are
-/// added to the bind pose, before skinning; at rest all weights are 0.
+/// Displacements of a surface to another shape, also called shape key or blend shape, in model space. Multiplied by the
+/// target's weight, they are added to the bind pose before skinning; at rest all weights are 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
     /// Name, unique among those of the mesh.
     pub name: String,
     /// `(V, 3)`, metres, to be added to the positions.
     pub positions: Vec<[f32; 3]>,
-    /// `(V, 3)`, to be added to the normals, whose sum is then to be brought to unit length; or empty for none.
+    /// `(V, 3)`, to be added to the normals, which are normalised afterwards; or empty for none.
     pub normals: Vec<[f32; 3]>,
 }
 
-/// The weight of one morph target over one clip. Of a target without a track it is 0.
+/// The weight of one morph target over one clip. A target without a track has weight 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MorphTrack {
-    /// Place in [`Scene::clips`].
+    /// Index in [`Scene::clips`].
     pub clip: u32,
-    /// Place in [`Scene::meshes`].
+    /// Index in [`Scene::meshes`].
     pub mesh: u32,
-    /// Place in the mesh's [`morph_targets`](SceneMesh::morph_targets).
+    /// Index in the mesh's [`morph_targets`](SceneMesh::morph_targets).
     pub target: u32,
-    /// One per frame of the clip: mostly in 0..=1, but any finite number.
+    /// One per frame of the clip, usually in 0..=1, but any finite number is valid.
     pub weights: Vec<f32>,
 }
 
 impl Scene {
-    /// Takes all motions away, with the weights of morph targets over them.
+    /// Removes all clips with their weights of morph targets.
     pub fn clear_clips(&mut self) {
         self.clips.clear();
         self.morph_tracks.clear();
@@ -103,7 +103,7 @@ mod tests {
     use crate::testing::scene::{arm, bent, bulging};
 
     #[test]
-    fn the_synthetic_targets_are_valid_and_go_with_the_clips() {
+    fn the_synthetic_targets_are_valid_and_tracks_are_cleared_with_the_clips() {
         let mut scene = bulging(arm(4));
         scene.validate().unwrap();
         scene.clear_clips();

@@ -1,8 +1,8 @@
-//! The neutral scene: everything that a file writer needs to know of a character, and nothing about files.
+//! The neutral scene: a character as file writers need it, independent of any format.
 //!
-//! Space of the whole scene: model space in metres, right-handed, +Y up, +Z forward, +X the character's left, feet
-//! on y = 0, in the bind pose. Texture coordinates follow glTF: the origin is the image's *upper* left corner and v
-//! grows downwards; writers of formats with v upwards convert with [`flip_v`].
+//! The whole scene is in model space: metres, right-handed, +Y up, +Z forward, +X the character's left, feet on y = 0,
+//! in the bind pose. Texture coordinates follow glTF: the origin is the image's *upper* left corner and v points down;
+//! writers of formats in which v points up convert with [`flip_v`].
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,15 +16,16 @@ use crate::scene::SkinTone;
 use crate::skeleton::{JointTree, Skeleton};
 use crate::{Error, Result};
 
-/// How far weights of one vertex may sum away from 1: the rounding of a sum of eight `f32`, with a margin.
+/// Tolerance on the sum of one vertex's weights: the rounding of a sum of eight `f32`, with a margin.
 const WEIGHT_SUM_TOLERANCE: f32 = 1e-5;
-/// How far a normal's length may be from 1.
+/// Tolerance on the length of a normal.
 const NORMAL_LENGTH_TOLERANCE: f32 = 1e-3;
-/// How far a joint's rotation may be from orthonormal.
+/// Tolerance on the entries of RᵀR − I of a joint's rotation R.
 const ROTATION_TOLERANCE: f32 = 1e-4;
-/// How far off its parent's axis, in distances along it, a joint stands that the parent's bone ends at.
+/// Largest distance from its parent's +Y axis, divided by the distance along it, of a joint that ends the parent's bone.
 const AXIS_TOLERANCE: f32 = 1e-3;
-/// How far a number of a clip's rest pose may be from the bind pose: the rounding of a chain of joints.
+/// Tolerance on the entries of `model_from_joint` of a clip's rest pose against the bind pose: the rounding of a chain of
+/// joints.
 const REST_TOLERANCE: f32 = 1e-4;
 
 /// A character: a joint tree, skinned meshes, materials. The body is the first mesh.
@@ -38,12 +39,12 @@ pub struct Scene {
     pub meshes: Vec<SceneMesh>,
     /// The materials that meshes refer to.
     pub materials: Vec<SceneMaterial>,
-    /// Motions of the joint tree: the joints of each clip are [`Scene::joints`] in their order, and rest in the bind
-    /// pose; what the clips call them does not matter. Names are unique: [`add_clip`](Scene::add_clip) sees to it.
+    /// Motions of the joint tree: each clip has the joints of [`Scene::joints`] in the same order, under any names, and the
+    /// bind pose as its rest pose. Names of clips are unique; [`add_clip`](Scene::add_clip) makes them so.
     pub clips: Vec<Clip>,
-    /// How much of the meshes' morph targets there is over the clips, in any order.
+    /// Weights of the meshes' morph targets over the clips, in any order.
     pub morph_tracks: Vec<MorphTrack>,
-    /// Anything to be kept with the file, such as the report: an object, or `null` for nothing.
+    /// Data to be stored in the file, such as the report: an object, or `null` for none.
     pub extras: serde_json::Value,
 }
 
@@ -52,15 +53,15 @@ pub struct Scene {
 pub struct SceneJoint {
     /// Name, unique in the scene.
     pub name: String,
-    /// Place of the parent in [`Scene::joints`], before this joint's own; `None` for the root.
+    /// Index of the parent in [`Scene::joints`], less than this joint's own; `None` for the root.
     pub parent: Option<u32>,
-    /// Rotation and translation from the joint's space to model space, metres; no scale.
+    /// Rotation and translation (metres) from the joint's space to model space, for column vectors; no scale.
     pub model_from_joint: Affine3A,
-    /// How far the bone reaches along the joint's +Y axis, metres; `None` where nothing says so.
+    /// Length of the bone along the joint's +Y axis, metres; `None` where it is unknown.
     pub bone_length: Option<f32>,
 }
 
-/// One mesh with one material. Positions and texture coordinates have index spaces of their own.
+/// One mesh with one material. Positions and texture coordinates are indexed separately.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneMesh {
     /// Name, unique among the meshes.
@@ -69,21 +70,21 @@ pub struct SceneMesh {
     pub positions: Vec<[f32; 3]>,
     /// One unit normal per vertex, `(V, 3)`, or empty for none.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates `(T, 2)`, v downwards, indexed by the faces' `uvs`; empty for none.
+    /// Texture coordinates `(T, 2)`, v pointing down, indexed by the faces' `uvs`; empty for none.
     pub uvs: Vec<[f32; 2]>,
-    /// Faces of four corners, counter-clockwise from outside. A repeated corner makes a triangle of a quad.
+    /// Faces of four corners, counter-clockwise as seen from outside. A quad with a repeated corner is a triangle.
     pub quads: Corners<4>,
-    /// Faces of three corners, counter-clockwise from outside; they come after the quads.
+    /// Faces of three corners, counter-clockwise as seen from outside; they follow the quads.
     pub triangles: Corners<3>,
     /// Slots per vertex in the next two fields: 4 or 8, or 0 for a mesh without a skin.
     pub influences_per_vertex: usize,
-    /// `(V, influences_per_vertex)` places in [`Scene::joints`]; what an unused slot holds does not matter.
+    /// `(V, influences_per_vertex)` indices into [`Scene::joints`]; unused slots may hold anything.
     pub joint_indices: Vec<u16>,
     /// `(V, influences_per_vertex)` weights, per vertex in descending order with sum 1; 0 marks an unused slot.
     pub joint_weights: Vec<f32>,
-    /// Place in [`Scene::materials`].
+    /// Index in [`Scene::materials`].
     pub material: u32,
-    /// Other shapes of the surface.
+    /// Morph targets, with names that are unique in the mesh.
     pub morph_targets: Vec<MorphTarget>,
 }
 
@@ -121,7 +122,7 @@ pub struct SceneMaterial {
     pub ior: f32,
     /// Strength of the dielectric reflection in 0..=1.
     pub specular: f32,
-    /// Use of the alpha.
+    /// How the alpha of `base_color` is used.
     pub alpha_mode: AlphaMode,
     /// Whether back faces are drawn too.
     pub double_sided: bool,
@@ -180,18 +181,18 @@ impl<const N: usize> Corners<N> {
     }
 }
 
-/// Converts between v downwards (glTF, this crate) and v upwards (OBJ, USD, Blender).
+/// Converts a texture coordinate between v pointing down (glTF, this crate) and up (OBJ, USD, Blender).
 pub fn flip_v([u, v]: [f32; 2]) -> [f32; 2] {
     [u, 1.0 - v]
 }
 
 impl Scene {
-    /// Checks all that the writers rely on: every index in range, every number finite, names unique, parents first
+    /// Checks what the writers rely on: every index in range, every number finite, names unique, parents first
     /// with one root, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1,
-    /// morph targets of as many rows as their mesh, one weight per frame of a clip.
+    /// morph targets with one row per vertex, morph tracks with one weight per frame of their clip.
     ///
     /// # Errors
-    /// [`Error::Invalid`] names the joint, mesh or material and the first value that is wrong.
+    /// [`Error::Invalid`] naming the joint, mesh, material, clip or track and the first value that is wrong.
     pub fn validate(&self) -> Result<()> {
         if !(self.extras.is_object() || self.extras.is_null()) {
             return Err(Error::invalid("scene", "extras must be an object or null"));
@@ -249,10 +250,11 @@ impl Scene {
         unique("joint", self.joints.iter().map(|j| j.name.as_str()))
     }
 
-    /// The joints as a skeleton, under the names that `name` makes of theirs: what clips for this scene rest in.
+    /// The joints as a skeleton with the bind pose as its rest pose, which clips for this scene need; `name` maps the names
+    /// of joints.
     ///
-    /// Characters of others do not say where a bone ends: it is taken to be at the farthest of the joints that stand on its
-    /// axis, if there are any.
+    /// Where a bone's length is unknown, as in most characters from other programs, the bone ends at the farthest of its
+    /// joint's children on the +Y axis, if there are any.
     ///
     /// # Errors
     /// As [`Skeleton::new`].
@@ -278,7 +280,7 @@ impl Scene {
         Skeleton::from_bind(skeleton.tree().clone(), skeleton.bind().to_vec(), lengths)
     }
 
-    /// Adds a motion. Its name loses control characters, and gets a number behind it where another has it already.
+    /// Adds a clip. Control characters are removed from its name, and a number is appended where another clip has it.
     pub fn add_clip(&mut self, clip: Clip) {
         let name = Titles::taken(self.clips.iter().map(Clip::name)).unique(clip.name());
         self.clips.push(clip.with_name(name));
@@ -299,7 +301,7 @@ impl Scene {
                 }
             }
         }
-        // Names of clips are free text; the writers of formats with narrower names narrow them.
+        // Names of clips are free text; writers of formats with stricter names adapt them.
         unique("clip", self.clips.iter().map(|c| c.name()))
     }
 
@@ -513,7 +515,7 @@ mod tests {
     }
 
     #[test]
-    fn clips_of_one_name_or_with_unprintable_ones_are_numbered_and_written() {
+    fn clips_get_unique_printable_names() {
         let mut scene = arm(4);
         let clip = bent(&scene);
         for name in ["walk", "walk", "walk 2", "walk", "a\nb", ""] {
@@ -525,7 +527,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_end_where_the_scene_says_else_where_the_next_joint_is() {
+    fn bones_without_a_length_end_at_the_next_joint_on_their_axis() {
         let mut scene = arm(4);
         scene.joints[0].model_from_joint = Affine3A::IDENTITY;
         scene.joints[1].model_from_joint = Affine3A::from_translation(Vec3::Y * 0.3);
@@ -540,7 +542,7 @@ mod tests {
     }
 
     #[test]
-    fn splits_quads_along_the_diagonal_from_corner_0_and_drops_what_has_no_area() {
+    fn quads_are_split_along_the_diagonal_from_corner_0_without_degenerate_triangles() {
         let mesh = SceneMesh {
             quads: Corners { positions: vec![[5, 6, 7, 8], [1, 2, 3, 1]], uvs: vec![] },
             triangles: Corners { positions: vec![[9, 8, 7]], uvs: vec![] },

@@ -1,7 +1,7 @@
-//! The colour of the skin as a material parameter.
+//! The colour of the skin.
 //!
-//! Ten named steps are the Monk Skin Tone scale (Ellis Monk, 2019; skintone.google, CC BY 4.0), which was made to
-//! cover people evenly; any other colour is given as `#rrggbb`.
+//! Ten steps are those of the Monk Skin Tone scale (Ellis Monk, 2019; skintone.google, CC BY 4.0), which was designed to
+//! represent people evenly; any other colour is given as `#rrggbb`.
 
 use std::{fmt, str::FromStr};
 
@@ -29,7 +29,7 @@ pub struct SkinTone {
 }
 
 impl SkinTone {
-    /// A step of the Monk Skin Tone scale, `1..=10`; `None` outside it.
+    /// A step of the Monk Skin Tone scale, `1..=10`; `None` outside that range.
     pub fn monk(step: u8) -> Option<Self> {
         let srgb = *MONK.get(usize::from(step).checked_sub(1)?)?;
         Some(Self { srgb, step: Some(step) })
@@ -84,7 +84,7 @@ impl fmt::Display for SkinTone {
 }
 
 fn srgb_from_hex(hex: &str) -> Option<[u8; 3]> {
-    // `from_str_radix` would also take a sign.
+    // `from_str_radix` also accepts a sign.
     if hex.len() != 6 || !hex.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;
     }
@@ -106,7 +106,7 @@ mod tests {
     fn decodes_known_srgb_values() {
         assert_eq!(linear_from_srgb(0), 0.0);
         assert_eq!(linear_from_srgb(255), 1.0);
-        // 188 is the byte nearest to half the light: published tables give 0.502886.
+        // 188 is the byte nearest to linear 0.5: published tables give 0.502886.
         assert!((linear_from_srgb(188) - 0.502_886).abs() < 1e-6);
         assert!((linear_from_srgb(10) - 0.003_035).abs() < 1e-6);
     }

@@ -1,18 +1,18 @@
-//! Names of the parts of a scene: printable, and no two the same.
+//! Unique, printable names of the parts of a scene.
 
 use std::collections::BTreeMap;
 
-/// Names given out so far, each with the last number behind it.
+/// Names in use, each with the last number that was appended to it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Titles(BTreeMap<String, u32>);
 
 impl Titles {
-    /// These are taken.
+    /// Starts with these names in use.
     pub(crate) fn taken<'a>(names: impl Iterator<Item = &'a str>) -> Self {
         Self(names.map(|name| (name.to_owned(), 0)).collect())
     }
 
-    /// The name without control characters, with a number behind it where it is taken; `unnamed` for an empty one.
+    /// The name without control characters, with a number appended where it is in use; `unnamed` for an empty one.
     pub(crate) fn unique(&mut self, name: &str) -> String {
         let name: String = name.chars().filter(|c| !c.is_control()).collect();
         let name = if name.is_empty() { "unnamed".to_owned() } else { name };
@@ -33,10 +33,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_stay_apart_and_printable() {
+    fn names_are_unique_and_printable() {
         let mut titles = Titles::taken(["Skel"].into_iter());
-        let asked = ["Nail", "Nail 2", "Nail", "Nail", "Nail 2", "Skel", "", "\n", "a\u{7}b", "Nail"];
-        let given = asked.map(|name| titles.unique(name));
+        let wanted = ["Nail", "Nail 2", "Nail", "Nail", "Nail 2", "Skel", "", "\n", "a\u{7}b", "Nail"];
+        let given = wanted.map(|name| titles.unique(name));
         let expected = [
             "Nail",
             "Nail 2",

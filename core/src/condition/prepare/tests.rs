@@ -7,7 +7,7 @@ fn prepare(request: &Request) -> Result<Prepared> {
 }
 
 #[test]
-fn nothing_asked_is_the_mean_woman() {
+fn an_empty_request_is_the_mean_woman() {
     let prepared = prepare(&Request::default()).unwrap();
     assert_eq!(prepared.sex, Sex::Female);
     assert_eq!(&prepared.filled, prior().of(Sex::Female).mean());
@@ -16,12 +16,12 @@ fn nothing_asked_is_the_mean_woman() {
 }
 
 #[test]
-fn measures_choose_the_sex_that_was_not_given() {
+fn a_sex_that_was_not_given_is_inferred() {
     let prepared = prepare(&Request::default().with("height", 1.90).unwrap()).unwrap();
     assert_eq!(prepared.sex, Sex::Male);
     assert!(prepared.warnings[0].starts_with("sex not given: male is likelier ("), "{:?}", prepared.warnings);
-    let said = Request { sex: Some(Sex::Female), ..Request::default() }.with("height", 1.90).unwrap();
-    assert_eq!(prepare(&said).unwrap().sex, Sex::Female);
+    let female = Request { sex: Some(Sex::Female), ..Request::default() }.with("height", 1.90).unwrap();
+    assert_eq!(prepare(&female).unwrap().sex, Sex::Female);
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn the_infeasible_is_refused_or_replaced() {
     let prepared = prepare(&Request { nearest: true, ..request.clone() }).unwrap();
     assert_eq!(prepared.conflicts.len(), 1);
     assert!(prepared.warnings.iter().any(|w| w.contains("nearest feasible")));
-    // Asking for what was named as feasible is feasible.
+    // The nearest feasible values are feasible as a request.
     let mut again = request;
     again.measures = prepared.given;
     assert_eq!(prepare(&again).unwrap().filled, prepared.filled);

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::super::test_prior::{prior, sex_prior};
 use super::*;
-use crate::condition::{JUDGING_ERROR, PROJECTION_ERROR};
+use crate::condition::{FEASIBILITY_NOISE, PROJECTION_NOISE};
 
 /// Solves A X = B for dense A by Gaussian elimination with pivoting: an oracle that shares nothing with Cholesky.
 fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
@@ -67,7 +67,7 @@ proptest! {
         let conditional = p.condition(&given).unwrap();
         let rows: Vec<_> = (0..n).filter(|i| mask[*i]).collect();
         let noisy: Vec<Vec<f64>> = rows.iter().map(|i| rows.iter().map(|j| {
-            p.covariance()[i * n + j] + if i == j { FILL_ERROR * FILL_ERROR } else { 0.0 }
+            p.covariance()[i * n + j] + if i == j { FILL_NOISE * FILL_NOISE } else { 0.0 }
         }).collect()).collect();
         let weights = eliminate(noisy.clone(), rows.iter().map(|i| shift[*i]).collect());
         let deviation = conditional.standard_deviation();
@@ -93,10 +93,10 @@ proptest! {
     fn projection_shrinks_and_leaves_the_mean(seed in 0..1000u64, rank in 1..40usize, shift in prop::collection::vec(-0.2..0.2f64, MEASURE_COUNT)) {
         let p = random_prior(seed, rank, 1e-6);
         let values: Measurements = std::array::from_fn(|i| p.mean()[i] + shift[i]);
-        let distance = |v: &Measurements| p.distance_squared(&v.map(Some), PROJECTION_ERROR).unwrap();
-        let projected = p.project(&values, PROJECTION_ERROR).unwrap();
+        let distance = |v: &Measurements| p.distance_squared(&v.map(Some), PROJECTION_NOISE).unwrap();
+        let projected = p.project(&values, PROJECTION_NOISE).unwrap();
         prop_assert!(distance(&projected) <= distance(&values) * (1.0 + 1e-9));
-        let still = p.project(p.mean(), PROJECTION_ERROR).unwrap();
+        let still = p.project(p.mean(), PROJECTION_NOISE).unwrap();
         prop_assert_eq!(&still, p.mean());
         // With next to no error every vector that the prior allows stays where it is.
         let exact = p.project(&projected, 1e-7).unwrap();
@@ -146,16 +146,16 @@ fn samples_have_the_conditional_moments() {
 fn taller_people_have_longer_arms_and_are_likelier_men() {
     let prior = prior();
     let mut given = [None; MEASURE_COUNT];
-    assert_eq!(prior.sex_posterior(&given, JUDGING_ERROR).unwrap(), [0.5, 0.5]);
+    assert_eq!(prior.sex_posterior(&given, FEASIBILITY_NOISE).unwrap(), [0.5, 0.5]);
     given[3] = Some(1.95);
-    let posterior = prior.sex_posterior(&given, JUDGING_ERROR).unwrap();
+    let posterior = prior.sex_posterior(&given, FEASIBILITY_NOISE).unwrap();
     assert!(posterior[1] > 0.9 && (posterior[0] + posterior[1] - 1.0).abs() < 1e-12);
     let arm = MeasureId::from_name("arm_length_left").unwrap().index();
     let women = prior.of(Sex::Female);
     assert!(women.condition(&given).unwrap().mean()[arm] > women.mean()[arm] + 0.03);
     // Far outside everything: still a probability.
     given[3] = Some(1e200);
-    assert!(prior.sex_posterior(&given, JUDGING_ERROR).unwrap().iter().all(|p| (0.0..=1.0).contains(p)));
+    assert!(prior.sex_posterior(&given, FEASIBILITY_NOISE).unwrap().iter().all(|p| (0.0..=1.0).contains(p)));
 }
 
 #[test]

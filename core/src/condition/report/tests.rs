@@ -36,7 +36,7 @@ fn request() -> Request {
 }
 
 #[test]
-fn json_has_the_promised_fields() {
+fn json_has_the_documented_fields() {
     let report = report(&request());
     let json: serde_json::Value = serde_json::from_str(&report.to_json()).unwrap();
     let measures = json["measures"].as_array().unwrap();

@@ -72,7 +72,7 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
         parents,
         rest,
         takes,
-        unit: Unit::of_metres(scene.settings.unit_meters),
+        unit: Unit::from_metres(scene.settings.unit_meters),
         up: if options.up.is_some() { None } else { Some(up.unwrap_or(Axis::Y)) },
         rest_is_upright: false,
         rate_found,

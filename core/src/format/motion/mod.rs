@@ -34,7 +34,7 @@ impl ReadOptions {
     pub fn of_numbers(metres_per_unit: f64, up: Option<Axis>, frames_per_second: f64) -> Result<Self> {
         let unit = match metres_per_unit {
             0.0 => None,
-            metres => Some(Unit::of_metres(metres).ok_or_else(|| {
+            metres => Some(Unit::from_metres(metres).ok_or_else(|| {
                 Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
             })?),
         };

@@ -82,7 +82,7 @@ fn unit(raw: &mut RawMotion, body: &Proportions, height: f64, options: &ReadOpti
     // Beside units, mistakes in the file's own: scaled by a hundred once too often, mostly.
     let powers =
         raw.unit.into_iter().flat_map(|said| [1e-4, 1e-3, 1e-2, 1e2, 1e3, 1e4].map(|p| said.metres() * p));
-    let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::of_metres));
+    let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::from_metres));
     let mut likely = candidates.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(Unit::Metre);
     if let Some(said) = raw.unit {
         let was = height * said.metres();

@@ -89,7 +89,7 @@ impl Space {
     fn read(layer: &Layer) -> Outcome<Self> {
         // USD's own default is the centimetre.
         let metres = layer.number("metersPerUnit")?.unwrap_or(0.01);
-        let unit = Unit::of_metres(metres)
+        let unit = Unit::from_metres(metres)
             .ok_or_else(|| format!("metersPerUnit: expected a positive number, got {metres}"))?;
         let up = match layer.text(&PrimPath::abs_root(), "upAxis")?.as_deref() {
             Some("Z") => Axis::Z,

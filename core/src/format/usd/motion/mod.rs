@@ -74,7 +74,7 @@ pub(super) fn of_skeleton(
         names,
         rest,
         takes,
-        unit: layer.number("metersPerUnit")?.and_then(Unit::of_metres),
+        unit: layer.number("metersPerUnit")?.and_then(Unit::from_metres),
         up: match layer.text(&Path::abs_root(), "upAxis")?.as_deref() {
             Some("Y") => Some(Axis::Y),
             Some("Z") => Some(Axis::Z),
