@@ -284,5 +284,4 @@ impl JointLimits {
 }
 
 #[cfg(test)]
-#[path = "limits_tests.rs"]
 mod tests;

@@ -1,3 +1,5 @@
+mod builtin;
+
 use glam::{Quat, Vec3};
 
 use super::*;
