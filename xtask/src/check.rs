@@ -1,13 +1,14 @@
 //! `cargo xtask check`: what a reader may take for granted.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 use crate::{bindings, layering};
+use anyhow::{Result, anyhow};
 use std::process::Command;
 
-pub(crate) fn run() -> Outcome {
+pub(crate) fn run() -> Result<()> {
     // The fast ones first; every one of them is run, so that one round shows all there is to mend.
     let mut failures = Vec::new();
-    let mut keep = |result: Outcome| failures.extend(result.err());
+    let mut keep = |result: Result<()>| failures.extend(result.err());
     let cargo_program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     keep(tools::run(
         Command::new(cargo_program).current_dir(tools::root()).args(["fmt", "--all", "--check"]),
@@ -30,11 +31,11 @@ pub(crate) fn run() -> Outcome {
             .args(["--workspace", "--exclude", "anthronet-ffi", "--lib", "--no-deps", "--all-features"])
             .env("RUSTDOCFLAGS", "-D warnings"),
     ));
-    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+    tools::all_succeeded(&failures)
 }
 
 /// The rooms of the library against the table of who may use whom.
-fn layers() -> Outcome {
+fn layers() -> Result<()> {
     let violations = layering::violations(&tools::root().join("core/src"))?;
     for violation in &violations {
         eprintln!("{violation}");
@@ -44,7 +45,7 @@ fn layers() -> Outcome {
             println!("layering of core: no room uses one above it");
             Ok(())
         }
-        n => Err(format!("layering of core: {n} lines use a room that they may not use")),
+        n => Err(anyhow!("layering of core: {n} lines use a room that they may not use")),
     }
 }
 

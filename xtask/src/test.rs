@@ -1,7 +1,8 @@
 //! `cargo xtask test`: everything that shows that the project works.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 use crate::{check, hosts};
+use anyhow::{Context as _, Result, anyhow};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -30,20 +31,20 @@ pub(crate) enum Part {
 }
 
 /// Runs `cargo test` and counts the tests that say `skipped NAME: why`, which cargo counts as passed.
-fn rust_tests(command: &mut Command) -> Outcome {
+fn rust_tests(command: &mut Command) -> Result<()> {
     println!("$ {}", tools::shown(command));
     let start = Instant::now();
-    let did_not = |e: std::io::Error| format!("`cargo test` did not run: {e}");
-    let mut child = command.stdout(Stdio::piped()).spawn().map_err(did_not)?;
+    let did_not_run = "`cargo test` did not run";
+    let mut child = command.stdout(Stdio::piped()).spawn().context(did_not_run)?;
     let mut skipped = Vec::new();
     if let Some(output) = child.stdout.take() {
         for line in BufReader::new(output).split(b'\n') {
-            let line = String::from_utf8_lossy(&line.map_err(did_not)?).into_owned();
+            let line = String::from_utf8_lossy(&line.context(did_not_run)?).into_owned();
             println!("{line}");
             skipped.extend(line.starts_with("skipped ").then_some(line));
         }
     }
-    let status = child.wait().map_err(did_not)?;
+    let status = child.wait().context(did_not_run)?;
     println!(
         "  {:.1} s; {} skipped of those that cargo counts as passed",
         start.elapsed().as_secs_f64(),
@@ -52,11 +53,11 @@ fn rust_tests(command: &mut Command) -> Outcome {
     for line in skipped {
         println!("{line}");
     }
-    if status.success() { Ok(()) } else { Err(format!("`cargo test` failed: {status}")) }
+    if status.success() { Ok(()) } else { Err(anyhow!("`cargo test` failed: {status}")) }
 }
 
 /// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
-pub(crate) fn run(only: Option<Part>) -> Outcome {
+pub(crate) fn run(only: Option<Part>) -> Result<()> {
     let wanted = |part| only.is_none_or(|one| one == part);
     let mut failures = Vec::new();
     if wanted(Part::Check) {
@@ -91,5 +92,5 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     if only == Some(Part::Motion) {
         failures.extend(hosts::run_motion().err());
     }
-    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+    tools::all_succeeded(&failures)
 }

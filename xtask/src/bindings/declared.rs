@@ -1,6 +1,7 @@
 //! What the sources of `ffi` declare to others, as syn reads it: constants, structures, callbacks and functions.
 
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Result, anyhow};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use syn::spanned::Spanned as _;
@@ -43,13 +44,13 @@ pub(super) struct Declared {
 
 impl Declared {
     /// Reads source files. What is declared in a way that is not known here is an error that names its line.
-    pub(super) fn read(sources: impl Iterator<Item = PathBuf>) -> Outcome<Self> {
+    pub(super) fn read(sources: impl Iterator<Item = PathBuf>) -> Result<Self> {
         let mut declared = Self::default();
         for path in sources {
-            let complain = |e: syn::Error| format!("{}:{}: {e}", path.display(), e.span().start().line);
-            let file = syn::parse_file(&tools::read(&path)?).map_err(complain)?;
+            let in_file = |e: syn::Error| anyhow!("{}:{}: {e}", path.display(), e.span().start().line);
+            let file = syn::parse_file(&tools::read(&path)?).map_err(in_file)?;
             for item in file.items {
-                declared.item(item).map_err(complain)?;
+                declared.item(item).map_err(in_file)?;
             }
         }
         Ok(declared)

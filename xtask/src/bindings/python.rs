@@ -4,7 +4,7 @@
 //! of the header.
 
 use super::declared::{Declared, Function, Type};
-use crate::tools::Outcome;
+use anyhow::{Context as _, Result, bail};
 use std::fmt::Write as _;
 
 const PREAMBLE: &str = r#""""Declarations of libanthronet: what `include/anthronet.h` says, in the words of ctypes.
@@ -30,7 +30,7 @@ const CTYPES: [&str; 12] = [
 ];
 
 /// The Python module that declares what the sources declare.
-pub(super) fn declarations(declared: &Declared) -> Outcome<String> {
+pub(super) fn declarations(declared: &Declared) -> Result<String> {
     let mut text = "\n".to_owned();
     for (name, value) in &declared.constants {
         let _ = writeln!(text, "{} = {value}", name.strip_prefix("ANTHRONET_").unwrap_or(name));
@@ -87,14 +87,14 @@ fn in_order_of_use(declared: &Declared) -> Vec<Structure<'_>> {
     found
 }
 
-fn result(declared: &Declared, function: &Function) -> Outcome<String> {
+fn result(declared: &Declared, function: &Function) -> Result<String> {
     function.result.as_ref().map_or_else(|| Ok("None".to_owned()), |kind| value(declared, kind))
 }
 
 /// A type that is passed by value: a number, a structure as a field, or a callback.
-fn value(declared: &Declared, kind: &Type) -> Outcome<String> {
+fn value(declared: &Declared, kind: &Type) -> Result<String> {
     let Type::Named(name) = kind else {
-        return Err("pointers and arrays are not passed by value".to_owned());
+        bail!("pointers and arrays are not passed by value");
     };
     let number = match name.as_str() {
         "i32" => "c_int32",
@@ -109,25 +109,28 @@ fn value(declared: &Declared, kind: &Type) -> Outcome<String> {
         }
         _ => {
             let meant = declared.aliases.get(name);
-            return value(declared, meant.ok_or_else(|| format!("do not know the type `{name}` in Python"))?);
+            return value(
+                declared,
+                meant.with_context(|| format!("do not know the type `{name}` in Python"))?,
+            );
         }
     };
     Ok(number.to_owned())
 }
 
 /// The types of all parameters; `text` is that of text which is read.
-fn parameters(declared: &Declared, function: &Function, text: &str) -> Outcome<String> {
+fn parameters(declared: &Declared, function: &Function, text: &str) -> Result<String> {
     let mut kinds = Vec::new();
     for (i, (_, kind)) in function.parameters.iter().enumerate() {
         let counted = function.parameters.get(i + 1).is_some_and(|(next, _)| next == "count");
-        kinds.push(parameter(declared, kind, counted, text).map_err(|e| format!("{}: {e}", function.name))?);
+        kinds.push(parameter(declared, kind, counted, text).with_context(|| function.name.clone())?);
     }
     Ok(kinds.join(", "))
 }
 
 /// Pointers to structures are typed and text is bytes; all others take handles, arrays and addresses alike, and so
 /// do those that a count follows.
-fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Outcome<String> {
+fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Result<String> {
     let Type::Pointer { constant, to } = kind else { return value(declared, kind) };
     Ok(match &**to {
         Type::Named(name) if !counted && declared.fields(name).is_some() => {
@@ -138,7 +141,7 @@ fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Out
     })
 }
 
-fn field(declared: &Declared, kind: &Type) -> Outcome<String> {
+fn field(declared: &Declared, kind: &Type) -> Result<String> {
     match kind {
         Type::Pointer { .. } => Ok("c_void_p".to_owned()),
         Type::Array(of, count) => Ok(format!("{} * {count}", value(declared, of)?)),

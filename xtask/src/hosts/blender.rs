@@ -3,14 +3,20 @@
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::package_blender;
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available};
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The picture that the tests render, in the folder that they are given.
 const PICTURE: &str = "blender_people.png";
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     let archive = match package_blender(environment, anthronet)? {
         Ok(archive) => archive,
         Err(reason) => {
@@ -38,13 +44,13 @@ pub(crate) fn picture(
     anthronet: &Path,
     environment: &Environment,
     folder: &Path,
-) -> Outcome<Result<PathBuf, String>> {
+) -> Result<Available<PathBuf>> {
     let archive = match package_blender(environment, anthronet)? {
         Ok(archive) => archive,
         Err(reason) => return Ok(Err(reason)),
     };
-    let python = environment.python.as_ref().map_err(String::clone)?;
-    tools::run(script("blender_addon.py", python, &archive).arg(folder).arg("picturing"))?;
+    let python = environment.python.clone()?;
+    tools::run(script("blender_addon.py", &python, &archive).arg(folder).arg("picturing"))?;
     Ok(Ok(folder.join(PICTURE)))
 }
 

@@ -5,7 +5,8 @@
 
 use super::Tally;
 use crate::bindings::HEADER;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, Available, cargo};
+use anyhow::{Error, Result, anyhow, bail};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -50,9 +51,9 @@ const NEEDED: [&str; 4] = ["libc.so", "libm.so", "libgcc_s.so", "ld-linux"];
 /// What the project's wheels promise: manylinux_2_34.
 const GLIBC: (u32, u32) = (2, 34);
 
-pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(programs: &Available<()>, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("c");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     library()?;
     tally.case("every function has a test in C", every_function_is_called());
     if let Err(reason) = programs {
@@ -222,13 +223,13 @@ fn leaks(bench: &Bench, tally: &mut Tally) {
 }
 
 /// Builds the library as it is released.
-fn library() -> Outcome {
+fn library() -> Result<()> {
     tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))
 }
 
 /// The same requests through the crate and through the library opened by a Rust program. It leaves the lists of requests and
 /// of what they must give to the tests of the other languages, in `tmp/same_bytes`.
-pub(super) fn byte_lists() -> Outcome {
+pub(super) fn byte_lists() -> Result<()> {
     library()?;
     // With the packages, features and profile of the unit tests, which have built it by now: that the profile differs
     // from the library's makes the test the harder.
@@ -238,7 +239,7 @@ pub(super) fn byte_lists() -> Outcome {
 }
 
 /// The same requests through the crate, the library opened by a Rust program, C and C++.
-fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
+fn same_bytes(bench: &Bench, tally: &mut Tally) -> Result<()> {
     let library = bench.library.join("libanthronet.so");
     tally.case("same bytes: 200 requests through the crate and through the library", byte_lists());
     // The sanitizer's allocator, which sees freed memory used by libc and freed twice, and what is lost: the code is not
@@ -281,14 +282,14 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
 }
 
 /// Fails with the first line that differs.
-fn same_lines(expected: &str, got: &str) -> Outcome {
+fn same_lines(expected: &str, got: &str) -> Result<()> {
     let (expected, got): (Vec<_>, Vec<_>) = (expected.lines().collect(), got.lines().collect());
     if expected.len() != got.len() {
-        return Err(format!("expected {} lines, got {}", expected.len(), got.len()));
+        bail!("expected {} lines, got {}", expected.len(), got.len());
     }
     match expected.iter().zip(&got).enumerate().find(|(_, (a, b))| a != b) {
         None => Ok(()),
-        Some((i, (a, b))) => Err(format!("request {i}: expected {a}, got {b}")),
+        Some((i, (a, b))) => Err(anyhow!("request {i}: expected {a}, got {b}")),
     }
 }
 
@@ -309,7 +310,7 @@ fn exports(bench: &Bench, tally: &mut Tally) {
     });
     tally.case("the library exports the functions of the header and nothing else", shown);
 
-    let size = std::fs::metadata(&stripped).map_err(|e| e.to_string()).map(|file| file.len());
+    let size = std::fs::metadata(&stripped).map(|file| file.len()).map_err(Error::from);
     let name = format!(
         "stripped it weighs {} MiB of {}",
         size.as_ref().map_or(0, |s| s / MEBIBYTE),
@@ -317,7 +318,7 @@ fn exports(bench: &Bench, tally: &mut Tally) {
     );
     tally.case(
         &name,
-        size.and_then(|size| if size < LARGEST { Ok(()) } else { Err(format!("{size} bytes")) }),
+        size.and_then(|size| if size < LARGEST { Ok(()) } else { Err(anyhow!("{size} bytes")) }),
     );
 
     let dynamic = tools::output(Command::new("readelf").args(["--wide", "--dynamic"]).arg(&stripped));
@@ -342,26 +343,26 @@ fn exports(bench: &Bench, tally: &mut Tally) {
     let (major, minor) = GLIBC;
     let old_enough = newest.and_then(|newest: (u32, u32)| match newest <= GLIBC {
         true => Ok(()),
-        false => Err(format!("needs {}.{}", newest.0, newest.1)),
+        false => Err(anyhow!("needs {}.{}", newest.0, newest.1)),
     });
     tally.case(&format!("it runs with glibc {major}.{minor}"), old_enough);
 }
 
-fn none(what: &str, found: &[&str]) -> Outcome {
-    if found.is_empty() { Ok(()) } else { Err(format!("{what}: {}", found.join(", "))) }
+fn none(what: &str, found: &[&str]) -> Result<()> {
+    if found.is_empty() { Ok(()) } else { Err(anyhow!("{what}: {}", found.join(", "))) }
 }
 
 /// Every function of the header is called by the tests of values, and by those of abuse unless it cannot be misused.
-fn every_function_is_called() -> Outcome {
+fn every_function_is_called() -> Result<()> {
     let header = tools::read(&tools::root().join(HEADER))?;
-    let read = |names: &[&str]| -> Outcome<String> {
+    let read = |names: &[&str]| -> Result<String> {
         names.iter().map(|name| tools::read(&tools::root().join("tests/c").join(name))).collect()
     };
     let (values, abuse) = (read(&VALUES)?, read(&ABUSE)?);
     let (values, abuse) = (functions(&values), functions(&abuse));
     let functions = functions(&header);
     if functions.len() < 50 {
-        return Err(format!("{HEADER}: found {} functions", functions.len()));
+        bail!("{HEADER}: found {} functions", functions.len());
     }
     let takes_nothing = |name: &str| name.ends_with("_count") || name == "anthronet_abi_version";
     let untested = functions.iter().filter(|name| !values.contains(*name));

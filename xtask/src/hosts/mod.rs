@@ -18,20 +18,19 @@ mod usd;
 
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available};
 use crate::{bless, requests};
+use anyhow::{Context as _, Error, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tally::Tally;
 
-pub(crate) fn run() -> Outcome {
+pub(crate) fn run() -> Result<()> {
     let anthronet = tools::command_line()?;
     let environment = environment::prepare()?;
     let folder = tools::target().join("test-env/out");
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: cannot empty: {e}", folder.display()))?;
-    }
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::remove_folder(&folder)?;
+    tools::create_folder(&folder)?;
 
     let mut tally = Tally::default();
     println!("cross-boundary tests");
@@ -53,14 +52,14 @@ pub(crate) fn run() -> Outcome {
 }
 
 /// The consumers of the C ABI alone.
-pub(crate) fn run_c() -> Outcome {
+pub(crate) fn run_c() -> Result<()> {
     let mut tally = Tally::default();
     c::run(&environment::c_programs(), &tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
 }
 
 /// The package for C++ alone.
-pub(crate) fn run_cpp() -> Outcome {
+pub(crate) fn run_cpp() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
     let mut tally = Tally::default();
@@ -69,7 +68,7 @@ pub(crate) fn run_cpp() -> Outcome {
 }
 
 /// The Python package alone.
-pub(crate) fn run_python() -> Outcome {
+pub(crate) fn run_python() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
     let mut tally = Tally::default();
@@ -78,7 +77,7 @@ pub(crate) fn run_python() -> Outcome {
 }
 
 /// The Unity package alone.
-pub(crate) fn run_unity() -> Outcome {
+pub(crate) fn run_unity() -> Result<()> {
     c::byte_lists()?;
     let mut tally = Tally::default();
     unity::run(&tools::target().join("test-env/out"), &mut tally)?;
@@ -86,7 +85,7 @@ pub(crate) fn run_unity() -> Outcome {
 }
 
 /// The Blender extension alone.
-pub(crate) fn run_blender() -> Outcome {
+pub(crate) fn run_blender() -> Result<()> {
     let mut tally = Tally::default();
     let folder = tools::target().join("test-env/out");
     blender::run(&tools::command_line()?, &environment::prepare()?, &folder, &mut tally)?;
@@ -95,28 +94,28 @@ pub(crate) fn run_blender() -> Outcome {
 
 /// The picture of the Blender extension, rendered anew into a folder; the inner error is a reason for which this machine
 /// cannot.
-pub(crate) fn blender_picture(folder: &Path) -> Outcome<Result<PathBuf, String>> {
+pub(crate) fn blender_picture(folder: &Path) -> Result<Available<PathBuf>> {
     blender::picture(&tools::command_line()?, &environment::prepare()?, folder)
 }
 
 /// The table of motion alone.
-pub(crate) fn run_motion() -> Outcome {
+pub(crate) fn run_motion() -> Result<()> {
     let mut tally = Tally::default();
     motion::run(&tools::command_line()?, &mut tally);
     close(&tally)
 }
 
 /// Prints the counts.
-fn close(tally: &Tally) -> Outcome {
+fn close(tally: &Tally) -> Result<()> {
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
         0 => Ok(()),
-        n => Err(format!("{n} cross-boundary tests failed")),
+        n => Err(anyhow!("{n} cross-boundary tests failed")),
     }
 }
 
 /// `anthronet generate` with these arguments into a file.
-fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Outcome {
+fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Result<()> {
     let mut command = Command::new(anthronet);
     // From the root, where the motion files of the tests are.
     command.current_dir(tools::root()).arg("generate").args(arguments).arg("-o").arg(file);
@@ -131,26 +130,26 @@ fn without_networks(anthronet: &Path, tally: &mut Tally) {
     for arguments in [&["evaluate"][..], &["train", "generator"], &["train", "scores"]] {
         let text = arguments.join(" ");
         let result = Command::new(anthronet).args(arguments).output();
-        let result = result.map_err(|e| e.to_string()).and_then(|output| {
+        let result = result.map_err(Error::from).and_then(|output| {
             let said = String::from_utf8_lossy(&output.stderr);
             let expected = format!("this build has no networks: run `cargo anthronet-train {text}`");
             let right = output.status.code() == Some(2) && said.contains(&expected);
-            right.then_some(()).ok_or_else(|| format!("{}: {said}", output.status))
+            right.then_some(()).with_context(|| format!("{}: {said}", output.status))
         });
         tally.case(&format!("without networks: {text}"), result);
     }
 }
 
 /// The same request gives the same bytes, whatever the number of threads, and the bytes of the golden.
-fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
+fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Result<()> {
     let golden = bless::golden()?;
     for person in PEOPLE {
-        let hash = |threads| -> Outcome<String> {
+        let hash = |threads| -> Result<String> {
             let file = folder.join(format!("{}_{threads}_threads.glb", person.name));
             generate(anthronet, person.arguments, &file, Some(threads))?;
             bless::hash(&file)
         };
-        let hashes = [1, 2, 8].into_iter().map(hash).collect::<Outcome<Vec<_>>>();
+        let hashes = [1, 2, 8].into_iter().map(hash).collect::<Result<Vec<_>>>();
         let hashes = match hashes {
             Ok(hashes) => hashes,
             Err(why) => {
@@ -162,16 +161,16 @@ fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
         let differ = || format!("1, 2 and 8 threads gave {}", hashes.join(", "));
         tally.case(
             &format!("same bytes over threads: {}", person.name),
-            same.then_some(()).ok_or_else(differ),
+            same.then_some(()).with_context(differ),
         );
 
         let name = format!("same bytes as the golden: {}", person.name);
         match golden.as_ref().map(|golden| golden.get(person.name)) {
             None => tally.skip(&name, "tests/golden/hashes.json is missing, `cargo xtask bless` writes it"),
-            Some(None) => tally.case(&name, Err("not in tests/golden/hashes.json".to_owned())),
+            Some(None) => tally.case(&name, Err(anyhow!("not in tests/golden/hashes.json"))),
             Some(Some(expected)) => {
                 let differs = || format!("expected {expected}, got {}", hashes[0]);
-                tally.case(&name, (*expected == hashes[0]).then_some(()).ok_or_else(differs));
+                tally.case(&name, (*expected == hashes[0]).then_some(()).with_context(differs));
             }
         }
     }
@@ -208,7 +207,7 @@ fn in_other_programs(
     folder: &Path,
     files: &[PathBuf],
     tally: &mut Tally,
-) -> Outcome {
+) -> Result<()> {
     match environment.node_script("validate.mjs")? {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),

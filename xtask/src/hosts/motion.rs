@@ -1,7 +1,8 @@
 //! Motion files of others on bodies from small to tall: the table that `anthronet evaluate` prints, against its bars.
 
 use super::Tally;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -37,12 +38,12 @@ pub(crate) fn run(anthronet: &Path, tally: &mut Tally) {
         // What is missing or not a number is not within its bar either.
         let within = table[name].as_f64().is_some_and(|value| value <= most);
         let said = format!("{name} {} {unit}, at most {most}", table[name]);
-        tally.case(&format!("motion files: {said}"), within.then_some(()).ok_or(said));
+        tally.case(&format!("motion files: {said}"), within.then_some(()).context(said.clone()));
     }
     let counts = (table["bodies"].as_u64(), table["clips"].as_u64());
     let said = || format!("{} clips on {} bodies", table["clips"], table["bodies"]);
     let enough = counts >= (Some(10), Some(30));
-    tally.case(&format!("motion files: {}", said()), enough.then_some(()).ok_or_else(said));
+    tally.case(&format!("motion files: {}", said()), enough.then_some(()).with_context(said));
 }
 
 fn clips() -> PathBuf {
@@ -50,9 +51,9 @@ fn clips() -> PathBuf {
     shared.unwrap_or_else(|| tools::root().join("../shared")).join("data/clips")
 }
 
-fn table(anthronet: &Path, folder: &Path) -> Outcome<serde_json::Value> {
+fn table(anthronet: &Path, folder: &Path) -> Result<serde_json::Value> {
     let mut command = Command::new(anthronet);
     command.args(["evaluate", "--table", "motion", "--json", "--clips"]).arg(folder);
     let text = tools::output(&mut command)?;
-    serde_json::from_str(&text).map_err(|e| format!("the table: {e}"))
+    serde_json::from_str(&text).context("the table")
 }

@@ -1,15 +1,21 @@
 //! The Python package: its wheel in a clean environment of every Python that is there, measures by numpy and scipy,
 //! speed beside its bars.
 
+use anyhow::Result;
 use std::path::Path;
 use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::{self, Environment};
 use crate::package;
-use crate::tools::{self, Outcome};
+use crate::tools;
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     let python = match &environment.python {
         Ok(python) => python,
         Err(reason) => {
@@ -25,7 +31,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         }
     };
     let folder = folder.join("python");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     let mut of_the_wheel = pytest(python, "test_wheel.py", &folder.join("wheel"));
     tally.script("the Python wheel", of_the_wheel.arg("--wheel").arg(&wheel));
     let mut types = pytest(python, "test_types.py", &folder.join("types"));

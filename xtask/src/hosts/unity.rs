@@ -6,7 +6,8 @@ use super::tally::Tally;
 use crate::bindings::HEADER;
 use crate::environment;
 use crate::package::{package_unity, packed_library};
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result, anyhow};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,7 +25,7 @@ const PLAYER: [&str; 3] = ["unity_plugin/Runtime", "unity_plugin/Samples~", "tes
 /// Characters that are made to measure how long it takes.
 const CROWD: &str = "1000";
 
-pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
     let archive = package_unity();
     match environment::python() {
         Ok(python) => {
@@ -41,7 +42,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
         return Ok(());
     }
     let folder = folder.join("unity");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     let player = compile(&folder.join("player.dll"), &PLAYER, &["-target:library"]);
     tally.case("the Unity package compiles for players", player);
     let program = folder.join("anthronet-unity-tests.exe");
@@ -82,10 +83,10 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
         }
     }
     if results.exists() {
-        std::fs::remove_file(&results).map_err(|e| format!("{}: cannot remove: {e}", results.display()))?;
+        std::fs::remove_file(&results).with_context(|| format!("{}: cannot remove", results.display()))?;
     }
     // That tests failed is in its results; what it prints besides is for whoever looks into the folder.
-    let console = tools::output(&mut nunit).unwrap_or_else(|why| why);
+    let console = tools::output(&mut nunit).unwrap_or_else(|error| format!("{error:#}"));
     tools::write(&folder.join("console.txt"), &console)?;
     let mut report = with_library("mono");
     report.arg(&program).arg("--report").arg(&results);
@@ -100,7 +101,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
 const ENTRIES: [&str; 4] =
     ["UnityPluginLoad", "UnityPluginUnload", "anthronet_unity_interfaces", "anthronet_unity_render_event"];
 
-fn exports(library: &Path) -> Outcome {
+fn exports(library: &Path) -> Result<()> {
     let symbols = tools::output(Command::new("nm").args(["-D", "--defined-only"]).arg(library))?;
     let shown: BTreeSet<_> = symbols.lines().filter_map(|line| line.split(' ').next_back()).collect();
     let header = tools::read(&tools::root().join(HEADER))?;
@@ -109,12 +110,12 @@ fn exports(library: &Path) -> Outcome {
     if differ.is_empty() {
         Ok(())
     } else {
-        Err(format!("not in both library and header: {}", differ.join(", ")))
+        Err(anyhow!("not in both library and header: {}", differ.join(", ")))
     }
 }
 
 /// Compiles scripts. Unity 2021 takes more than this language version; mono's compiler takes no more.
-fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Outcome {
+fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Result<()> {
     let mut command = Command::new("mcs");
     command.args(["-nologo", "-unsafe", "-langversion:7.2", "-warn:4", "-warnaserror"]);
     command.args(["-r:System.dll", "-r:System.Core.dll"]).args(arguments);
@@ -126,7 +127,7 @@ fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Outcome {
 }
 
 /// Sizes and offsets as a compiler of C has them, in a file.
-fn layout(text: &str, folder: &Path) -> Outcome<PathBuf> {
+fn layout(text: &str, folder: &Path) -> Result<PathBuf> {
     let [source, program, file] = ["layout.c", "layout", "layout.txt"].map(|name| folder.join(name));
     tools::write(&source, text)?;
     let include = tools::root().join("ffi/include");

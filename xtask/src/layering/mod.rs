@@ -7,7 +7,8 @@
 mod paths;
 mod table;
 
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result, anyhow};
 use std::collections::BTreeMap;
 use std::path::Path;
 use syn::{Item, ItemMod, Meta};
@@ -16,10 +17,10 @@ use syn::{Item, ItemMod, Meta};
 const TABLE: &str = "the table of xtask/src/layering/table.rs";
 
 /// One line per use of a room that the table does not grant: `path:line: …`.
-pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {
+pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
     let lib = source.join("lib.rs");
     let shown = |path: &Path| path.strip_prefix(tools::root()).unwrap_or(path).display().to_string();
-    let broken = |path: &Path, e: &syn::Error| format!("{}:{}: {e}", shown(path), e.span().start().line);
+    let broken = |path: &Path, e: &syn::Error| anyhow!("{}:{}: {e}", shown(path), e.span().start().line);
     let root = syn::parse_file(&tools::read(&lib)?).map_err(|e| broken(&lib, &e))?;
     let root_names: BTreeMap<String, String> = paths::root_names(&root).into_iter().collect();
     let mut violations = Vec::new();
@@ -70,10 +71,10 @@ fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
 }
 
 /// Collects the module paths of all files below a folder, in order: `mesh/mod.rs` and `mesh.rs` are `[mesh]`.
-fn rust_files(folder: &Path, modules: &mut Vec<String>, files: &mut Vec<Vec<String>>) -> Outcome {
-    let complain = |e: std::io::Error| format!("{}: cannot read: {e}", folder.display());
-    let mut entries =
-        std::fs::read_dir(folder).map_err(complain)?.collect::<Result<Vec<_>, _>>().map_err(complain)?;
+fn rust_files(folder: &Path, modules: &mut Vec<String>, files: &mut Vec<Vec<String>>) -> Result<()> {
+    let mut entries = std::fs::read_dir(folder)
+        .and_then(Iterator::collect::<std::io::Result<Vec<_>>>)
+        .with_context(|| format!("{}: cannot read", folder.display()))?;
     entries.sort_by_key(std::fs::DirEntry::file_name);
     for entry in entries {
         let path = entry.path();

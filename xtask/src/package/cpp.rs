@@ -9,7 +9,8 @@
 //! The C ABI's header is not in it: the archive does not hold those functions, and two archives of Rust in one program
 //! would hold the same runtime twice.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
+use anyhow::{Context as _, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -25,23 +26,27 @@ struct Built {
 }
 
 /// Builds the archive and puts the package together; its folder.
-pub(crate) fn package_cpp() -> Outcome<PathBuf> {
+pub(crate) fn package_cpp() -> Result<PathBuf> {
     let built = build()?;
     let source = tools::root().join("cxx");
     let package = tools::target().join("dist/cpp");
-    if package.exists() {
-        std::fs::remove_dir_all(&package).map_err(|e| format!("{}: cannot empty: {e}", package.display()))?;
-    }
+    tools::remove_folder(&package)?;
     let archive = built.archive.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    copy(&built.archive, &package.join("lib").join(&archive))?;
-    copy(&source.join("include/anthronet/anthronet.hpp"), &package.join("include/anthronet/anthronet.hpp"))?;
-    copy(&built.include.join("anthronet-cxx/src/bridge.rs.h"), &package.join("include/anthronet/bridge.h"))?;
-    copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
+    tools::copy(&built.archive, &package.join("lib").join(&archive))?;
+    tools::copy(
+        &source.join("include/anthronet/anthronet.hpp"),
+        &package.join("include/anthronet/anthronet.hpp"),
+    )?;
+    tools::copy(
+        &built.include.join("anthronet-cxx/src/bridge.rs.h"),
+        &package.join("include/anthronet/bridge.h"),
+    )?;
+    tools::copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
     for name in ["README.md", "examples/person.cpp", "examples/walk.cpp"] {
-        copy(&source.join(name), &package.join(name))?;
+        tools::copy(&source.join(name), &package.join(name))?;
     }
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
-        copy(&tools::root().join(name), &package.join(name))?;
+        tools::copy(&tools::root().join(name), &package.join(name))?;
     }
     let version = env!("CARGO_PKG_VERSION");
     let numbers: Vec<_> = version.split('.').collect();
@@ -65,7 +70,7 @@ pub(crate) fn package_cpp() -> Outcome<PathBuf> {
     Ok(package)
 }
 
-fn build() -> Outcome<Built> {
+fn build() -> Result<Built> {
     // Cargo tells in JSON where it put what, and rustc in a note what the archive needs; cargo repeats both when nothing
     // was to be built.
     let mut command = cargo("rustc");
@@ -73,10 +78,10 @@ fn build() -> Outcome<Built> {
         .args(["--release", "--package", "anthronet-cxx", "--message-format=json"])
         .args(["--", "--print", "native-static-libs"])
         .stderr(Stdio::inherit());
-    let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
+    let output = command.output().context("cargo did not start")?;
     let mut built = Built::default();
     for line in String::from_utf8_lossy(&output.stdout).lines() {
-        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's messages: {e}"))?;
+        let message: Value = serde_json::from_str(line).context("cargo's messages")?;
         let ours = message["package_id"].as_str().is_some_and(|id| id.contains("anthronet-cxx"));
         match message["reason"].as_str() {
             Some("compiler-message") if ours => {
@@ -98,10 +103,10 @@ fn build() -> Outcome<Built> {
         }
     }
     if !output.status.success() {
-        return Err(format!("cargo rustc --package anthronet-cxx failed: {}", output.status));
+        bail!("cargo rustc --package anthronet-cxx failed: {}", output.status);
     }
     if built.libraries.is_empty() || built.include.as_os_str().is_empty() || !built.archive.is_file() {
-        return Err("cargo did not say where anthronet-cxx is and what it needs".to_owned());
+        bail!("cargo did not say where anthronet-cxx is and what it needs");
     }
     Ok(built)
 }
@@ -120,14 +125,6 @@ fn libraries(words: &str) -> Vec<String> {
         }
     }
     found
-}
-
-fn copy(from: &Path, to: &Path) -> Outcome {
-    let complain = |e| format!("{} to {}: cannot copy: {e}", from.display(), to.display());
-    if let Some(folder) = to.parent() {
-        std::fs::create_dir_all(folder).map_err(complain)?;
-    }
-    std::fs::copy(from, to).map(drop).map_err(complain)
 }
 
 #[cfg(test)]

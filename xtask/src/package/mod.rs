@@ -11,7 +11,8 @@ pub(crate) use python::{library, package_python};
 pub(crate) use unity::{package_unity, packed_library};
 
 use crate::environment;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::Result;
 
 /// What can be packaged.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -26,7 +27,7 @@ pub(crate) enum Kind {
     Unity,
 }
 
-pub(crate) fn run(kind: Kind) -> Outcome {
+pub(crate) fn run(kind: Kind) -> Result<()> {
     let made = match kind {
         Kind::Python => package_python(&environment::python()?)?,
         Kind::Cpp => package_cpp()?,
