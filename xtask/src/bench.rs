@@ -1,5 +1,5 @@
-//! `cargo xtask bench`: the library's benchmarks, and what is promised of motion: skinning beside numpy, PyTorch and a copy,
-//! and whole runs of the released command. Each promise is printed with its bar, what was measured and whether it is met.
+//! `cargo xtask bench`: the library's benchmarks, and the performance targets: skinning beside numpy, PyTorch and a plain copy,
+//! and whole runs of the released command. Each target is printed with its limit, the measured time and whether it is met.
 
 use crate::environment;
 use crate::requests::{self, README};
@@ -9,15 +9,15 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// Frames of the motion that is written, and how often: the least time counts, as what else runs can only add to it.
+/// Number of frames of the written motion, and number of runs: the minimum counts, as other processes only add time.
 const FRAMES: usize = 300;
 const RUNS: usize = 7;
-/// Endings, whether with the motion, and the most seconds from the start of the command to its end.
+/// Ending, whether with motion, and limit of the wall-clock time of the whole process, seconds.
 const FILES: [(&str, bool, f64); 3] = [("glb", false, 0.6), ("glb", true, 1.0), ("usdc", true, 3.0)];
 
 pub(crate) fn run(rest: &[String]) -> Result<()> {
     tools::run(cargo("bench").args(["--package", "anthronet"]).args(rest))?;
-    // Who asks for some of the benchmarks wants those alone.
+    // Arguments select some of the benchmarks: run only those.
     if !rest.is_empty() {
         return Ok(());
     }
@@ -34,7 +34,7 @@ fn skinning() -> Result<()> {
     tools::run(&mut command)
 }
 
-/// A person of level of detail 0, without and with a motion of others, from the command's start to its end.
+/// A body of level of detail 0, without and with retargeted motion; times of the whole process.
 fn files() -> Result<()> {
     let anthronet = tools::command_line()?;
     let folder = tools::target().join("bench");
@@ -72,7 +72,7 @@ fn seconds(anthronet: &Path, clip: Option<&Path>, out: &Path) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// The motion file, its frames over and over.
+/// The motion file, with its frames repeated.
 fn longer(bvh: &str) -> Result<String> {
     let cannot = || format!("{}: expected MOTION, Frames, Frame Time and frames", requests::BVH);
     let (head, motion) = bvh.split_once("MOTION\n").with_context(cannot)?;

@@ -1,4 +1,4 @@
-//! `cargo xtask check`: what a reader may take for granted.
+//! `cargo xtask check`: formatting, layering, bindings, lints and documentation.
 
 use crate::tools::{self, cargo};
 use crate::{bindings, layering};
@@ -6,7 +6,7 @@ use anyhow::{Result, anyhow};
 use std::process::Command;
 
 pub(crate) fn run() -> Result<()> {
-    // The fast ones first; every one of them is run, so that one round shows all there is to mend.
+    // The fast ones first; all are run, so that one round shows everything there is to fix.
     let mut failures = Vec::new();
     let mut keep = |result: Result<()>| failures.extend(result.err());
     let cargo_program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -15,7 +15,7 @@ pub(crate) fn run() -> Result<()> {
     ));
     keep(layers());
     keep(bindings::check());
-    // One set of features for lints, documentation and tests, so that the heavy dependencies are built once each way.
+    // The same features for lints, documentation and tests, so that heavy dependencies are built once for each.
     keep(tools::run(cargo("clippy").args([
         "--workspace",
         "--all-targets",
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn every_dependency_has_its_reason_and_its_licence_written_down() {
+    fn every_dependency_has_its_reason_and_licence_documented() {
         let manifest = read(&root().join("Cargo.toml")).unwrap();
         let (_, dependencies) = manifest.split_once("[workspace.dependencies]\n").unwrap();
         let names = dependencies.lines().take_while(|line| !line.starts_with('[')).filter_map(|line| {
@@ -80,14 +80,14 @@ mod tests {
         }
     }
 
-    /// What cargo builds below the library for a package, each with its features.
+    /// The library's dependencies, with their features, as cargo builds them for a package.
     fn below_the_library(package: &str) -> BTreeSet<String> {
         let mut tree = Command::new(std::env::var_os("CARGO").unwrap());
         tree.current_dir(root()).args(["tree", "--locked", "--edges", "normal,build", "--no-dedupe"]);
         tree.args(["--prefix", "depth", "--format", " {p} {f}", "--package", package]);
         let text = tools::output(&mut tree).unwrap();
         let lines = text.lines().map(|line| line.split_once(' ').unwrap());
-        // The depth of the library's own line is less than that of all that is below it.
+        // The library's own line is less deep than its dependencies.
         let mut rest = lines.skip_while(|(_, shown)| !shown.starts_with("anthronet v"));
         let (top, _) = rest.next().unwrap();
         let deeper = |depth: &str| depth.parse::<u32>().unwrap() > top.parse().unwrap();

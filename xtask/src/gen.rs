@@ -1,11 +1,11 @@
-//! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made by the commands that a user has.
+//! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made with the command as users run it.
 
 use crate::tools;
 use crate::{bindings, hosts, requests};
 use anyhow::{Result, bail};
 use std::process::Command;
 
-/// What can be generated alone.
+/// The kinds of generated files.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Kind {
     /// The C header and the bindings of C# and Python

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that shows that the project works.
+//! `cargo xtask test`: all tests.
 
 use crate::tools::{self, cargo};
 use crate::{check, hosts};
@@ -7,30 +7,30 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// A part of the tests that can be asked for alone.
+/// A part of the tests.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Part {
     /// Formatting, lints, documentation, layering
     Check,
     /// Unit, property and integration tests of the workspace
     Rust,
-    /// Cross-boundary tests: the files in programs that are not ours
+    /// Cross-boundary tests: the files in third-party programs
     Hosts,
-    /// Of those, the consumers of the C ABI alone
+    /// Of those, only the programs that use the C ABI
     C,
-    /// Of those, the package for C++ alone
+    /// Of those, only the package for C++
     Cpp,
-    /// Of those, the Python package alone
+    /// Of those, only the Python package
     Python,
-    /// Of those, the Unity package alone
+    /// Of those, only the Unity package
     Unity,
-    /// Of those, the Blender extension alone
+    /// Of those, only the Blender extension
     Blender,
-    /// Of those, how motion files come onto bodies alone
+    /// Of those, only retargeting of motion files to bodies
     Motion,
 }
 
-/// Runs `cargo test` and counts the tests that say `skipped NAME: why`, which cargo counts as passed.
+/// Runs `cargo test` and counts the tests that print `skipped NAME: why`, which cargo counts as passed.
 fn rust_tests(command: &mut Command) -> Result<()> {
     println!("$ {}", tools::shown(command));
     let start = Instant::now();
@@ -56,7 +56,7 @@ fn rust_tests(command: &mut Command) -> Result<()> {
     if status.success() { Ok(()) } else { Err(anyhow!("`cargo test` failed: {status}")) }
 }
 
-/// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
+/// Runs the parts one after the other, all of them even when one fails.
 pub(crate) fn run(only: Option<Part>) -> Result<()> {
     let wanted = |part| only.is_none_or(|one| one == part);
     let mut failures = Vec::new();
@@ -64,8 +64,8 @@ pub(crate) fn run(only: Option<Part>) -> Result<()> {
         failures.extend(check::run().err());
     }
     if wanted(Part::Rust) {
-        // Tests open the C library as a file, which cargo does not build for them. All that it does build for them is
-        // asked for along with it: another choice of targets is another choice of features, and all is built twice.
+        // Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that
+        // `cargo test` builds: another choice of targets has other features, and everything would be built twice.
         let everything = ["--workspace", "--all-features"];
         let targets = ["--lib", "--bins", "--tests", "--examples"];
         failures.extend(tools::run(cargo("build").args(everything).args(targets)).err());

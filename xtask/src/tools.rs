@@ -39,7 +39,7 @@ pub(crate) fn target() -> PathBuf {
     }
 }
 
-/// A cargo command that works on every documented toolchain and never changes `Cargo.lock`.
+/// A cargo command for any supported toolchain that never changes `Cargo.lock`.
 pub(crate) fn cargo(verb: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root()).arg(verb).args(["--ignore-rust-version", "--locked"]);
@@ -69,7 +69,7 @@ pub(crate) fn output(command: &mut Command) -> Result<String> {
     Err(anyhow!("`{text}` failed: {}: {}", output.status, tail.join(" / ")))
 }
 
-/// The command as a person would type it, paths shortened to the repository's root.
+/// The command as typed in the repository's root, with paths relative to it.
 pub(crate) fn shown(command: &Command) -> String {
     let root = format!("{}{}", root().display(), std::path::MAIN_SEPARATOR);
     let mut words = Vec::new();
@@ -141,7 +141,7 @@ pub(crate) fn copy_except(from: &Path, to: &Path, names: &[&str]) -> Result<()> 
 
 /// Builds the released command as a user would and returns its path.
 pub(crate) fn command_line() -> Result<PathBuf> {
-    // The same arguments as the alias `cargo anthronet`, so that neither builds what the other has built.
+    // The same arguments as the alias `cargo anthronet`, so that both share one build.
     run(cargo("build").args(["--release", "--package", "anthronet-cli", "--bin", "anthronet"]))?;
     let path = target().join("release").join(format!("anthronet{}", std::env::consts::EXE_SUFFIX));
     if path.is_file() { Ok(path) } else { Err(anyhow!("{}: not there after a build", path.display())) }

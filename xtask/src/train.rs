@@ -1,4 +1,4 @@
-//! `cargo xtask train`: the committed model, from nothing.
+//! `cargo xtask train`: the committed model, from scratch.
 
 use crate::tools::{self, cargo};
 use anyhow::Result;

@@ -1,4 +1,4 @@
-//! The C header and the bindings of C# and Python, all of them from the sources of `ffi`.
+//! The C header and the bindings for C# and Python, generated from the sources of `ffi`.
 
 mod declared;
 mod python;
@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 /// The header that C and C++ include.
 pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
-/// The declarations that C# calls.
+/// The declarations for C#.
 pub(crate) const CSHARP: &str = "unity_plugin/Runtime/Native/NativeMethods.g.cs";
 
-/// The declarations that Python calls.
+/// The declarations for Python.
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
-/// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
+/// The files of `ffi/src` in the order of their declarations: a type comes before its users.
 const SOURCES: [&str; 18] = [
     "version",
     "status",
@@ -51,15 +51,15 @@ pub(crate) fn write() -> Result<()> {
     Ok(())
 }
 
-/// Fails unless the files in the source tree are what the sources make, byte by byte.
+/// Fails unless the files in the source tree equal the generated ones, byte by byte.
 pub(crate) fn check() -> Result<()> {
     for (path, text) in all()? {
         let there = tools::read(&tools::root().join(path))?;
         if there != text {
-            bail!("{path}: is not what ffi/src makes: run `cargo xtask gen` and commit it");
+            bail!("{path}: differs from what ffi/src generates: run `cargo xtask gen` and commit it");
         }
     }
-    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are what ffi/src makes");
+    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are up to date");
     Ok(())
 }
 
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_python_does_not_know_is_an_error_that_says_where() {
+    fn an_unknown_declaration_is_an_error_with_its_line() {
         let made = |source: &str| -> Result<String> {
             let file = tempfile::NamedTempFile::new().unwrap();
             std::fs::write(file.path(), source).unwrap();

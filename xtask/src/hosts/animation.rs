@@ -1,4 +1,4 @@
-//! Animated glTF, plain and compressed, and VRM in programs that are not ours.
+//! Animated glTF, plain and compressed, and VRM in third-party programs.
 
 use super::Tally;
 use crate::environment::Environment;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long Godot may take to import one figure.
+/// Time limit for Godot to import one character.
 const GODOT_LIMIT: Duration = Duration::from_secs(120);
 
 /// The Khronos validator, numpy, three.js, three-vrm, Blender and Godot over files of `anthronet`.
@@ -60,14 +60,14 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// Converted to its own format, a file stays the same.
+/// Converting a file to its own format gives the same bytes.
 fn same_again(anthronet: &Path, file: &Path, tally: &mut Tally) {
     let again = file.with_extension("again.glb");
     let mut command = Command::new(anthronet);
     let converted = tools::output(command.arg("convert").arg(file).arg(&again));
     let compared = converted.and_then(|_| {
         let [a, b] = [file, &again].map(|f| std::fs::read(f).with_context(|| f.display().to_string()));
-        if a? == b? { Ok(()) } else { Err(anyhow!("other bytes")) }
+        if a? == b? { Ok(()) } else { Err(anyhow!("the bytes differ")) }
     });
     tally.case("convert to the same format gives the same bytes", compared);
 }
@@ -88,7 +88,7 @@ fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally:
     Ok(())
 }
 
-/// Godot imports the file as a resource of a project, in which a script then looks at it.
+/// Godot imports the file as a resource of a project, and a script checks it there.
 fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Result<()> {
     let project = folder.join("godot");
     tools::create_folder(&project)?;
@@ -104,8 +104,8 @@ fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Resu
     Ok(())
 }
 
-/// Opens the project in the editor until the figure is imported. Debian's build of the editor never ends by itself: it
-/// repeats an error for ever when it quits.
+/// Opens the project in the editor until the character is imported. Debian's build of the editor never exits by itself: on
+/// quitting it repeats an error endlessly.
 fn import(godot: &Path, project: &Path) -> Result<()> {
     let mut command = Command::new(godot);
     command.arg("--path").arg(project).args(["--editor", "--quit"]);
@@ -116,7 +116,7 @@ fn import(godot: &Path, project: &Path) -> Result<()> {
         .spawn()
         .context("did not start")?;
     let start = Instant::now();
-    // Written last.
+    // The last file that the import writes.
     let imported = || -> Option<PathBuf> {
         let mut files = std::fs::read_dir(project.join(".import")).ok()?.flatten().map(|entry| entry.path());
         files.find(|path| path.extension().is_some_and(|ending| ending == "md5"))
@@ -128,7 +128,7 @@ fn import(godot: &Path, project: &Path) -> Result<()> {
         }
         std::thread::sleep(Duration::from_millis(100));
     };
-    // It may have ended in the meantime.
+    // It may have exited in the meantime.
     let _ = editor.kill();
     editor.wait()?;
     done.map(drop).with_context(|| format!("not imported after {:.0} s", start.elapsed().as_secs_f64()))

@@ -1,4 +1,4 @@
-//! The Blender extension: packed, installed and used in every Blender that it supports.
+//! The Blender extension: packaged, installed and used in every Blender that it supports.
 
 use super::tally::Tally;
 use crate::environment::Environment;
@@ -8,7 +8,7 @@ use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The picture that the tests render, in the folder that they are given.
+/// The picture that the tests render into their folder.
 const PICTURE: &str = "blender_people.png";
 
 pub(crate) fn run(
@@ -39,7 +39,7 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// The picture of the documentation, as the tests render it. The inner error is a reason for which this machine cannot.
+/// The picture of the documentation, as the tests render it.
 pub(crate) fn picture(
     anthronet: &Path,
     environment: &Environment,
@@ -57,7 +57,7 @@ pub(crate) fn picture(
 /// A script of `tests` in a Blender, with the extension as its first argument.
 fn script(name: &str, python: &Path, archive: &Path) -> Command {
     let mut command = Command::new(python);
-    // The library has to come from the extension, not from a developer's folder.
+    // The library must come from the extension, not from a developer's folder.
     command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("ANTHRONET_LIBRARY");
     command.arg(tools::root().join("tests").join(name)).arg(archive);
     command

@@ -1,4 +1,4 @@
-//! The package for C++: built by CMake and Ninja as its users do, run, and what it wrote looked at by others.
+//! The package for C++: used from CMake and Ninja as its users do, run, and its files checked by third-party programs.
 
 use anyhow::{Result, anyhow};
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::environment::Environment;
 use crate::package::package_cpp;
 use crate::tools;
 
-/// A person with something given and something drawn.
+/// A request with given measures and a seed.
 const REQUEST: &str =
     r#"{"sex": "male", "measures": {"height": 1.78, "chest_circumference": 1.02}, "seed": 3}"#;
 

@@ -1,8 +1,8 @@
-//! The cross-boundary tests: files of the released command in programs that are not ours.
+//! The cross-boundary tests: files of the released command in third-party programs.
 //!
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
-//! `skipped NAME: why`; all its other lines are for the reader. The tests of the Python package are pytest's, which
-//! `tests/python/conftest.py` makes print the same.
+//! `skipped NAME: why`; other lines are for the reader. The tests of the Python package run under pytest, with the same
+//! output from `tests/python/conftest.py`.
 
 mod animation;
 mod blender;
@@ -51,14 +51,14 @@ pub(crate) fn run() -> Result<()> {
     close(&tally)
 }
 
-/// The consumers of the C ABI alone.
+/// Only the programs that use the C ABI.
 pub(crate) fn run_c() -> Result<()> {
     let mut tally = Tally::default();
     c::run(&environment::c_programs(), &tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
 }
 
-/// The package for C++ alone.
+/// Only the package for C++.
 pub(crate) fn run_cpp() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
@@ -67,7 +67,7 @@ pub(crate) fn run_cpp() -> Result<()> {
     close(&tally)
 }
 
-/// The Python package alone.
+/// Only the Python package.
 pub(crate) fn run_python() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
@@ -76,7 +76,7 @@ pub(crate) fn run_python() -> Result<()> {
     close(&tally)
 }
 
-/// The Unity package alone.
+/// Only the Unity package.
 pub(crate) fn run_unity() -> Result<()> {
     c::byte_lists()?;
     let mut tally = Tally::default();
@@ -84,7 +84,7 @@ pub(crate) fn run_unity() -> Result<()> {
     close(&tally)
 }
 
-/// The Blender extension alone.
+/// Only the Blender extension.
 pub(crate) fn run_blender() -> Result<()> {
     let mut tally = Tally::default();
     let folder = tools::target().join("test-env/out");
@@ -92,13 +92,12 @@ pub(crate) fn run_blender() -> Result<()> {
     close(&tally)
 }
 
-/// The picture of the Blender extension, rendered anew into a folder; the inner error is a reason for which this machine
-/// cannot.
+/// Renders the picture of the Blender extension into a folder.
 pub(crate) fn blender_picture(folder: &Path) -> Result<Available<PathBuf>> {
     blender::picture(&tools::command_line()?, &environment::prepare()?, folder)
 }
 
-/// The table of motion alone.
+/// Only the table of motion.
 pub(crate) fn run_motion() -> Result<()> {
     let mut tally = Tally::default();
     motion::run(&tools::command_line()?, &mut tally);
@@ -117,7 +116,7 @@ fn close(tally: &Tally) -> Result<()> {
 /// `anthronet generate` with these arguments into a file.
 fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Result<()> {
     let mut command = Command::new(anthronet);
-    // From the root, where the motion files of the tests are.
+    // Paths of motion files are relative to the root.
     command.current_dir(tools::root()).arg("generate").args(arguments).arg("-o").arg(file);
     if let Some(threads) = threads {
         command.env("RAYON_NUM_THREADS", threads.to_string());
@@ -125,7 +124,7 @@ fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u
     tools::output(&mut command).map(drop)
 }
 
-/// The command that users build has no networks and says how to get one that has. The workspace's tests build it with.
+/// The command as users build it has no networks and says how to get them; the workspace's tests build it with networks.
 fn without_networks(anthronet: &Path, tally: &mut Tally) {
     for arguments in [&["evaluate"][..], &["train", "generator"], &["train", "scores"]] {
         let text = arguments.join(" ");
@@ -221,7 +220,7 @@ fn in_other_programs(
     let python = |script| environment.python_script(script);
     tally.script("measures by numpy and scipy", python("measure_glb.py")?.arg(anthronet).arg(folder));
 
-    // What the two programs below have to agree with, once per file.
+    // The reference for the two programs below, once per file.
     for (stem, arguments) in [
         ("posed_4", [requests::README, &["--influences", "4"]].concat()),
         ("posed_8", [requests::README, &["--influences", "8"]].concat()),

@@ -8,7 +8,7 @@ use super::tally::Tally;
 use crate::environment::Environment;
 use crate::tools::{self, cargo};
 
-/// What the example writes; the library has no character with morph targets yet that the command could.
+/// Files of the example; no character of the library has morph targets that the command could write.
 const FILES: [&str; 5] = ["morph.glb", "morph_meshopt.glb", "morph.vrm", "morph.usda", "morph.usdc"];
 
 pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {

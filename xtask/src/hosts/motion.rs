@@ -1,4 +1,4 @@
-//! Motion files of others on bodies from small to tall: the table that `anthronet evaluate` prints, against its bars.
+//! Motion files retargeted to bodies from short to tall: the table of `anthronet evaluate`, checked against its limits.
 
 use super::Tally;
 use crate::tools;
@@ -6,7 +6,7 @@ use anyhow::{Context as _, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A number of the table, the most that it may be, and its unit.
+/// A number of the table, its limit and its unit.
 const BARS: [(&str, f64, &str); 5] = [
     ("direction_worst_clip_mean_deg", 3.0, "°"),
     ("beyond_limits_deg", 5.0, "°"),
@@ -35,7 +35,7 @@ pub(crate) fn run(anthronet: &Path, tally: &mut Tally) {
         println!("  {row}");
     }
     for (name, most, unit) in BARS {
-        // What is missing or not a number is not within its bar either.
+        // A missing number fails too.
         let within = table[name].as_f64().is_some_and(|value| value <= most);
         let said = format!("{name} {} {unit}, at most {most}", table[name]);
         tally.case(&format!("motion files: {said}"), within.then_some(()).context(said.clone()));

@@ -1,5 +1,5 @@
-//! The Python package: its wheel in a clean environment of every Python that is there, measures by numpy and scipy,
-//! speed beside its bars.
+//! The Python package: its wheel in a clean environment of every Python on the machine, measures by numpy and scipy, and
+//! speed against its limits.
 
 use anyhow::Result;
 use std::path::Path;
@@ -58,7 +58,7 @@ pub(crate) fn run(
         if version == environment::PYTHONS[0] {
             case("declarations", "test_declarations.py", &[]);
             case("files", "test_files.py", &[Path::new("--anthronet"), anthronet]);
-            // The consumers in C, which come first, have left the list.
+            // Written by the tests of the C ABI, which run first.
             let same_bytes = tools::target().join("tmp/same_bytes");
             case("same bytes", "test_same_bytes.py", &[Path::new("--same-bytes"), &same_bytes]);
             speed = Some(pytest(&clean, "test_speed.py", &folder.join("speed")));
@@ -74,8 +74,7 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// Runs a file or folder of `tests/python` on the package that this Python has; what its tests write is left in a folder of
-/// their own.
+/// Runs a file or folder of `tests/python` on the package installed in this Python; its output files go to `folder`.
 fn pytest(python: &Path, tests: &str, folder: &Path) -> Command {
     let mut command = Command::new(python);
     command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("PYTHONPATH").env_remove("ANTHRONET_LIBRARY");

@@ -1,6 +1,6 @@
 //! The Unity package: compiled by mono against stand-ins for Unity's own API and run with the real library.
 //!
-//! No Unity is run: `tests/unity/signatures.txt` lists what the stand-ins take for granted.
+//! Unity itself is not run: `tests/unity/signatures.txt` lists what the stand-ins assume of it.
 
 use super::tally::Tally;
 use crate::bindings::HEADER;
@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is compiled together: what the tests see of the package is all of it.
+/// Compiled into one assembly, so that the tests see all of the package.
 const SOURCES: [&str; 5] = [
     "unity_plugin/Runtime",
     "unity_plugin/Editor",
@@ -20,9 +20,9 @@ const SOURCES: [&str; 5] = [
     "unity_plugin/Tests",
     "tests/unity",
 ];
-/// What players compile: without the editor, and without Burst's package.
+/// Sources that players compile: without the editor, and without the Burst package.
 const PLAYER: [&str; 3] = ["unity_plugin/Runtime", "unity_plugin/Samples~", "tests/unity/stubs"];
-/// Characters that are made to measure how long it takes.
+/// Number of characters in the measurement of speed.
 const CROWD: &str = "1000";
 
 pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
@@ -36,7 +36,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
         }
         Err(reason) => tally.skip("Unity package", &reason),
     }
-    tally.case("the Unity package is packed", archive.map(drop));
+    tally.case("the Unity package is built", archive.map(drop));
     if let Err(reason) = environment::mono() {
         tally.skip("the Unity package under mono", &reason);
         return Ok(());
@@ -55,7 +55,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
     }
     let library = packed_library();
     tally.case(
-        "the Unity package's library exports the C interface and what Unity looks for",
+        "the Unity package's library exports the C interface and the entries that Unity calls",
         exports(&library),
     );
     let with_library = |program: &str| {
@@ -85,7 +85,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
     if results.exists() {
         std::fs::remove_file(&results).with_context(|| format!("{}: cannot remove", results.display()))?;
     }
-    // That tests failed is in its results; what it prints besides is for whoever looks into the folder.
+    // Failed tests are in the results; the output is kept for debugging.
     let console = tools::output(&mut nunit).unwrap_or_else(|error| format!("{error:#}"));
     tools::write(&folder.join("console.txt"), &console)?;
     let mut report = with_library("mono");
@@ -97,7 +97,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
     Ok(())
 }
 
-/// What Unity calls, and what asks for what is behind it, beside the functions of the header.
+/// Exports beside the functions of the header: those that Unity calls, and accessors of their state.
 const ENTRIES: [&str; 4] =
     ["UnityPluginLoad", "UnityPluginUnload", "anthronet_unity_interfaces", "anthronet_unity_render_event"];
 
@@ -114,7 +114,7 @@ fn exports(library: &Path) -> Result<()> {
     }
 }
 
-/// Compiles scripts. Unity 2021 takes more than this language version; mono's compiler takes no more.
+/// Compiles scripts. Unity 2021 supports a newer language version; mono's compiler does not.
 fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Result<()> {
     let mut command = Command::new("mcs");
     command.args(["-nologo", "-unsafe", "-langversion:7.2", "-warn:4", "-warnaserror"]);
@@ -126,7 +126,7 @@ fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Result<()> {
     tools::run(&mut command)
 }
 
-/// Sizes and offsets as a compiler of C has them, in a file.
+/// Writes sizes and offsets of the structures, according to a C compiler, to a file.
 fn layout(text: &str, folder: &Path) -> Result<PathBuf> {
     let [source, program, file] = ["layout.c", "layout", "layout.txt"].map(|name| folder.join(name));
     tools::write(&source, text)?;

@@ -1,7 +1,7 @@
-//! Who may use whom inside the library: the table, held against the paths that the code really names.
+//! Which rooms of the library may use which: the paths in the code, checked against the table.
 //!
-//! A room is a folder or a file directly under `core/src`. Every path that starts at the crate's root is looked at,
-//! wherever it stands: `use crate::mesh::…`, `crate::mesh::…` in an expression, `use crate::{mesh, rig::…}`, and
+//! A room is a folder or a file directly under `core/src`. Every path that starts at the crate's root is checked,
+//! wherever it occurs: `use crate::mesh::…`, `crate::mesh::…` in an expression, `use crate::{mesh, rig::…}`, and
 //! chains of `super` that climb as far. Names that the root re-exports count as the room they come from.
 
 mod paths;
@@ -13,10 +13,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use syn::{Item, ItemMod, Meta};
 
-/// Where the table is, for whom it has nothing.
+/// Where the table is, for error messages.
 const TABLE: &str = "the table of xtask/src/layering/table.rs";
 
-/// One line per use of a room that the table does not grant: `path:line: …`.
+/// One line per use of a room that the table does not allow: `path:line: …`.
 pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
     let lib = source.join("lib.rs");
     let shown = |path: &Path| path.strip_prefix(tools::root()).unwrap_or(path).display().to_string();
@@ -26,7 +26,7 @@ pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
     let mut violations = Vec::new();
     if let Some(line) = open_beyond_tests(&root) {
         violations.push(format!(
-            "{}:{line}: `{}` is for tests alone: it needs `#[cfg(test)]`",
+            "{}:{line}: `{}` is for tests only: it needs `#[cfg(test)]`",
             shown(&lib),
             table::TESTING
         ));
@@ -54,7 +54,7 @@ pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
     Ok(violations)
 }
 
-/// The line at which the root declares the room of the tests without leaving it to tests.
+/// The line at which the root declares the room for tests without `#[cfg(test)]`.
 fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
     let for_tests = |module: &ItemMod| {
         module.attrs.iter().any(|attribute| match &attribute.meta {
@@ -105,8 +105,8 @@ fn file_of(source: &Path, modules: &[String]) -> std::path::PathBuf {
 mod tests {
     use super::*;
 
-    /// The complaints about a library of these files.
-    fn complaints(files: &[(&str, &str)]) -> Vec<String> {
+    /// The violations in a library of these files.
+    fn violations_in(files: &[(&str, &str)]) -> Vec<String> {
         let folder = tempfile::tempdir().unwrap();
         for (path, text) in files {
             tools::write(&folder.path().join(path), text).unwrap();
@@ -123,8 +123,8 @@ mod tests {
     }
 
     #[test]
-    fn what_the_table_does_not_grant_is_told_with_its_line() {
-        let found = complaints(&[
+    fn what_the_table_does_not_allow_is_reported_with_its_line() {
+        let found = violations_in(&[
             ("lib.rs", "pub use error::Error;\npub use body::Body;"),
             ("error.rs", "fn f() {}"),
             ("attic/mod.rs", ""),
@@ -145,15 +145,15 @@ mod tests {
     }
 
     #[test]
-    fn the_room_of_the_tests_is_for_tests_alone() {
+    fn the_room_for_tests_needs_cfg_test() {
         let rest = [
             ("testing/mod.rs", "use crate::scene::Scene;"),
             ("mesh.rs", "#[cfg(test)]\nmod tests { use crate::testing::body; }"),
         ];
-        let with = |lib| complaints(&[&[("lib.rs", lib)], &rest[..]].concat());
+        let with = |lib| violations_in(&[&[("lib.rs", lib)], &rest[..]].concat());
         assert!(with("#[cfg(test)]\nmod testing;").is_empty());
-        let told = "lib.rs:2: `testing` is for tests alone: it needs `#[cfg(test)]`";
-        assert_eq!(with("\npub mod testing;"), [told]);
-        assert_eq!(with("#[cfg(any(test, unix))]\nmod testing;"), [told]);
+        let reported = "lib.rs:2: `testing` is for tests only: it needs `#[cfg(test)]`";
+        assert_eq!(with("\npub mod testing;"), [reported]);
+        assert_eq!(with("#[cfg(any(test, unix))]\nmod testing;"), [reported]);
     }
 }

@@ -7,11 +7,11 @@ use anyhow::{Context as _, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where the wheel lies in the extension, as `blender_manifest.toml` names it.
+/// The folder of the wheel in the extension, as in `blender_manifest.toml`.
 const WHEELS: &str = "wheels";
 
-/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the command line, which tells
-/// what the model's measures are. The inner error is a reason for which this machine cannot.
+/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the measures that the command
+/// lists.
 pub(crate) fn package_blender(environment: &Environment, anthronet: &Path) -> Result<Available<PathBuf>> {
     let python = match (&environment.python, &environment.blender) {
         (Ok(python), Ok(())) => python,
@@ -48,7 +48,7 @@ pub(crate) fn package_blender(environment: &Environment, anthronet: &Path) -> Re
     Ok(Ok(archive))
 }
 
-/// What the extension knows of the measures before it loads the library.
+/// The measures, as JSON, for the extension to show before it loads the library.
 fn measures(anthronet: &Path) -> Result<String> {
     let info = tools::output(Command::new(anthronet).args(["info", "--json"]))?;
     let info: serde_json::Value = serde_json::from_str(&info).context("info --json")?;
@@ -60,7 +60,7 @@ fn measures(anthronet: &Path) -> Result<String> {
     Ok(serde_json::json!({ "measures": known.collect::<Vec<_>>() }).to_string() + "\n")
 }
 
-/// Blender's program that builds and validates extensions; it comes with the module.
+/// Blender's program that builds and validates extensions; part of its Python module.
 fn extension_tool(python: &Path) -> Result<PathBuf> {
     let script = "import glob, importlib.util, os; \
                   folder = os.path.dirname(importlib.util.find_spec('bpy').origin); \

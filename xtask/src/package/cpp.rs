@@ -1,4 +1,4 @@
-//! `cargo xtask package cpp`: a folder that CMake's `find_package(anthronet)` finds.
+//! `cargo xtask package cpp`: a folder for CMake's `find_package(anthronet)`.
 //!
 //! ```text
 //! target/dist/cpp/include/anthronet/{anthronet.hpp, bridge.h}   include/rust/cxx.h
@@ -6,8 +6,8 @@
 //! target/dist/cpp/examples                                      README.md, licences
 //! ```
 //!
-//! The C ABI's header is not in it: the archive does not hold those functions, and two archives of Rust in one program
-//! would hold the same runtime twice.
+//! It does not contain the C ABI's header: the archive lacks those functions, and two Rust archives in one program would
+//! duplicate the runtime.
 
 use crate::tools::{self, cargo};
 use anyhow::{Context as _, Result, bail};
@@ -15,17 +15,17 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// What a build of the crate tells.
+/// The results of building the crate.
 #[derive(Default)]
 struct Built {
     archive: PathBuf,
     /// The folder with the generated headers.
     include: PathBuf,
-    /// What the archive needs of the system, as CMake links it.
+    /// System libraries that the archive needs, as CMake links them.
     libraries: Vec<String>,
 }
 
-/// Builds the archive and puts the package together; its folder.
+/// Builds the archive, assembles the package and returns its folder.
 pub(crate) fn package_cpp() -> Result<PathBuf> {
     let built = build()?;
     let source = tools::root().join("cxx");
@@ -71,8 +71,8 @@ pub(crate) fn package_cpp() -> Result<PathBuf> {
 }
 
 fn build() -> Result<Built> {
-    // Cargo tells in JSON where it put what, and rustc in a note what the archive needs; cargo repeats both when nothing
-    // was to be built.
+    // Cargo reports the paths of its outputs as JSON, and rustc the archive's system libraries in a note; cargo repeats both
+    // when everything is up to date.
     let mut command = cargo("rustc");
     command
         .args(["--release", "--package", "anthronet-cxx", "--message-format=json"])
@@ -111,7 +111,7 @@ fn build() -> Result<Built> {
     Ok(built)
 }
 
-/// `-lm -lpthread -framework X kernel32.lib` as CMake takes it, each once.
+/// `-lm -lpthread -framework X kernel32.lib` as CMake expects them, each once.
 fn libraries(words: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut words = words.split_whitespace();

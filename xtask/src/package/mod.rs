@@ -1,4 +1,4 @@
-//! `cargo xtask package`: what is handed to users, in `target/dist`.
+//! `cargo xtask package`: the packages for users, in `target/dist`.
 
 mod blender;
 mod cpp;
@@ -14,7 +14,7 @@ use crate::environment;
 use crate::tools;
 use anyhow::Result;
 
-/// What can be packaged.
+/// The packages.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Kind {
     /// The wheel of the Python package, with the library inside

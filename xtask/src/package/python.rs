@@ -1,11 +1,11 @@
-//! `cargo xtask package python`: the wheel, made by pip as a user would.
+//! `cargo xtask package python`: the wheel, built by pip as users do.
 
 use crate::tools::{self, cargo};
 use anyhow::{Context as _, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Builds the shared library as users get it and returns its path.
+/// Builds the shared library as released and returns its path.
 pub(crate) fn library() -> Result<PathBuf> {
     tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))?;
     let name = format!("{}anthronet{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
@@ -13,8 +13,7 @@ pub(crate) fn library() -> Result<PathBuf> {
     if path.is_file() { Ok(path) } else { Err(anyhow!("{}: not there after a build", path.display())) }
 }
 
-/// The wheel of the Python package, made by pip as a user would: its build backend builds the library, which is there
-/// already where the tests have got so far.
+/// The wheel of the Python package, built by pip as users do; its build backend finds the library already built.
 pub(crate) fn package_python(python: &Path) -> Result<PathBuf> {
     library()?;
     let dist = tools::target().join("dist");
@@ -26,7 +25,7 @@ pub(crate) fn package_python(python: &Path) -> Result<PathBuf> {
         };
         Ok(entries.filter(ours).collect())
     };
-    // Older versions would be taken for this one.
+    // Wheels of older versions could be mistaken for this one.
     for old in wheels()? {
         std::fs::remove_file(&old).with_context(|| format!("{}: cannot remove", old.display()))?;
     }

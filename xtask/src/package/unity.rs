@@ -6,7 +6,7 @@ use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where the library of this system goes in `Runtime/Plugins`, and its name there.
+/// Path of this system's library in `Runtime/Plugins`.
 const PLUGIN: &[&str] = if cfg!(windows) {
     &["Windows", "x86_64", "anthronet.dll"]
 } else if cfg!(target_os = "macos") {
@@ -15,8 +15,8 @@ const PLUGIN: &[&str] = if cfg!(windows) {
     &["Linux", "x86_64", "libanthronet.so"]
 };
 
-/// Makes `target/dist/com.anthronet.unity-<version>.tgz` from `unity_plugin` and the library of this system, with the
-/// import settings that wait for it in `Plugins~`.
+/// Makes `target/dist/com.anthronet.unity-<version>.tgz` from `unity_plugin` and the library of this system, with its
+/// import settings from `Plugins~`.
 pub(crate) fn package_unity() -> Result<PathBuf> {
     let library = library()?;
     let dist = tools::target().join("dist");
@@ -31,7 +31,7 @@ pub(crate) fn package_unity() -> Result<PathBuf> {
         tools::copy(&with_meta(&from), &with_meta(&to))?;
     }
     link(&library, &to)?;
-    // There Unity asks for no .meta files.
+    // Unity needs no .meta files in this folder.
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
         tools::copy(&tools::root().join(name), &package.join("Documentation~").join(name))?;
     }
@@ -41,8 +41,8 @@ pub(crate) fn package_unity() -> Result<PathBuf> {
     Ok(archive)
 }
 
-/// The library of the package. On Linux it has what Unity looks for in a rendering plugin besides: the archive beside
-/// the shared library, linked with a file of C.
+/// The library of the package. On Linux it also has the entries of a rendering plugin: the static library, linked with a
+/// file of C.
 fn link(library: &Path, to: &Path) -> Result<()> {
     if !cfg!(target_os = "linux") {
         return tools::copy(library, to);
@@ -66,7 +66,7 @@ fn link(library: &Path, to: &Path) -> Result<()> {
     tools::run(command.args(["-ldl", "-lm"]))
 }
 
-/// Where packing puts the library of this system: a folder in which programs find it.
+/// Path of this system's library after packaging.
 pub(crate) fn packed_library() -> PathBuf {
     PLUGIN
         .iter()
