@@ -2,7 +2,7 @@
 
 use crate::tools::{self, cargo};
 use crate::{bindings, layering};
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use std::process::Command;
 
 pub(crate) fn run() -> Result<()> {
@@ -14,6 +14,7 @@ pub(crate) fn run() -> Result<()> {
         Command::new(cargo_program).current_dir(tools::root()).args(["fmt", "--all", "--check"]),
     ));
     keep(layers());
+    keep(module_files());
     keep(bindings::check());
     // The same features for lints, documentation and tests, so that heavy dependencies are built once for each.
     keep(tools::run(cargo("clippy").args([
@@ -34,7 +35,25 @@ pub(crate) fn run() -> Result<()> {
     tools::all_succeeded(&failures)
 }
 
-/// The rooms of the library against the table of who may use whom.
+/// The crates whose sources are checked.
+const CRATES: [&str; 6] = ["core", "cli", "trainer", "ffi", "cxx", "xtask"];
+
+/// Long tests of `x` are in `x/tests.rs` beside `x/mod.rs`, which no lint checks.
+fn module_files() -> Result<()> {
+    for folder in CRATES {
+        for file in tools::rust_files(&tools::root().join(folder))? {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let with_path = tools::read(&file)?.lines().any(|line| line.trim_start().starts_with("#[path"));
+            if with_path || name.ends_with("_tests.rs") {
+                bail!("{}: expected x/tests.rs beside x/mod.rs, without `#[path]`", file.display());
+            }
+        }
+    }
+    println!("module files: long tests are in tests.rs beside mod.rs");
+    Ok(())
+}
+
+/// The rooms of the library against the table of which may use which.
 fn layers() -> Result<()> {
     let violations = layering::violations(&tools::root().join("core/src"))?;
     for violation in &violations {

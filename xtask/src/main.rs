@@ -50,7 +50,7 @@ enum Verb {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Run the benchmarks; arguments are passed to `cargo bench`, and select some of the library's alone
+    /// Run the benchmarks; with arguments only `cargo bench`, which gets them
     Bench {
         /// Arguments passed through
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -8,7 +8,7 @@ mod paths;
 mod table;
 
 use crate::tools;
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use std::collections::BTreeMap;
 use std::path::Path;
 use syn::{Item, ItemMod, Meta};
@@ -31,11 +31,9 @@ pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
             table::TESTING
         ));
     }
-    let mut files = Vec::new();
-    rust_files(source, &mut Vec::new(), &mut files)?;
-    for modules in files {
+    for path in tools::rust_files(source)? {
+        let modules = modules_of(source, &path);
         let Some(room) = modules.first() else { continue };
-        let path = file_of(source, &modules);
         if !table::is_room(room) {
             violations.push(format!("{}:1: the room `{room}` is not in {TABLE}", shown(&path)));
             continue;
@@ -70,35 +68,14 @@ fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
     })
 }
 
-/// Collects the module paths of all files below a folder, in order: `mesh/mod.rs` and `mesh.rs` are `[mesh]`.
-fn rust_files(folder: &Path, modules: &mut Vec<String>, files: &mut Vec<Vec<String>>) -> Result<()> {
-    let mut entries = std::fs::read_dir(folder)
-        .and_then(Iterator::collect::<std::io::Result<Vec<_>>>)
-        .with_context(|| format!("{}: cannot read", folder.display()))?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let path = entry.path();
-        let Some(stem) = path.file_stem().map(|s| s.to_string_lossy().into_owned()) else { continue };
-        if path.is_dir() {
-            modules.push(stem);
-            rust_files(&path, modules, files)?;
-            modules.pop();
-        } else if path.extension().is_some_and(|e| e == "rs") && !(modules.is_empty() && stem == "lib") {
-            let mut own = modules.clone();
-            if stem != "mod" {
-                own.push(stem);
-            }
-            files.push(own);
-        }
+/// The module path of a file below the sources: `mesh/mod.rs` and `mesh.rs` are `[mesh]`, `lib.rs` is `[]`.
+fn modules_of(source: &Path, file: &Path) -> Vec<String> {
+    let inner = file.strip_prefix(source).unwrap_or(file).with_extension("");
+    let mut modules: Vec<_> = inner.iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    if modules == ["lib"] || modules.last().is_some_and(|last| last == "mod") {
+        modules.pop();
     }
-    Ok(())
-}
-
-/// The file of a module path.
-fn file_of(source: &Path, modules: &[String]) -> std::path::PathBuf {
-    let base = modules.iter().fold(source.to_path_buf(), |path, module| path.join(module));
-    let file = base.with_extension("rs");
-    if file.is_file() { file } else { base.join("mod.rs") }
+    modules
 }
 
 #[cfg(test)]
