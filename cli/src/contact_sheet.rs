@@ -88,7 +88,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut sheet = Image::new(columns * width, rows * height, [red, green, blue]);
     let bar = bar(people.len(), "people");
     for (i, request) in people.iter().enumerate() {
-        let body = model.generate(request).map_err(|e| Failure::failed(format!("person {}: {e}", i + 1)))?;
+        let body = model
+            .generate(request)
+            .map_err(|e| Failure::Input { input: format!("person {}", i + 1), source: Box::new(e) })?;
         let options = SceneOptions {
             lod: if arguments.close { Lod::Lod0 } else { Lod::Lod1 },
             skin_tone: SkinTone::monk(TONES[i % TONES.len()]).unwrap_or_default(),

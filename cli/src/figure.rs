@@ -53,5 +53,5 @@ pub(crate) fn from_file(path: &Path) -> Result<Figure> {
             triangles: mesh.triangulated().iter().map(|t| t.map(|corner| corner.0)).collect(),
         })
         .collect();
-    Figure::new(parts, Vec3::new(r, g, b)).map_err(|failure| Failure::in_file(path, &failure))
+    Figure::new(parts, Vec3::new(r, g, b)).map_err(|failure| Failure::in_file(path, failure))
 }

@@ -37,11 +37,11 @@ pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<
 
 /// Reads a text file of at most 16 MB.
 pub(crate) fn read_text(path: &Path) -> Result<String> {
-    let size = fs::metadata(path).map_err(|e| Failure::io("read", path, &e))?.len();
+    let size = fs::metadata(path).map_err(|e| Failure::io("read", path, e))?.len();
     if size > 16 << 20 {
         return Err(Failure::failed(format!("{}: expected at most 16 MB, got {size} bytes", path.display())));
     }
-    fs::read_to_string(path).map_err(|e| Failure::io("read", path, &e))
+    fs::read_to_string(path).map_err(|e| Failure::io("read", path, e))
 }
 
 /// Writes text to a file, or with `-` to standard output.

@@ -12,7 +12,7 @@ use anthronet::{Body, Error};
 use clap::Args;
 
 use crate::choice;
-use crate::failure::{Failure, Result};
+use crate::failure::{Failure, InvalidValue, Result};
 use crate::files::{check_ending, endings, write_scene, write_text};
 use crate::motion::{MotionArguments, add_clips};
 use crate::request::{RequestArguments, read_request};
@@ -75,17 +75,18 @@ pub(crate) struct Arguments {
     report: Option<PathBuf>,
 }
 
-fn parse_share(text: &str) -> std::result::Result<f64, String> {
+fn parse_share(text: &str) -> std::result::Result<f64, InvalidValue> {
     match text.parse::<f64>() {
         Ok(t) if (0.0..=1.0).contains(&t) => Ok(t),
-        _ => Err(format!("expected a number from 0 to 1, got `{text}`")),
+        _ => Err(InvalidValue::form("a number from 0 to 1", text)),
     }
 }
 
-fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, String> {
+fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, InvalidValue> {
     text.parse().map_err(|error| match error {
-        Error::Request { message, .. } => message,
-        other => other.to_string(),
+        // Without the field, as clap names the option.
+        Error::Request { message, .. } => InvalidValue::Refused(message),
+        other => InvalidValue::Refused(other.to_string()),
     })
 }
 
@@ -134,13 +135,13 @@ impl Arguments {
     /// The body of a request, or of an interpolation between two.
     fn body(&self, model: &Model, request: &Request, second: Option<&Request>) -> Result<Body> {
         let (Some(second), Some(file), Some(t)) = (second, &self.interpolate, self.at) else {
-            return model.generate(request).map_err(|error| self.request.failure(&error));
+            return model.generate(request).map_err(|error| self.request.failure(error));
         };
         model.interpolate(request, second, t).map_err(|error| {
             // Which of the two requests is wrong: the first if it fails alone.
             match model.solve(request) {
-                Ok(_) => Failure::in_file(file, &error),
-                Err(own) => self.request.failure(&own),
+                Ok(_) => Failure::in_file(file, error),
+                Err(own) => self.request.failure(own),
             }
         })
     }

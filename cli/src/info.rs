@@ -6,7 +6,7 @@ use anthronet::model::Model;
 use clap::Args;
 use serde_json::Value;
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::terminal::print;
 
 /// List the measures with their ranges, the joints, and the model's version and scores.
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let info = Model::from_environment()?.info();
     if arguments.json {
-        let json = serde_json::to_string(&info).map_err(|e| Failure::failed(e.to_string()))?;
+        let json = serde_json::to_string(&info)?;
         return print(&(json + "\n"));
     }
     print(&text(&info))

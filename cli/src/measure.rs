@@ -9,7 +9,7 @@ use anthronet::model::Model;
 use clap::Args;
 use serde::Serialize;
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::files::{check_ending, endings};
 use crate::terminal::print;
 
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("", &arguments.file, &endings(Purpose::ReadMeshes))?;
     let measured = Measured::of_file(&Model::from_environment()?, &arguments.file)?;
     if arguments.json {
-        let json = serde_json::to_string_pretty(&measured).map_err(|e| Failure::failed(e.to_string()))?;
+        let json = serde_json::to_string_pretty(&measured)?;
         return print(&(json + "\n"));
     }
     print(&table(&measured))

@@ -15,7 +15,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::choice;
-use crate::failure::{Failure, Result};
+use crate::failure::{Failure, InvalidValue, Result};
 use crate::files::{self, ending, read_text};
 
 /// Options of motion.
@@ -129,10 +129,10 @@ impl MotionArguments {
     }
 }
 
-fn parse_rate(text: &str) -> std::result::Result<f64, String> {
+fn parse_rate(text: &str) -> std::result::Result<f64, InvalidValue> {
     match text.parse::<f64>() {
         Ok(rate) if (1.0..=240.0).contains(&rate) => Ok(rate),
-        _ => Err(format!("expected 1 to 240 frames a second, got `{text}`")),
+        _ => Err(InvalidValue::form("1 to 240 frames a second", text)),
     }
 }
 
@@ -156,8 +156,7 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
         reports.push(report);
     }
     let Some(path) = &arguments.motion_report else { return Ok(()) };
-    let text = serde_json::to_string_pretty(&json!({ "motions": reports }))
-        .map_err(|e| Failure::failed(format!("--motion-report: {e}")))?;
+    let text = serde_json::to_string_pretty(&json!({ "motions": reports }))?;
     files::write_text(path, &(text + "\n"))
 }
 
@@ -193,9 +192,8 @@ fn load(
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }
-    let in_file = |error| Failure::failed(format!("{source}: {error}"));
-    let (clips, report) =
-        retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?).map_err(in_file)?;
+    let (clips, report) = retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?)
+        .map_err(|error| Failure::in_file(path, error))?;
     if !report.joints.unmatched.is_empty() {
         let joints = report.joints.unmatched.join(", ");
         eprintln!("note: {source}: unmatched joints: {joints}");

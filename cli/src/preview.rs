@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let from = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };
             let request = from.to_request()?;
             let model = Model::from_environment()?;
-            let body = model.generate(&request).map_err(|error| from.failure(&error))?;
+            let body = model.generate(&request).map_err(|error| from.failure(error))?;
             figure::from_scene(&Scene::from_body(&body, &SceneOptions::default())?)?
         }
         _ => {

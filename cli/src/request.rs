@@ -78,15 +78,15 @@ impl RequestArguments {
 
     /// The failure of this request: a wrong field that was typed is bad usage; a wrong field of the file, or infeasible
     /// measures, are failures that name the file.
-    pub(crate) fn failure(&self, error: &Error) -> Failure {
-        let typed = match error {
+    pub(crate) fn failure(&self, error: Error) -> Failure {
+        let typed = match &error {
             Error::Request { field, .. } => self.request.is_none() || self.typed(field),
             _ => false,
         };
-        match (error, &self.request) {
+        match (&error, &self.request) {
             _ if typed => Failure::usage(error.to_string()),
             (Error::Request { .. } | Error::Infeasible(_), Some(file)) => Failure::in_file(file, error),
-            _ => Failure::failed(error.to_string()),
+            _ => error.into(),
         }
     }
 
@@ -116,7 +116,7 @@ impl RequestArguments {
 
 /// The request in a JSON file.
 pub(crate) fn read_request(path: &Path) -> Result<Request> {
-    Request::from_json(&read_text(path)?).map_err(|error| Failure::in_file(path, &error))
+    Request::from_json(&read_text(path)?).map_err(|error| Failure::in_file(path, error))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Standard output, and a progress bar on standard error where that is a terminal.
 
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -23,7 +24,7 @@ pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::failed(format!("standard output: cannot write: {error}")))
+            Err(Failure::io("write", Path::new("standard output"), error))
         }
         _ => Ok(()),
     }

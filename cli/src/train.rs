@@ -36,11 +36,11 @@ pub(crate) struct GeneratorArguments {
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Number of epochs; by default as configured.
+    /// Number of epochs; by default that of the configuration.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) epochs: Option<u32>,
 
-    /// Folder for the model and its checkpoints; by default as configured.
+    /// Folder for the model and its checkpoints; by default the model of the source tree is replaced.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
@@ -48,11 +48,12 @@ pub(crate) struct GeneratorArguments {
     #[arg(long)]
     pub(crate) plain: bool,
 
-    /// Number of Fourier features per measure, 0 for none; by default as configured.
+    /// Number of Fourier features per measure, 0 for none; by default that of the configuration.
     #[arg(long, value_name = "F")]
     pub(crate) fourier: Option<usize>,
 
-    /// Standard deviation σ of their frequencies, cycles per standard deviation of the measure; by default as configured.
+    /// Standard deviation σ of their frequencies, cycles per standard deviation of the measure; by default that of the
+    /// configuration.
     #[arg(long, value_name = "S")]
     pub(crate) sigma: Option<f64>,
 }
@@ -85,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let table = commands::fit_biases(Path::new("trainer/src/sampling_bias.json"))?;
             return crate::terminal::print(&table);
         }
-        Network::Measures => commands::lay_measures(Path::new("model/measures.json")),
+        Network::Measures => commands::define_measures(Path::new("model/measures.json")),
         Network::Scores => commands::rescore(),
     }?;
     Ok(())

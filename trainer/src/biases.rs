@@ -1,8 +1,8 @@
 //! Fits the biases of the local sliders (`sampling_bias.json`), so that the mean of every measure is the paper's.
 //!
-//! The mean of a measure over many bodies is nearly linear in the sliders' middles, so a few Gauss-Newton steps with one
-//! Jacobian do it. There are more sliders than measures: of all biases that fit, those nearest to the present ones are
-//! taken, which keeps proportions that were looked at and found natural.
+//! The mean of a measure over many bodies is nearly linear in the sliders' centres, so a few Gauss-Newton steps with one
+//! Jacobian suffice. There are more sliders than measures: of all biases that fit, the ones nearest to the present ones are
+//! chosen, which keeps proportions that were judged natural by eye.
 
 use std::collections::BTreeMap;
 
@@ -17,21 +17,21 @@ use crate::evaluation::{NOT_MATCHED, Statistics, paper_row};
 use crate::sampling::committed_biases;
 use crate::{Error, Result};
 
-/// Mean of [`NOT_MATCHED`] that is fitted instead of the paper's, metres.
+/// Target mean of [`NOT_MATCHED`] instead of the paper's, metres.
 const NATURAL_HEAD_HEIGHT: f64 = 0.231;
-/// Bodies that a slider's effect is measured on.
+/// Number of bodies that a slider's effect is measured on.
 const JACOBIAN_BODIES: u64 = 400;
-/// Bodies whose means are fitted; their standard errors are below 0.03 of the paper's deviations.
+/// Number of bodies whose means are fitted; the standard errors are below 0.03 of the paper's standard deviations.
 const FITTED_BODIES: u64 = 16_000;
 const STEPS: usize = 3;
-/// How far a slider is moved to see its effect.
+/// Step of a slider for the finite difference.
 const NUDGE: f64 = 0.1;
 /// Weight of a squared change of a slider against a squared z.
 const RELUCTANCE: f64 = 0.02;
 
-/// Fitted biases, and what they give.
+/// Fitted biases, and the statistics with them.
 pub struct Fitted {
-    /// Middle of each slider by MakeHuman's name.
+    /// Centre of each slider, by MakeHuman's name.
     pub biases: BTreeMap<String, f64>,
     /// Statistics of the bodies that they were fitted on.
     pub statistics: Statistics,
@@ -46,7 +46,7 @@ impl Fitted {
     }
 }
 
-/// Fits all committed biases, beginning at their values.
+/// Fits all biases, starting from the committed ones.
 ///
 /// # Errors
 /// When a slider is unknown or the equations cannot be solved.
@@ -100,7 +100,7 @@ fn better(jacobian: &Mat<f64>, misses: &Mat<f64>, so_far: &Mat<f64>) -> Result<M
     Ok(jacobian.transpose() * factor.solve(jacobian * so_far - misses))
 }
 
-/// How far each mean is from where it is wanted, in the paper's deviations.
+/// Difference of each mean from its target, in the paper's standard deviations.
 fn misses(statistics: &Statistics) -> Mat<f64> {
     Mat::from_fn(MEASURE_COUNT, 1, |i, _| {
         let row = &statistics.measures[i];
@@ -109,8 +109,8 @@ fn misses(statistics: &Statistics) -> Mat<f64> {
     })
 }
 
-/// Statistics of the first bodies of the corpus; of the plausible ones when only people count. A slider's effect is
-/// measured on everybody, so that nobody comes or goes with it.
+/// Statistics of the first bodies of the corpus, optionally of the plausible ones only. A slider's effect is measured on
+/// all bodies, so that the set does not change with the slider.
 fn statistics(corpus: &Corpus, gauge: &Gauge<'_>, count: u64, people: bool) -> Statistics {
     let drawn: Vec<_> =
         (0..count).into_par_iter().map(|n| (n, gauge.read(&corpus.specimen(n).points))).collect();

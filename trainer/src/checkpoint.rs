@@ -1,7 +1,7 @@
-//! Checkpoints: everything that a resumed training needs to go on as if it had never stopped.
+//! Checkpoints: everything that a resumed training needs to continue as if it had never been interrupted.
 //!
 //! A safetensors file with the network's variables, running statistics and Adam's moments, and the state of the
-//! run as JSON in its metadata. It is written beside the old one and renamed, so that there is always a whole one.
+//! run as JSON in its metadata. It is written beside the old one and renamed, so that a complete one always exists.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
@@ -22,7 +22,7 @@ use crate::{Error, Result};
 /// Format of the file.
 const VERSION: u32 = 1;
 
-/// What must be the same for a run to be resumed.
+/// What must be equal for a run to be resumed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Identity {
     version: u32,
@@ -148,7 +148,7 @@ impl Checkpoint {
         Ok(Self { epoch: state.epoch, history: state.history, steps: state.steps, tensors })
     }
 
-    /// Puts the network into the saved state and returns its optimiser.
+    /// Restores the network to the saved state and returns its optimiser.
     pub(crate) fn restore(mut self, network: &mut Network) -> Result<Adam> {
         let mut take = |name: String, count: usize| match self.tensors.remove(&name) {
             Some(values) if values.len() == count => Ok(values),

@@ -18,34 +18,34 @@ use crate::pack::pack;
 use crate::progress::Bar;
 use crate::{Error, Result};
 
-/// Where the model is kept in the source tree.
+/// The model in the source tree.
 const MODEL: &str = "model/anthronet.safetensors";
-/// Bodies that scores are told on unless said otherwise.
+/// Default number of bodies to score on.
 const BODIES: usize = 1_000;
-/// Weight γ of the Laplacian loss: enough to act, too little to shrink anybody.
+/// Weight γ of the Laplacian loss: enough to smooth, too little to shrink bodies.
 const GAMMA: f64 = 1e-4;
 const TRAINING_SEED: u64 = 1;
 
-/// What of the training of the generator is asked for differently.
+/// Options of the training of the generator; `None` and `false` keep the defaults.
 #[derive(Clone, Debug, Default)]
 pub struct GeneratorOptions {
-    /// Goes on from the last checkpoint.
+    /// Resume from the last checkpoint.
     pub resume: bool,
-    /// Passes over the bodies.
+    /// Number of epochs.
     pub epochs: Option<usize>,
-    /// A folder for model and checkpoint; without it the model of the source tree is replaced and the checkpoint is
-    /// kept in `target`.
+    /// Folder for model and checkpoint; without it the model of the source tree is replaced and the checkpoint is in
+    /// `target`.
     pub out: Option<PathBuf>,
     /// The paper's network without linear paths, for comparison.
     pub plain: bool,
-    /// Fourier components f of a measure.
+    /// Number f of Fourier components per measure.
     pub fourier: Option<usize>,
-    /// Deviation σ of their frequencies.
+    /// Standard deviation σ of their frequencies, cycles per standard deviation of the measure.
     pub sigma: Option<f64>,
 }
 
 impl GeneratorOptions {
-    /// The network that these options ask for.
+    /// The network's configuration.
     fn config(&self) -> GeneratorConfig {
         let mut config = if self.plain { GeneratorConfig::paper() } else { GeneratorConfig::default() };
         config.coefficients = COMPONENTS;
@@ -55,15 +55,15 @@ impl GeneratorOptions {
         config
     }
 
-    /// How they ask for it to be trained.
+    /// The options of the training.
     fn training(&self) -> TrainingOptions {
         let defaults = TrainingOptions::default();
         TrainingOptions {
             seed: TRAINING_SEED,
             epochs: self.epochs.unwrap_or(defaults.epochs),
             resume: self.resume,
-            // Without the skip the network starts far from people, the running statistics lag behind it, and a loss
-            // through them grows without bound. The paper never freezes them.
+            // Without the skip the network starts far from its targets, the running statistics lag behind, and the loss
+            // grows without bound once they are used. The paper never freezes them.
             freeze_norm: if self.plain { 1.0 } else { defaults.freeze_norm },
             ..defaults
         }
@@ -73,7 +73,7 @@ impl GeneratorOptions {
 /// Trains the generator and writes the model file: data set, basis, network, scores.
 ///
 /// # Errors
-/// When the source of bodies cannot be had, a file cannot be written, or training diverges.
+/// When the source of bodies is not available, a file cannot be written, or training diverges.
 pub fn train_generator(options: &GeneratorOptions) -> Result<()> {
     let config = options.config();
     config.validate()?;
@@ -105,7 +105,7 @@ pub fn train_generator(options: &GeneratorOptions) -> Result<()> {
 /// Scores the model of the source tree again and writes the scores into its file; its arrays stay as they are.
 ///
 /// # Errors
-/// When the source of bodies cannot be had, or the file is no model or cannot be written.
+/// When the source of bodies is not available, or the file is no model or cannot be written.
 pub fn rescore() -> Result<()> {
     let path = Path::new(MODEL);
     let bytes = std::fs::read(path).map_err(Error::io(path))?;
@@ -115,36 +115,36 @@ pub fn rescore() -> Result<()> {
 
 /// Scores a model on held-out bodies and writes it with its scores.
 fn write_scored(corpus: &Corpus, parts: &mut ModelParts, path: &Path) -> Result<()> {
-    // Of what the file will hold: its numbers are rounded.
+    // Score the model as the file stores it, with rounded numbers.
     let model = Model::from_bytes(&parts.to_bytes()?)?;
     let scores = score(&model, corpus, Split::HeldOut, BODIES)?;
     eprintln!("{scores}");
-    parts.provenance.scores = scores.told();
+    parts.provenance.scores = scores.summary();
     let bytes = parts.to_bytes()?;
     write_atomic(path, &bytes)?;
     eprintln!("{}: {:.1} MB", path.display(), bytes.len() as f64 / 1e6);
     Ok(())
 }
 
-/// A table that [`evaluate`] makes.
+/// A table of [`evaluate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// Errors of the generator on the first `bodies` of `split`. Settings are chosen on the validation split, so that
-    /// the held-out one stays unseen.
+    /// Errors of the generator on the first `bodies` of `split`. Hyperparameters are chosen on the validation split, so
+    /// that the held-out one stays unseen.
     Generator {
-        /// Which bodies.
+        /// The split.
         split: Split,
-        /// How many; `None` for 1000.
+        /// Number of bodies; `None` for 1000.
         bodies: Option<usize>,
     },
-    /// The measures of all bodies beside the paper's.
+    /// Statistics of the measures of all bodies, beside the paper's.
     Statistics,
 }
 
-/// A table as text or JSON.
+/// Computes a table, as text or JSON.
 ///
 /// # Errors
-/// When the source of bodies or the model cannot be had.
+/// When the source of bodies or the model is not available.
 pub fn evaluate(table: Table, as_json: bool) -> Result<String> {
     let cache = Path::new(CACHE);
     let (json, text) = match table {
@@ -166,11 +166,11 @@ pub fn evaluate(table: Table, as_json: bool) -> Result<String> {
     serde_json::to_string_pretty(&json).map_err(|e| Error::Invalid(e.to_string()))
 }
 
-/// Makes `model/measures.json` anew from the landmarks.
+/// Rewrites `model/measures.json` from the landmarks.
 ///
 /// # Errors
-/// When the source of bodies cannot be had or the landmarks do not fit it.
-pub fn lay_measures(path: &Path) -> Result<()> {
+/// When the source of bodies is not available or the landmarks do not fit it.
+pub fn define_measures(path: &Path) -> Result<()> {
     let corpus = Corpus::open(Path::new(CACHE))?;
     let mirror = &corpus.assets.mesh.mirror;
     let definitions = crate::landmarks::definitions(&corpus, &|v| mirror.get(&v).copied())?;
@@ -182,10 +182,10 @@ pub fn lay_measures(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Fits the biases of the sliders anew and writes them; returns the statistics that they give.
+/// Fits the biases of the sliders and writes them; returns the statistics of the bodies sampled with them.
 ///
 /// # Errors
-/// When the source of bodies cannot be had, or the file cannot be written.
+/// When the source of bodies is not available, or the file cannot be written.
 pub fn fit_biases(path: &Path) -> Result<String> {
     let mut corpus = Corpus::open(Path::new(CACHE))?;
     let bar = Bar::new("mean measures", 1);

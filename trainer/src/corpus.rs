@@ -1,4 +1,4 @@
-//! Bodies by number: draw, shape, T-pose, refine and measure, the same for the same number everywhere.
+//! Bodies by number: drawn, shaped, T-posed, refined and measured; the same number gives the same body on every machine.
 
 use anthronet::measure::{Definitions, Measurements, Sex};
 use anthronet::mesh::{Subdivision, Topology};
@@ -10,11 +10,11 @@ use crate::evaluation::paper_row;
 use crate::sampling::Sampler;
 use crate::tpose::TPose;
 
-/// Where downloads and everything made from them are kept.
+/// Folder of downloads and of everything made from them.
 pub const CACHE: &str = "target/anthronet";
 /// The seed of the data set; part of its version.
 pub const SEED: u64 = 20_230_907;
-/// Raised whenever the same number would give another body or other measures.
+/// Version of the data set: increased whenever a number would give another body or other measures.
 pub const DATA_VERSION: u32 = 4;
 
 /// The endless list of bodies.
@@ -35,16 +35,16 @@ pub struct Specimen {
     pub points: Vec<Vec3>,
 }
 
-/// What a body is for. Basis, prior and networks never see a held-out body. Where the measures lie is older than the
-/// split: [`crate::landmarks`] cuts its loops on the mean of the first 512 bodies, whatever they are for, and collects
-/// the chest's candidate edges on the first 4,096.
+/// The split that a body belongs to. Basis, prior and networks never see a held-out body. The definitions of the measures
+/// do not depend on the split: [`crate::landmarks`] cuts its loops on the mean of the first 512 bodies of all splits, and
+/// collects the chest's candidate edges on the first 4,096.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
     /// Basis, prior and networks are fitted to these.
     Train,
-    /// Settings are chosen on these.
+    /// Hyperparameters are chosen on these.
     Validation,
-    /// Scores are told on these.
+    /// Scores are reported on these.
     HeldOut,
 }
 
@@ -72,7 +72,7 @@ impl Corpus {
     /// Opens the source of bodies, downloading it when needed.
     ///
     /// # Errors
-    /// When the source cannot be had or is not what it should be.
+    /// When the source is not available or not what it should be.
     pub fn open(cache: &std::path::Path) -> Result<Self> {
         let mut wheel = Wheel::open_or_fetch(cache)?;
         let mut assets = Assets::load(&mut wheel)?;
@@ -104,7 +104,7 @@ impl Corpus {
 /// Measures bodies without refining the vertices that no measure needs.
 pub struct Gauge<'a> {
     definitions: &'a Definitions,
-    // Surface vertex -> place in `stencils`.
+    // Surface vertex to index in `stencils`.
     place: Vec<u32>,
     stencils: Vec<Vec<(u32, f32)>>,
 }
@@ -136,10 +136,10 @@ impl<'a> Gauge<'a> {
     }
 }
 
-/// Whether a body is a person at all: sliders that pile up make a few that are nobody.
+/// Whether a body is plausible as a person: extreme combinations of sliders give a few that are not.
 ///
 /// The limits are the paper's extremes ("statistics-anthro"), widened by a tenth of each measure's range, and
-/// never narrower than what a factor of 0.82–1.22 leaves; arms below 0.135 m of girth, for one, are nobody's.
+/// never narrower than a factor of 0.82–1.22; upper arms below 0.135 m of circumference, for example, are refused.
 pub fn plausible(measures: &Measurements) -> bool {
     measures.iter().enumerate().all(|(i, &m)| {
         let [_, _, low, high] = paper_row(i);
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_split_is_by_number_and_nobody_is_in_two() {
+    fn the_split_is_by_number_and_no_body_is_in_two() {
         let of = |split| (0..240_000).filter(|&n| Split::of(n) == split).count();
         assert_eq!(of(Split::HeldOut), 12_000);
         assert_eq!(of(Split::Validation), 12_000);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_has_arms_like_sticks() {
+    fn bodies_with_stick_thin_arms_are_implausible() {
         let mean: Measurements = std::array::from_fn(|i| paper_row(i)[0]);
         assert!(plausible(&mean));
         let arm = MeasureId::from_name("arm_circumference_right").unwrap().index();

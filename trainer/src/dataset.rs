@@ -1,4 +1,4 @@
-//! The data set: two hundred thousand bodies in coefficients, with their measures and joints.
+//! The data set: two hundred thousand bodies as coefficients, with their measures.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::basis::{Basis, COMPONENTS, flatten};
 use crate::corpus::{Corpus, DATA_VERSION, Gauge, SEED, Split, plausible};
 use crate::{Error, Result};
 
-/// Numbers drawn; implausible bodies among them are left out.
+/// Number of drawn bodies; implausible ones among them are left out.
 pub const DRAWN: u64 = 240_000;
 const BATCH: u64 = 480;
 
@@ -20,9 +20,9 @@ const BATCH: u64 = 480;
 pub struct Bodies {
     /// Numbers in the corpus.
     pub numbers: Vec<u64>,
-    /// Coefficients, `COMPONENTS` a body, metres.
+    /// Coefficients, `COMPONENTS` per body, metres.
     pub coefficients: Vec<f32>,
-    /// Measures, `MEASURE_COUNT` a body, metres.
+    /// Measures, `MEASURE_COUNT` per body, metres.
     pub measures: Vec<f32>,
     /// 0 female, 1 male.
     pub sex: Vec<u8>,
@@ -32,13 +32,13 @@ pub struct Bodies {
 pub struct Dataset {
     /// The shape space.
     pub basis: Basis,
-    /// Bodies to fit to.
+    /// Bodies of the training split.
     pub train: Bodies,
-    /// Bodies to choose settings on.
+    /// Bodies of the validation split.
     pub validation: Bodies,
-    /// Bodies to tell scores on.
+    /// Bodies of the held-out split.
     pub held_out: Bodies,
-    /// How many drawn bodies were nobody.
+    /// Number of drawn bodies that were implausible.
     pub rejected: usize,
 }
 
@@ -59,7 +59,7 @@ pub fn first_of(corpus: &Corpus, definitions: &Definitions, split: Split, count:
 }
 
 impl Dataset {
-    /// Reads the data set from the cache, or makes it there.
+    /// Reads the data set from the cache, or makes and caches it.
     ///
     /// # Errors
     /// When the corpus or the cache fails.

@@ -21,10 +21,10 @@ pub enum Error {
     Io {
         /// The file.
         path: String,
-        /// The system's own word.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// Numbers that should fit together do not.
+    /// Inputs or settings contradict each other, or a computation failed.
     #[error("{0}")]
     Invalid(String),
 }

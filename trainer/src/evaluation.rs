@@ -1,4 +1,4 @@
-//! Scores on bodies of a split, and the statistics of the sampled ones beside the paper's.
+//! Scores of the generator on bodies of a split, and statistics of the sampled bodies beside the paper's.
 
 use std::collections::BTreeMap;
 
@@ -16,34 +16,34 @@ use crate::corpus::{Corpus, Gauge, Split, cage_of};
 use crate::dataset::Bodies;
 use crate::{Error, Result};
 
-/// Scores of the generator, millimetres unless said.
+/// Scores of the generator, millimetres unless stated.
 #[derive(Clone, Debug, Serialize)]
 pub struct GeneratorScores {
-    /// Where the bodies come from: `held-out` unless settings are being chosen.
+    /// The split: `held-out` unless hyperparameters are being chosen.
     pub split: &'static str,
-    /// Bodies scored.
+    /// Number of bodies.
     pub bodies: usize,
     /// Mean vertex distance on level 0, z = encoder mean.
     pub p2p_mm: f64,
-    /// The same with z = 0: what the measures leave open.
+    /// The same with z = 0: the variation that the measures do not determine.
     pub p2p_z0_mm: f64,
-    /// Mean vertex distance of the body's own coefficients: what the shape space cannot say.
+    /// Mean vertex distance of the body's own coefficients: the error of the shape space.
     pub p2p_shape_space_mm: f64,
     /// Mean absolute error of each measure before the solve, z = encoder mean; `mean` is over all.
     pub measures_mm: BTreeMap<String, f64>,
-    /// Requests, all measures given or a random part of them, met and measured again from the written .glb.
+    /// Number of requests, with all measures given or a random part of them; measured again from the written .glb.
     pub requests: usize,
-    /// Requests among them that were refused.
+    /// Number of those that were refused.
     pub refused: usize,
-    /// Worst given measure of all those.
+    /// Largest error of a given measure over all requests.
     pub after_solve_max_mm: f64,
-    /// Mean of each request's worst.
+    /// Mean over requests of the largest error of a given measure.
     pub after_solve_mean_of_worst_mm: f64,
-    /// Solve steps, mean.
+    /// Mean number of solve steps.
     pub solve_steps: f64,
-    /// Mean absolute error of measures that were not given, by what was given besides the sex.
+    /// Mean absolute error of filled measures, by the measures given besides the sex.
     pub fill_mm: BTreeMap<String, f64>,
-    /// Share of measures that were not given inside their 90 % interval, by what was given.
+    /// Share of filled measures inside their 90 % interval, by the given measures.
     pub fill_coverage90: BTreeMap<String, f64>,
 }
 
@@ -52,12 +52,12 @@ struct OfBody {
     p2p_z0: f64,
     p2p_space: f64,
     errors: Measurements,
-    // Worst given measure, steps; nothing when refused.
+    // Largest error of a given measure and number of steps; `None` when refused.
     solved: Option<(f64, usize)>,
     fill: Vec<(f64, f64)>,
 }
 
-/// What is given in the partial requests that the prior is scored on.
+/// Given measures of the partial requests that the prior is scored on.
 const PARTIAL: [(&str, &[&str]); 4] = [
     ("sex", &[]),
     ("height", &["height"]),
@@ -71,7 +71,7 @@ const PARTIAL: [(&str, &[&str]); 4] = [
 /// Scores a model on bodies of a split, given by their numbers.
 ///
 /// # Errors
-/// When a body cannot be generated for another reason than being refused.
+/// When a body cannot be generated for a reason other than an infeasible request.
 pub fn generator(
     model: &Model,
     corpus: &Corpus,
@@ -139,7 +139,7 @@ fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Resu
     let obtained = model.measures_of(&decoded);
 
     let mut request = Request { sex: Some(specimen.sex), ..Request::default() };
-    // About every second request gives only a part of the measures.
+    // About half of the requests give only a part of the measures.
     let mut random = Random::new(number, 77);
     let keep = if random.uniform() < 0.5 { 1.0 } else { random.uniform() };
     for (slot, value) in request.measures.iter_mut().zip(measures) {
@@ -158,7 +158,7 @@ fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Resu
     })
 }
 
-/// Generates, writes a .glb, reads it again and measures: the worst given measure in mm.
+/// Generates, writes a .glb, reads it again and measures: the largest error of a given measure, mm.
 fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
     let body = match model.generate(request) {
         Ok(body) => body,
@@ -174,7 +174,7 @@ fn solve(model: &Model, request: &Request) -> Result<Option<(f64, usize)>> {
     Ok(Some((worst, body.report().iterations)))
 }
 
-/// Mean absolute error (mm) of the filled measures, and how many lie in their interval.
+/// Mean absolute error (mm) of the filled measures, and the number inside their interval.
 fn fill(
     model: &Model,
     sex: &anthronet::measure::Sex,
@@ -210,12 +210,12 @@ const PAPERS: [(&str, f64); 6] = [
 ];
 
 impl GeneratorScores {
-    /// What a model file carries of them.
-    pub fn told(&self) -> BTreeMap<String, f64> {
+    /// The scores that a model file records, by name with the unit.
+    pub fn summary(&self) -> BTreeMap<String, f64> {
         let measure = |name: &str| self.measures_mm.get(name).copied().unwrap_or(f64::NAN);
-        let mut told: BTreeMap<String, f64> =
+        let mut summary: BTreeMap<String, f64> =
             PAPERS.iter().map(|(name, _)| (format!("{name}_mm"), measure(name))).collect();
-        told.extend(
+        summary.extend(
             [
                 ("bodies", self.bodies as f64),
                 ("refused", self.refused as f64),
@@ -227,7 +227,7 @@ impl GeneratorScores {
             ]
             .map(|(name, value)| (name.to_owned(), value)),
         );
-        told
+        summary
     }
 }
 
@@ -260,16 +260,16 @@ impl std::fmt::Display for GeneratorScores {
     }
 }
 
-/// The measures of the sampled bodies beside the paper's.
+/// Statistics of the measures of the sampled bodies, beside the paper's.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
-    /// Bodies counted.
+    /// Number of bodies.
     pub bodies: usize,
-    /// Drawn bodies that were left out.
+    /// Number of drawn bodies that were left out as implausible.
     pub rejected: usize,
-    /// Root of the mean square of the rows' z.
+    /// Root mean square of the rows' z.
     pub rms_z: f64,
-    /// The same without [`NOT_MATCHED`], whose mean is not meant to be the paper's.
+    /// The same without [`NOT_MATCHED`], whose mean is deliberately not the paper's.
     pub rms_z_matched: f64,
     /// One row per measure.
     pub measures: Vec<StatisticsRow>,
@@ -280,15 +280,15 @@ pub struct Statistics {
 pub struct StatisticsRow {
     /// Measure, with its side.
     pub name: String,
-    /// Mean, deviation, least, most; metres.
+    /// Mean, standard deviation, minimum, maximum; metres.
     pub ours: [f64; 4],
     /// The same of the paper's 100k bodies ("statistics-anthro").
     pub paper: [f64; 4],
-    /// Our mean minus the paper's, in the paper's deviations.
+    /// Our mean minus the paper's, in the paper's standard deviations.
     pub z: f64,
 }
 
-/// Mean, deviation, least, most of the paper's table, in the order of the measures (sided rows once).
+/// Mean, standard deviation, minimum, maximum of the paper's table, in the order of the measures (sided rows once).
 const PAPER: [[f64; 4]; 24] = [
     [0.828, 0.174, 0.55, 1.250],
     [1.061, 0.159, 0.76, 1.522],
@@ -325,7 +325,7 @@ pub fn paper_row(index: usize) -> [f64; 4] {
 }
 
 impl Statistics {
-    /// Of all measures over some splits of the data set.
+    /// The statistics of all measures over some splits of the data set.
     pub fn of(splits: &[&Bodies], rejected: usize) -> Self {
         let measures: Vec<StatisticsRow> = MeasureId::all()
             .map(|id| {
@@ -408,8 +408,8 @@ mod tests {
         }
         assert_eq!(json["measures_mm"]["mean"], 0.2);
         assert_eq!(json["split"], "held-out");
-        let told = scores.told();
-        assert_eq!((told["chest_circumference_mm"], told["measures_mean_mm"]), (1.25, 0.2));
+        let summary = scores.summary();
+        assert_eq!((summary["chest_circumference_mm"], summary["measures_mean_mm"]), (1.25, 0.2));
         let text = scores.to_string();
         assert!(text.contains("chest_circumference") && text.contains("1.250 mm  (46.9)"), "{text}");
     }
@@ -424,7 +424,7 @@ mod tests {
                 (mean + deviation + sign * 0.01) as f32
             }));
         }
-        // The row that is not matched is told, and counted in the one number only.
+        // The row that is not matched is listed, and counts in the first of the two numbers only.
         for row in bodies.measures.chunks_exact_mut(MEASURE_COUNT) {
             let id = MeasureId::from_name(NOT_MATCHED).unwrap();
             row[id.index()] += 6.0 * paper_row(id.index())[1] as f32;

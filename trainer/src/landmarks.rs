@@ -17,7 +17,7 @@ use crate::assets::{CROWN, HEELS};
 use crate::corpus::{Corpus, cage_of};
 use crate::{Error, Result};
 
-/// How a measure is laid on the body; sided ones are given for the left.
+/// The definition of a measure on the body; sided ones are given for the left.
 enum Landmarks {
     /// Distance between two vertices.
     Straight(u32, u32),
@@ -32,7 +32,7 @@ use Landmarks::{Loop, Straight, Torso, Vertical};
 
 const NIPPLES: [u32; 2] = [1_840, 8_512];
 
-/// Name without side, and where it lies (left side).
+/// Name without side, and definition (left side).
 #[rustfmt::skip]
 const PLAN: &[(&str, Landmarks)] = &[
     ("waist_circumference", Loop(WAIST, [0.0, 1.0, 0.0])),
@@ -100,12 +100,12 @@ const CALF: &[u32] = &[
     11340, 11341, 11338, 11339, 11335,
 ];
 
-/// Bodies that the mean body is the mean of.
+/// Number of bodies that the mean body is taken over.
 const MEAN_OF: u64 = 512;
-/// Bodies searched for edges that the nipple plane meets.
+/// Number of bodies searched for edges that the nipple plane meets.
 const CUT_ON: u64 = 4_096;
 
-/// Lays all measures on the mean body.
+/// Defines all measures on the mean body.
 ///
 /// # Errors
 /// When a loop cannot be found: the landmarks do not fit the mesh.
@@ -234,7 +234,7 @@ impl Surface {
             order
                 .into_iter()
                 .map(|edge| {
-                    // Rounded, so that the file stays readable; a micrometre of place is far below any use.
+                    // Rounded to keep the file readable; a micrometre is far below any relevant precision.
                     let t = (place(edge).0 * 1e6).round() / 1e6;
                     Point(vec![(edge[0], 1.0 - t), (edge[1], t)])
                 })
@@ -247,7 +247,7 @@ impl Surface {
         let rig = &corpus.assets.rig;
         let of_torso = |name: &str| {
             use RigJoint as R;
-            // Eyes move no skin; that they are counted here makes no difference.
+            // Eyes move no skin, so counting them makes no difference.
             let sided = |joint| matches!(joint, SidedJoint::Clavicle | SidedJoint::Eye);
             match RigJoint::from_name(name) {
                 Some(R::Root | R::Pelvis | R::Spine01 | R::Spine02 | R::Spine03) => true,

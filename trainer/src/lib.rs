@@ -1,10 +1,10 @@
 //! Makes the model of `anthronet`: source bodies (CC0), sampling, data set, basis, networks, evaluation.
 //!
-//! The tour, in the order in which data flows: [`assets`] reads the MakeHuman data, [`sampling`] draws people around the
-//! middles that [`biases`] fits,
-//! [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] lays the measures on their mean,
-//! [`dataset`] measures two hundred thousand of them in the coefficients of [`basis`], [`generator`] trains the
-//! network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it; [`commands`] ties them together.
+//! In the order of the data flow: [`assets`] reads the MakeHuman data, [`sampling`] draws bodies with slider values around
+//! the centres that [`biases`] fits, [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] defines the
+//! measures on their mean, [`dataset`] measures two hundred thousand of them and expresses them in the coefficients of
+//! [`basis`], [`generator`] trains the network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it;
+//! [`commands`] combines them.
 
 pub mod assets;
 pub mod basis;

@@ -49,7 +49,7 @@ struct Laplacian {
 }
 
 impl Losses {
-    /// For outputs that stand for `scale · output` metres, of a mesh with so many vertices.
+    /// For outputs that represent `scale · output` metres, of a mesh with this many vertices.
     pub(crate) fn new(
         config: &GeneratorConfig,
         scale: &[f64],
@@ -79,7 +79,7 @@ impl Losses {
         })
     }
 
-    /// Whether batches must carry their offsets.
+    /// Whether batches need their offsets.
     pub(crate) fn needs_offsets(&self) -> bool {
         self.laplacian.is_some()
     }

@@ -1,4 +1,4 @@
-//! From what training decided to the parts of a model file.
+//! From the results of training to the parts of a model file.
 
 use anthronet::condition::QUANTILE_COUNT;
 use anthronet::measure::{Definitions, MEASURE_COUNT};
@@ -17,10 +17,10 @@ use crate::{Error, Result};
 
 /// Components stored as half floats; the rest are bytes.
 const FINE: usize = 40;
-/// How far beyond the training bodies a request may go, as a share of a measure's range.
+/// Margin of a request beyond the training bodies, as a share of a measure's range.
 const RANGE_SLACK: f64 = 0.25;
 
-/// Packs a model without networks' scores.
+/// Packs a model, without its scores.
 ///
 /// # Errors
 /// When the levels of detail cannot be made.
@@ -84,7 +84,7 @@ pub fn pack(
     })
 }
 
-/// The components after the first [`FINE`] as bytes, and what a byte is worth in each.
+/// The components after the first [`FINE`] as bytes, and the scale of each.
 fn bytes(basis: &Basis, surface: usize) -> (Vec<i8>, Vec<f32>) {
     let mut coarse = Vec::with_capacity((COMPONENTS - FINE) * surface);
     let mut scales = Vec::new();

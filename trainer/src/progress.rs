@@ -11,7 +11,7 @@ use crate::generator::Metrics;
 /// How often a line is written where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
 
-/// Steps towards a number that is known or becomes known.
+/// Progress towards a total that may become known later.
 #[derive(Debug)]
 pub(crate) struct Bar {
     bar: ProgressBar,
@@ -32,7 +32,7 @@ impl Bar {
         self.tell(LINE_EVERY);
     }
 
-    /// What is being done, and how far it is: `done` of `of`, which is 0 while that is not known.
+    /// Sets the activity and the progress, `done` of `of`; `of` is 0 while the total is unknown.
     pub(crate) fn set(&self, what: &str, done: u64, of: u64) {
         self.bar.set_message(what.to_owned());
         self.bar.set_length(of.max(1));
@@ -57,7 +57,7 @@ impl Bar {
     }
 }
 
-/// The progress of a training; silent when asked to be.
+/// The progress of a training, optionally silent.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -76,7 +76,7 @@ impl Progress {
         Self { bar, name, lines: !terminal && !quiet }
     }
 
-    /// Shows the state of the network. Off a terminal the same goes to standard error as a line.
+    /// Shows the network's metrics; without a terminal, as a line on standard error.
     pub(crate) fn message(&self, metrics: &Metrics) {
         let message = state(metrics);
         if self.lines {

@@ -1,4 +1,4 @@
-//! Draws people: MakeHuman slider values that cover the paper's table of statistics ("statistics-anthro").
+//! Draws random people: MakeHuman slider values that cover the paper's table of statistics ("statistics-anthro").
 //!
 //! Sex, age, muscle, weight, proportions and ethnicity are drawn over their whole range; stature is drawn
 //! uniformly and the height slider solved for it; local sliders vary around small biases that bring the means
@@ -19,15 +19,15 @@ pub const STATURE: [f64; 2] = [1.49, 1.991];
 
 const BIASES: &str = include_str!("sampling_bias.json");
 
-/// How a local slider varies.
+/// The distribution of a local slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Spread {
     Uniform(f64),
-    /// Standard deviation; cut off at twice it.
+    /// Standard deviation; truncated at twice it.
     Normal(f64),
 }
 
-/// A drawn person: which blend shapes at which weight.
+/// A drawn person: blend shapes with their weights.
 #[derive(Clone, Debug)]
 pub struct Person {
     /// Sex.
@@ -49,7 +49,7 @@ pub struct Sampler {
 
 /// Difference between left and right of a sided slider, standard deviation.
 const ASYMMETRY: f64 = 0.03;
-/// Our own slider, and how far its sides differ: nothing else lets the toes of two feet differ, so it has to.
+/// Our own slider, and the standard deviation of its sides' difference: no other slider lets the toes of two feet differ.
 const TOE_LENGTH: &str = "toe-length";
 const TOE_ASYMMETRY: f64 = 0.12;
 
@@ -58,7 +58,7 @@ const TOE_ASYMMETRY: f64 = 0.12;
 /// circumference by 9 cm a metre in ANSUR II).
 const HEAD_WITH_STATURE: f64 = 1.0;
 
-/// The committed biases: the middle of each local slider, by MakeHuman's name. [`crate::biases`] fits them.
+/// The committed biases: the centre of each local slider, by MakeHuman's name. [`crate::biases`] fits them.
 ///
 /// # Errors
 /// [`Error::Invalid`] when the file is not what it should be.
@@ -161,7 +161,7 @@ impl Sampler {
         person
     }
 
-    /// The person's points in MakeHuman's pose, with the stature asked for; metres.
+    /// The person's points in MakeHuman's pose, with the drawn stature; metres.
     pub fn shape(&self, assets: &Assets, person: &Person) -> Vec<Vec3> {
         let mut points = assets.base.clone();
         for &(number, weight) in &person.shapes {
@@ -189,7 +189,7 @@ impl Sampler {
     }
 }
 
-/// How far each kind of slider goes; `None` for those that are not sampled: translations of whole parts, which
+/// The distribution of each kind of slider; `None` for those that are not sampled: translations of whole parts, which
 /// only move the body in space, pregnancy, and the genital bulge.
 fn spread(modifier: &Modifier) -> Option<Spread> {
     let name = modifier.name.as_str();
@@ -210,7 +210,7 @@ fn spread(modifier: &Modifier) -> Option<Spread> {
     })
 }
 
-/// What a slider owes to the stature.
+/// The part of a slider's value that depends on stature.
 fn with_stature(name: &str, stature: f64) -> f64 {
     let middle = 0.5 * (STATURE[0] + STATURE[1]);
     if name.starts_with("head-scale-") { -HEAD_WITH_STATURE * (stature - middle) } else { 0.0 }

@@ -55,7 +55,7 @@ impl TPose {
         })
     }
 
-    /// Puts the arms straight and the pelvis at the origin; `points` are those of [`Assets`].
+    /// Straightens the arms and moves the pelvis to the origin; `points` are those of [`Assets`].
     ///
     /// Twist joints are moved to their place along the limb.
     pub fn apply(&self, assets: &Assets, points: &mut [Vec3]) {
@@ -68,7 +68,7 @@ impl TPose {
             let Some(limb) = assets.rig.joints[joint].parent else { continue };
             let (start, end) = (points[heads + limb], points[tails + limb]);
             points[heads + joint] = start.lerp(end, place);
-            // Twist joints point the way their limb does, a fixed share of its length long.
+            // Twist joints point along their limb and are a fixed share of its length long.
             points[tails + joint] = points[heads + joint] + (end - start) * 0.25;
         }
         // Root: below the pelvis, on the ground, between the feet.
@@ -97,7 +97,7 @@ impl Arm {
                 + (new_wrist + hand * (x - wrist)) * h;
             points[p as usize] = moved + x * (1.0 - u - l - h);
         }
-        // Exactly on the line, whatever rounding did.
+        // Exactly on the line in spite of rounding.
         points[self.chain[1]] = new_elbow;
         points[self.chain[2]] = new_wrist;
         points[self.chain[3]] = new_wrist + self.outward * (knuckle - wrist).length();

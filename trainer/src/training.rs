@@ -1,4 +1,4 @@
-//! What every network's training shares: the optimiser, the learning-rate schedule, random order.
+//! Shared by the training of all networks: the optimiser, the learning-rate schedule, random order.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -39,7 +39,7 @@ impl Adam {
         Self { steps, moments: moments.into_iter().map(Mutex::new).collect() }
     }
 
-    /// How many steps were taken.
+    /// Number of steps taken.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -124,7 +124,7 @@ pub struct OneCycle {
     pub peak: f64,
     /// Fraction of all steps until the peak.
     pub warmup: f64,
-    /// All steps.
+    /// Total number of steps.
     pub steps: usize,
 }
 

@@ -4,7 +4,8 @@
 //! and seed give the same bytes on every host, so the hashes change only with the model or the code.
 
 use crate::requests::PEOPLE;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,10 +15,10 @@ use std::process::Command;
 /// Name of the request to hexadecimal hash.
 pub(crate) type Hashes = BTreeMap<String, String>;
 
-pub(crate) fn run() -> Outcome {
+pub(crate) fn run() -> Result<()> {
     let anthronet = tools::command_line()?;
     let scratch = tools::target().join("bless");
-    std::fs::create_dir_all(&scratch).map_err(|e| format!("{}: cannot create: {e}", scratch.display()))?;
+    tools::create_folder(&scratch)?;
     let mut hashes = Hashes::new();
     for person in PEOPLE {
         let file = scratch.join(format!("{}.glb", person.name));
@@ -32,7 +33,7 @@ pub(crate) fn run() -> Outcome {
             None => println!("new      {name}"),
         }
     }
-    let text = serde_json::to_string_pretty(&hashes).map_err(|e| e.to_string())?;
+    let text = serde_json::to_string_pretty(&hashes)?;
     tools::write(&golden_path(), &(text + "\n"))
 }
 
@@ -41,21 +42,21 @@ fn golden_path() -> PathBuf {
 }
 
 /// The committed hashes; `None` before the first `bless`.
-pub(crate) fn golden() -> Outcome<Option<Hashes>> {
+pub(crate) fn golden() -> Result<Option<Hashes>> {
     let path = golden_path();
     if !path.exists() {
         return Ok(None);
     }
     let text = tools::read(&path)?;
-    serde_json::from_str(&text).map(Some).map_err(|e| format!("{}: {e}", path.display()))
+    serde_json::from_str(&text).map(Some).with_context(|| path.display().to_string())
 }
 
 /// SHA-256 of a file in hexadecimal.
-pub(crate) fn hash(path: &Path) -> Outcome<String> {
-    let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot read: {e}", path.display()))?;
+pub(crate) fn hash(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path).with_context(|| format!("{}: cannot read", path.display()))?;
     let mut text = String::new();
     for byte in Sha256::digest(&bytes) {
-        write!(text, "{byte:02x}").map_err(|e| e.to_string())?;
+        write!(text, "{byte:02x}")?;
     }
     Ok(text)
 }

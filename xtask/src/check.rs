@@ -1,20 +1,22 @@
-//! `cargo xtask check`: what a reader may take for granted.
+//! `cargo xtask check`: formatting, layering, bindings, lints and documentation.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 use crate::{bindings, layering};
+use anyhow::{Result, anyhow, bail};
 use std::process::Command;
 
-pub(crate) fn run() -> Outcome {
-    // The fast ones first; every one of them is run, so that one round shows all there is to mend.
+pub(crate) fn run() -> Result<()> {
+    // The fast ones first; all are run, so that one round shows everything there is to fix.
     let mut failures = Vec::new();
-    let mut keep = |result: Outcome| failures.extend(result.err());
+    let mut keep = |result: Result<()>| failures.extend(result.err());
     let cargo_program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     keep(tools::run(
         Command::new(cargo_program).current_dir(tools::root()).args(["fmt", "--all", "--check"]),
     ));
     keep(layers());
+    keep(module_files());
     keep(bindings::check());
-    // One set of features for lints, documentation and tests, so that the heavy dependencies are built once each way.
+    // The same features for lints, documentation and tests, so that heavy dependencies are built once for each.
     keep(tools::run(cargo("clippy").args([
         "--workspace",
         "--all-targets",
@@ -30,11 +32,29 @@ pub(crate) fn run() -> Outcome {
             .args(["--workspace", "--exclude", "anthronet-ffi", "--lib", "--no-deps", "--all-features"])
             .env("RUSTDOCFLAGS", "-D warnings"),
     ));
-    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+    tools::all_succeeded(&failures)
 }
 
-/// The rooms of the library against the table of who may use whom.
-fn layers() -> Outcome {
+/// The crates whose sources are checked.
+const CRATES: [&str; 6] = ["core", "cli", "trainer", "ffi", "cxx", "xtask"];
+
+/// Long tests of `x` are in `x/tests.rs` beside `x/mod.rs`, which no lint checks.
+fn module_files() -> Result<()> {
+    for folder in CRATES {
+        for file in tools::rust_files(&tools::root().join(folder))? {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let with_path = tools::read(&file)?.lines().any(|line| line.trim_start().starts_with("#[path"));
+            if with_path || name.ends_with("_tests.rs") {
+                bail!("{}: expected x/tests.rs beside x/mod.rs, without `#[path]`", file.display());
+            }
+        }
+    }
+    println!("module files: long tests are in tests.rs beside mod.rs");
+    Ok(())
+}
+
+/// The rooms of the library against the table of which may use which.
+fn layers() -> Result<()> {
     let violations = layering::violations(&tools::root().join("core/src"))?;
     for violation in &violations {
         eprintln!("{violation}");
@@ -44,7 +64,7 @@ fn layers() -> Outcome {
             println!("layering of core: no room uses one above it");
             Ok(())
         }
-        n => Err(format!("layering of core: {n} lines use a room that they may not use")),
+        n => Err(anyhow!("layering of core: {n} lines use a room that they may not use")),
     }
 }
 
@@ -63,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn every_dependency_has_its_reason_and_its_licence_written_down() {
+    fn every_dependency_has_its_reason_and_licence_documented() {
         let manifest = read(&root().join("Cargo.toml")).unwrap();
         let (_, dependencies) = manifest.split_once("[workspace.dependencies]\n").unwrap();
         let names = dependencies.lines().take_while(|line| !line.starts_with('[')).filter_map(|line| {
@@ -79,14 +99,14 @@ mod tests {
         }
     }
 
-    /// What cargo builds below the library for a package, each with its features.
+    /// The library's dependencies, with their features, as cargo builds them for a package.
     fn below_the_library(package: &str) -> BTreeSet<String> {
         let mut tree = Command::new(std::env::var_os("CARGO").unwrap());
         tree.current_dir(root()).args(["tree", "--locked", "--edges", "normal,build", "--no-dedupe"]);
         tree.args(["--prefix", "depth", "--format", " {p} {f}", "--package", package]);
         let text = tools::output(&mut tree).unwrap();
         let lines = text.lines().map(|line| line.split_once(' ').unwrap());
-        // The depth of the library's own line is less than that of all that is below it.
+        // The library's own line is less deep than its dependencies.
         let mut rest = lines.skip_while(|(_, shown)| !shown.starts_with("anthronet v"));
         let (top, _) = rest.next().unwrap();
         let deeper = |depth: &str| depth.parse::<u32>().unwrap() > top.parse().unwrap();

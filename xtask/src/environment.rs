@@ -3,15 +3,16 @@
 //! - `venv`: a Python virtual environment with `tests/requirements.txt` (numpy, scipy, Node, Blender as a module,
 //!   CMake and Ninja)
 //! - `blender-…`: likewise for older Blenders, with `tests/requirements-blender.txt`
-//! - `bench`: likewise for `cargo xtask bench` alone, with `tests/requirements-bench.txt`
-//! - `python3.…`: for every Python that there is, the Python package's wheel, numpy and pytest alone
+//! - `bench`: likewise for `cargo xtask bench`, with `tests/requirements-bench.txt`
+//! - `python3.…`: for every Python on the machine, our Python package's wheel, numpy and pytest only
 //! - `node`: the packages of `tests/package-lock.json` (Khronos glTF validator, three.js, three-vrm)
 //!
 //! Godot, mono and the compilers of C and C++ with valgrind come from the system's packages.
 //!
-//! A stamp beside each holds what it was made from; while that is unchanged nothing is installed again.
+//! A stamp in each folder records what it was installed from; while that is unchanged nothing is installed again.
 
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available, Missing};
+use anyhow::{Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -34,42 +35,42 @@ const BLENDER_LIBRARIES: &[&str] = &[
 const BLENDER: &str = "5.0.1";
 /// The older ones that the extension supports, each in a virtual environment of its own.
 const OLDER_BLENDERS: [&str; 2] = ["4.5.15", "4.2.23"];
-/// What builds and watches the consumers of the C ABI, and the packages of Debian and Ubuntu that have it.
-const C_PROGRAMS: [&str; 6] = ["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
+/// What builds and checks the programs in C, and the packages of Debian and Ubuntu that contain it.
+const C_PROGRAMS: &[&str] = &["gcc", "g++", "strip", "nm", "readelf", "valgrind"];
 const C_PACKAGES: &[&str] = &["gcc", "g++", "libc6-dev", "binutils", "valgrind", "libc6-dbg"];
 
-/// The compiler, the run time and the tests of C#, which Unity's are of the family of, and the packages that have them.
-const MONO_PROGRAMS: [&str; 3] = ["mcs", "mono", "nunit-console"];
+/// Compiler, runtime and test runner for C#, relatives of Unity's own, and the packages that contain them.
+const MONO_PROGRAMS: &[&str] = &["mcs", "mono", "nunit-console"];
 const MONO_PACKAGES: &[&str] =
     &["mono-mcs", "mono-runtime", "mono-devel", "libnunit-cil-dev", "nunit-console", "pkg-config"];
-/// Compiles with NUnit, which tests of Unity's are written for, too.
+/// Argument of the compiler that adds NUnit, the framework of Unity's tests.
 pub(crate) const NUNIT: &str = "-pkg:nunit";
 
-/// What is there to test with. An `Err` is the reason for which the tests that need it are skipped.
+/// The programs to test with. An `Err` is the reason for which the tests that need one are skipped.
 pub(crate) struct Environment {
     /// Python with numpy and scipy.
-    pub(crate) python: Result<PathBuf, String>,
+    pub(crate) python: Available<PathBuf>,
     /// That Python can `import bpy`.
-    pub(crate) blender: Result<(), String>,
+    pub(crate) blender: Available<()>,
     /// Folder with `node_modules`, in which scripts have to lie, and the node program.
-    pub(crate) node: Result<(PathBuf, PathBuf), String>,
+    pub(crate) node: Available<(PathBuf, PathBuf)>,
     /// The headless Godot 3.
-    pub(crate) godot: Result<PathBuf, String>,
+    pub(crate) godot: Available<PathBuf>,
     /// Compilers of C and C++ with sanitizers, valgrind and binutils.
-    pub(crate) c: Result<(), String>,
+    pub(crate) c: Available<()>,
 }
 
 impl Environment {
     /// Python with a script of `tests`, ready for its arguments.
-    pub(crate) fn python_script(&self, script: &str) -> Result<Command, String> {
-        let program = self.python.as_ref().map_err(String::clone)?;
+    pub(crate) fn python_script(&self, script: &str) -> Available<Command> {
+        let program = self.python.clone()?;
         let mut command = Command::new(program);
         command.env("PYTHONDONTWRITEBYTECODE", "1").arg(tools::root().join("tests").join(script));
         Ok(command)
     }
 
-    /// Python of every Blender that the extension supports, with its version, or why it is not there.
-    pub(crate) fn blenders(&self) -> Outcome<Vec<(&'static str, Result<PathBuf, String>)>> {
+    /// Every version of Blender that the extension supports, each with its Python.
+    pub(crate) fn blenders(&self) -> Result<Vec<(&'static str, Available<PathBuf>)>> {
         let newest = self.blender.clone().and_then(|()| self.python.clone());
         let mut all = vec![(BLENDER, newest.clone())];
         for version in OLDER_BLENDERS {
@@ -82,17 +83,20 @@ impl Environment {
         Ok(all)
     }
 
-    /// A program that the virtual environment brings, such as CMake.
-    pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
-        let python = self.python.as_ref().map_err(String::clone)?;
+    /// A program in the virtual environment, such as CMake.
+    pub(crate) fn program(&self, name: &str) -> Available<PathBuf> {
+        let python = self.python.clone()?;
         let folder = python.parent().unwrap_or(Path::new("."));
         let found = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
-        if found.is_file() { Ok(found) } else { Err(format!("{name} has no wheel for this platform")) }
+        if found.is_file() {
+            Ok(found)
+        } else {
+            Err(Missing(format!("{name} has no wheel for this platform")))
+        }
     }
 
-    /// Node with a script of `tests`, ready for its arguments. The outer error is a failure, the inner a reason to
-    /// skip.
-    pub(crate) fn node_script(&self, script: &str) -> Outcome<Result<Command, String>> {
+    /// Node with a script of `tests`, ready for its arguments.
+    pub(crate) fn node_script(&self, script: &str) -> Result<Available<Command>> {
         let (home, program) = match &self.node {
             Ok(found) => found,
             Err(reason) => return Ok(Err(reason.clone())),
@@ -108,9 +112,9 @@ impl Environment {
 
 /// Installs whatever is not there yet.
 ///
-/// What this machine cannot have (an old Python, a platform without a wheel) is a reason to skip; an installation
-/// that should work and does not is an error.
-pub(crate) fn prepare() -> Outcome<Environment> {
+/// What this machine cannot have (a newer Python, a wheel for its platform) is [`Missing`]; an installation that should
+/// work and does not is an error.
+pub(crate) fn prepare() -> Result<Environment> {
     let home = tools::target().join("test-env");
     let (base, version) = match find_python() {
         Ok(found) => found,
@@ -127,14 +131,14 @@ pub(crate) fn prepare() -> Outcome<Environment> {
     let python = virtual_environment(&home.join("venv"), &base)?;
     let blender = match version {
         (3, 11) => import_blender(&python)?,
-        (major, minor) => Err(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}")),
+        (major, minor) => Err(Missing(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}"))),
     };
     let node = node_packages(&home.join("node"), &python)?;
     Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot(), c: c_programs() })
 }
 
 /// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
-fn find_python() -> Result<(PathBuf, (u32, u32)), String> {
+fn find_python() -> Available<(PathBuf, (u32, u32))> {
     let mut best: Option<(PathBuf, (u32, u32))> = None;
     let mut seen = Vec::new();
     for name in ["python3.11", "python3", "python"] {
@@ -151,7 +155,7 @@ fn find_python() -> Result<(PathBuf, (u32, u32)), String> {
             best = Some((name.into(), (major, minor)));
         }
     }
-    best.ok_or_else(|| format!("Python 3.11 or newer is needed, found {}", or_none(&seen)))
+    best.ok_or_else(|| Missing(format!("Python 3.11 or newer is needed, found {}", or_none(&seen))))
 }
 
 fn or_none(seen: &[String]) -> String {
@@ -165,18 +169,18 @@ fn program(venv: &Path, name: &str) -> PathBuf {
 }
 
 /// The virtual environment's Python, after installing the pinned packages.
-fn virtual_environment(venv: &Path, base: &Path) -> Outcome<PathBuf> {
+fn virtual_environment(venv: &Path, base: &Path) -> Result<PathBuf> {
     virtual_environment_of(venv, base, "tests/requirements.txt")
 }
 
-fn virtual_environment_of(venv: &Path, base: &Path, requirements: &str) -> Outcome<PathBuf> {
+fn virtual_environment_of(venv: &Path, base: &Path, requirements: &str) -> Result<PathBuf> {
     let requirements = tools::root().join(requirements);
     let python = program(venv, "python");
     installed_once(venv, &tools::read(&requirements)?, || {
         let create = || tools::run(Command::new(base).args(["-m", "venv", "--clear"]).arg(venv));
         // Debian and Ubuntu ship Python without its `venv` module.
-        if let Err(message) = create() {
-            apt_install(&["python3-venv"]).map_err(|e| format!("{message}; {e}"))?;
+        if let Err(error) = create() {
+            apt_install(&["python3-venv"]).map_err(|also| anyhow!("{error:#}; {also:#}"))?;
             create()?;
         }
         let pip =
@@ -186,25 +190,24 @@ fn virtual_environment_of(venv: &Path, base: &Path, requirements: &str) -> Outco
     Ok(python)
 }
 
-/// Python with what the benchmarks alone need, `tests/requirements-bench.txt`: PyTorch is several gigabytes.
-pub(crate) fn bench_python() -> Outcome<PathBuf> {
+/// Python with the packages of `tests/requirements-bench.txt`, kept apart as PyTorch is several gigabytes.
+pub(crate) fn bench_python() -> Result<PathBuf> {
     let venv = tools::target().join("test-env/bench");
     virtual_environment_of(&venv, &python()?, "tests/requirements-bench.txt")
 }
 
-/// The versions of Python that the Python package is tested with: first the one that Blender 5.0 has.
+/// The versions of Python that the Python package is tested with; the first is that of Blender 5.0.
 pub(crate) const PYTHONS: [&str; 5] = ["3.11", "3.9", "3.10", "3.12", "3.13"];
 
-/// Any Python new enough for the tests; nothing is installed for it.
-pub(crate) fn python() -> Outcome<PathBuf> {
+/// Any Python new enough for the tests; installs nothing.
+pub(crate) fn python() -> Result<PathBuf> {
     Ok(find_python()?.0)
 }
 
-/// Python of a version in an environment with a wheel of ours, numpy and pytest, and nothing else. The outer error is a failure,
-/// the inner a reason to skip.
-pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf, String>> {
+/// Python of a version in an environment with this wheel of our package, numpy and pytest, and nothing else.
+pub(crate) fn python_with(version: &str, wheel: &Path) -> Result<Available<PathBuf>> {
     let Some(base) = python_of(version) else {
-        return Ok(Err(format!("there is no Python {version}: neither in the path nor of pyenv")));
+        return Ok(Err(Missing(format!("there is no Python {version}: neither in the path nor in pyenv"))));
     };
     let venv = tools::target().join("test-env").join(format!("python{version}"));
     let python = program(&venv, "python");
@@ -219,12 +222,12 @@ pub(crate) fn python_with(version: &str, wheel: &Path) -> Outcome<Result<PathBuf
         tools::run(Command::new(&base).args(["-m", "venv", "--clear"]).arg(&venv))?;
         tools::run(pip(&["numpy", "pytest", "--constraint"]).arg(&requirements))
     })?;
-    // The wheel is another one each time, its number is not.
+    // The wheel differs each time, its version number does not.
     tools::run(pip(&["--force-reinstall", "--no-deps"]).arg(wheel))?;
     Ok(Ok(python))
 }
 
-/// A Python of exactly this version, from the path or among those of pyenv.
+/// A Python of exactly this version, from the path or from pyenv.
 fn python_of(version: &str) -> Option<PathBuf> {
     let is = |python: &Path| {
         let script = "import sys; print('%d.%d' % sys.version_info[:2])";
@@ -244,21 +247,22 @@ fn python_of(version: &str) -> Option<PathBuf> {
 }
 
 /// Imports Blender, installing its shared libraries where that is needed and allowed.
-fn import_blender(python: &Path) -> Outcome<Result<(), String>> {
+fn import_blender(python: &Path) -> Result<Available<()>> {
     let import =
         || tools::output(Command::new(python).args(["-c", "import bpy; print(bpy.app.version_string)"]));
-    let Err(message) = import() else { return Ok(Ok(())) };
+    let Err(error) = import() else { return Ok(Ok(())) };
+    let message = format!("{error:#}");
     if message.contains("No module named 'bpy'") {
-        return Ok(Err("bpy 5.0.1 has no wheel for this platform".to_owned()));
+        return Ok(Err(Missing("bpy 5.0.1 has no wheel for this platform".to_owned())));
     }
     match apt_install(BLENDER_LIBRARIES) {
         Ok(()) => import().map(|_| Ok(())),
-        Err(reason) => Ok(Err(format!("{message}; {reason}"))),
+        Err(reason) => Ok(Err(Missing(format!("{message}; {reason:#}")))),
     }
 }
 
 /// Python of an older Blender, in a virtual environment beside the others.
-fn older_blender(python: &Path, version: &str) -> Outcome<Result<PathBuf, String>> {
+fn older_blender(python: &Path, version: &str) -> Result<Available<PathBuf>> {
     let venv = tools::target().join("test-env").join(format!("blender-{version}"));
     let module = format!("bpy=={version}");
     let blender = program(&venv, "python");
@@ -272,47 +276,44 @@ fn older_blender(python: &Path, version: &str) -> Outcome<Result<PathBuf, String
 }
 
 /// Debian's Godot 3 without a window, installed where that is needed and allowed.
-fn godot() -> Result<PathBuf, String> {
+fn godot() -> Available<PathBuf> {
     let program = "godot3-server";
-    // It has no argument at which it would end well and quickly: that it starts is enough.
-    let starts = || Command::new(program).arg("--version").output().map_err(|e| format!("{program}: {e}"));
+    // No argument makes it exit quickly with success; that it starts is enough.
+    let starts = || Command::new(program).arg("--version").output();
     if starts().is_err() {
         apt_install(&[program])?;
-        starts()?;
+        starts().map_err(|error| Missing(format!("{program}: {error}")))?;
     }
     Ok(program.into())
 }
 
 /// Compilers, valgrind and binutils, installed where that is needed and allowed.
-pub(crate) fn c_programs() -> Result<(), String> {
-    if !cfg!(target_os = "linux") {
-        return Err("the consumers in C are built and watched on Linux alone".to_owned());
-    }
-    let missing =
-        || C_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
-    let Some(name) = missing() else { return Ok(()) };
-    apt_install(C_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
-    missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
+pub(crate) fn c_programs() -> Available<()> {
+    system_programs("the programs in C are built and checked", C_PROGRAMS, C_PACKAGES)
 }
 
 /// Mono, installed where that is needed and allowed.
-pub(crate) fn mono() -> Result<(), String> {
-    if !cfg!(target_os = "linux") {
-        return Err("the Unity package is tested with mono on Linux alone".to_owned());
-    }
-    let missing =
-        || MONO_PROGRAMS.into_iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
-    let Some(name) = missing() else { return Ok(()) };
-    apt_install(MONO_PACKAGES).map_err(|reason| format!("{name} is missing; {reason}"))?;
-    missing().map_or(Ok(()), |name| Err(format!("{name} does not start, although it is installed")))
+pub(crate) fn mono() -> Available<()> {
+    system_programs("the Unity package is tested with mono", MONO_PROGRAMS, MONO_PACKAGES)
 }
 
-/// Installs system packages where that is possible without asking anybody.
-fn apt_install(packages: &[&str]) -> Outcome {
+/// Programs of the system, on Linux only, installed where that is needed and allowed.
+fn system_programs(purpose: &str, programs: &[&str], packages: &[&str]) -> Available<()> {
+    if !cfg!(target_os = "linux") {
+        return Err(Missing(format!("{purpose} on Linux only")));
+    }
+    let missing = || programs.iter().find(|name| tools::output(Command::new(name).arg("--version")).is_err());
+    let Some(name) = missing() else { return Ok(()) };
+    apt_install(packages).map_err(|reason| Missing(format!("{name} is missing; {reason:#}")))?;
+    missing().map_or(Ok(()), |name| Err(Missing(format!("{name} does not start, although it is installed"))))
+}
+
+/// Installs system packages if that needs no password: as root on Debian or Ubuntu.
+fn apt_install(packages: &[&str]) -> Result<()> {
     let wanted = packages.join(" ");
     let root = cfg!(unix) && tools::output(Command::new("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
     if !root || tools::output(Command::new("apt-get").arg("--version")).is_err() {
-        return Err(format!("install by hand: {wanted}"));
+        bail!("install by hand: {wanted}");
     }
     let quiet = |command: &mut Command| tools::run(command.env("DEBIAN_FRONTEND", "noninteractive"));
     quiet(Command::new("apt-get").args(["update", "-qq"]))?;
@@ -320,7 +321,7 @@ fn apt_install(packages: &[&str]) -> Outcome {
 }
 
 /// The folder with the npm packages and the node program.
-fn node_packages(folder: &Path, python: &Path) -> Outcome<(PathBuf, PathBuf)> {
+fn node_packages(folder: &Path, python: &Path) -> Result<(PathBuf, PathBuf)> {
     let bin = python.parent().unwrap_or(Path::new("."));
     let [node, npm] = ["node", "npm"].map(|name| bin.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)));
     let tests = tools::root().join("tests");
@@ -339,7 +340,7 @@ fn node_packages(folder: &Path, python: &Path) -> Outcome<(PathBuf, PathBuf)> {
 }
 
 /// Runs an installation unless the folder's stamp says that it was made from the same description.
-fn installed_once(folder: &Path, description: &str, install: impl FnOnce() -> Outcome) -> Outcome {
+fn installed_once(folder: &Path, description: &str, install: impl FnOnce() -> Result<()>) -> Result<()> {
     let stamp = folder.join("installed-from");
     if std::fs::read_to_string(&stamp).is_ok_and(|made_from| made_from == description) {
         return Ok(());

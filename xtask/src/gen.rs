@@ -1,10 +1,11 @@
-//! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made by the commands that a user has.
+//! `cargo xtask gen`: the bindings, and the pictures in `docs/`, made with the command as users run it.
 
-use crate::tools::{self, Outcome};
+use crate::tools;
 use crate::{bindings, hosts, requests};
+use anyhow::{Result, bail};
 use std::process::Command;
 
-/// What can be generated alone.
+/// The kinds of generated files.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Kind {
     /// The C header and the bindings of C# and Python
@@ -13,7 +14,7 @@ pub(crate) enum Kind {
     Pictures,
 }
 
-pub(crate) fn run(only: Option<Kind>) -> Outcome {
+pub(crate) fn run(only: Option<Kind>) -> Result<()> {
     if only != Some(Kind::Pictures) {
         bindings::write()?;
     }
@@ -23,12 +24,12 @@ pub(crate) fn run(only: Option<Kind>) -> Outcome {
     Ok(())
 }
 
-fn pictures() -> Outcome {
+fn pictures() -> Result<()> {
     let anthronet = tools::command_line()?;
     let root = tools::root();
     let scratch = tools::target().join("gen");
     for folder in [&scratch, &root.join("docs")] {
-        std::fs::create_dir_all(folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+        tools::create_folder(folder)?;
     }
     let person = scratch.join("person.glb");
     tools::run(Command::new(&anthronet).arg("generate").args(requests::README).arg("-o").arg(&person))?;
@@ -42,13 +43,13 @@ fn pictures() -> Outcome {
         let picture = root.join(picture);
         tools::run(Command::new(&anthronet).args(arguments).arg("-o").arg(&picture))?;
         if !picture.is_file() {
-            return Err(format!("{}: the command succeeded and wrote nothing", picture.display()));
+            bail!("{}: the command succeeded and wrote nothing", picture.display());
         }
     }
     match hosts::blender_picture(&scratch)? {
         Ok(picture) => {
             let copy = root.join("docs/blender.png");
-            std::fs::copy(&picture, &copy).map_err(|e| format!("{}: cannot copy: {e}", picture.display()))?;
+            tools::copy(&picture, &copy)?;
         }
         Err(reason) => println!("skipped docs/blender.png: {reason}"),
     }

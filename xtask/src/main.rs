@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `check` | formatting, lints, documentation, layering of the library's rooms |
 //! | `test`  | `check`, the Rust tests, and the cross-boundary tests in programs that are not ours |
-//! | `train` | rebuilds the committed model from nothing |
-//! | `bench` | the library's benchmarks |
-//! | `package` | what is handed to users, in `target/dist` |
+//! | `train` | trains the committed model from scratch |
+//! | `bench` | the library's benchmarks, skinning beside numpy and PyTorch, and whole runs of the command |
+//! | `package` | builds the packages for users, in `target/dist` |
 //! | `gen`   | rewrites generated files: the C header, the C# bindings, the pictures in `docs/` |
 //! | `bless` | rewrites the goldens in `tests/golden/` after an intended change |
 
@@ -36,35 +36,35 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
-    /// Formatting, lints and documentation without a warning, and the layering of the library's rooms
+    /// Check formatting, lints, documentation, the layering of the library's rooms and the generated bindings
     Check,
-    /// All tests; installs what they need into target/test-env first
+    /// Run all tests; first installs what they need into target/test-env
     Test {
-        /// One part alone
+        /// Only this part
         #[arg(long, value_enum)]
         only: Option<test::Part>,
     },
-    /// Rebuild model/anthronet.safetensors from nothing; what follows goes to `anthronet train generator`
+    /// Train model/anthronet.safetensors from scratch; arguments are passed to `anthronet train generator`
     Train {
-        /// Handed on as they are
+        /// Arguments passed through
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Benchmarks of the library; what follows goes to `cargo bench`
+    /// Run the benchmarks; with arguments only `cargo bench`, which gets them
     Bench {
-        /// Handed on as they are
+        /// Arguments passed through
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Make what is handed to users, in target/dist
+    /// Build a package for users, in target/dist
     Package {
-        /// What
+        /// The package
         #[arg(value_enum)]
         kind: package::Kind,
     },
     /// Rewrite generated files: ffi/include/anthronet.h, the bindings of C# and Python, the pictures in docs
     Gen {
-        /// One kind alone
+        /// Only this kind
         #[arg(long, value_enum)]
         only: Option<r#gen::Kind>,
     },
@@ -84,8 +84,8 @@ fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("xtask: {message}");
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
             ExitCode::FAILURE
         }
     }

@@ -1,9 +1,9 @@
-//! The people that the goldens and the cross-boundary tests speak about, as arguments of `anthronet generate`.
+//! The requests of the goldens and the cross-boundary tests, as arguments of `anthronet generate`.
 
 /// The README's first command, without its output.
 pub(crate) const README: &[&str] = &["--sex", "female", "-m", "height=1.70"];
 
-/// Somebody else's motion, from the repository's root: a few joints in centimetres, 25 frames a second.
+/// A motion file for another skeleton, from the repository's root: a few joints in centimetres, 25 frames a second.
 pub(crate) const BVH: &str = "tests/data/bend.bvh";
 
 /// A named request.

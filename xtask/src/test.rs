@@ -1,49 +1,50 @@
-//! `cargo xtask test`: everything that shows that the project works.
+//! `cargo xtask test`: all tests.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 use crate::{check, hosts};
+use anyhow::{Context as _, Result, anyhow};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// A part of the tests that can be asked for alone.
+/// A part of the tests.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Part {
     /// Formatting, lints, documentation, layering
     Check,
     /// Unit, property and integration tests of the workspace
     Rust,
-    /// Cross-boundary tests: the files in programs that are not ours
+    /// Cross-boundary tests: the files in third-party programs
     Hosts,
-    /// Of those, the consumers of the C ABI alone
+    /// Of those, only the programs that use the C ABI
     C,
-    /// Of those, the package for C++ alone
+    /// Of those, only the package for C++
     Cpp,
-    /// Of those, the Python package alone
+    /// Of those, only the Python package
     Python,
-    /// Of those, the Unity package alone
+    /// Of those, only the Unity package
     Unity,
-    /// Of those, the Blender extension alone
+    /// Of those, only the Blender extension
     Blender,
-    /// Of those, how motion files come onto bodies alone
+    /// Of those, only retargeting of motion files to bodies
     Motion,
 }
 
-/// Runs `cargo test` and counts the tests that say `skipped NAME: why`, which cargo counts as passed.
-fn rust_tests(command: &mut Command) -> Outcome {
+/// Runs `cargo test` and counts the tests that print `skipped NAME: why`, which cargo counts as passed.
+fn rust_tests(command: &mut Command) -> Result<()> {
     println!("$ {}", tools::shown(command));
     let start = Instant::now();
-    let did_not = |e: std::io::Error| format!("`cargo test` did not run: {e}");
-    let mut child = command.stdout(Stdio::piped()).spawn().map_err(did_not)?;
+    let did_not_run = "`cargo test` did not run";
+    let mut child = command.stdout(Stdio::piped()).spawn().context(did_not_run)?;
     let mut skipped = Vec::new();
     if let Some(output) = child.stdout.take() {
         for line in BufReader::new(output).split(b'\n') {
-            let line = String::from_utf8_lossy(&line.map_err(did_not)?).into_owned();
+            let line = String::from_utf8_lossy(&line.context(did_not_run)?).into_owned();
             println!("{line}");
             skipped.extend(line.starts_with("skipped ").then_some(line));
         }
     }
-    let status = child.wait().map_err(did_not)?;
+    let status = child.wait().context(did_not_run)?;
     println!(
         "  {:.1} s; {} skipped of those that cargo counts as passed",
         start.elapsed().as_secs_f64(),
@@ -52,19 +53,19 @@ fn rust_tests(command: &mut Command) -> Outcome {
     for line in skipped {
         println!("{line}");
     }
-    if status.success() { Ok(()) } else { Err(format!("`cargo test` failed: {status}")) }
+    if status.success() { Ok(()) } else { Err(anyhow!("`cargo test` failed: {status}")) }
 }
 
-/// Runs the parts one after the other, all of them even when one fails, and closes with the counts of the last.
-pub(crate) fn run(only: Option<Part>) -> Outcome {
+/// Runs the parts one after the other, all of them even when one fails.
+pub(crate) fn run(only: Option<Part>) -> Result<()> {
     let wanted = |part| only.is_none_or(|one| one == part);
     let mut failures = Vec::new();
     if wanted(Part::Check) {
         failures.extend(check::run().err());
     }
     if wanted(Part::Rust) {
-        // Tests open the C library as a file, which cargo does not build for them. All that it does build for them is
-        // asked for along with it: another choice of targets is another choice of features, and all is built twice.
+        // Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that
+        // `cargo test` builds: another choice of targets has other features, and everything would be built twice.
         let everything = ["--workspace", "--all-features"];
         let targets = ["--lib", "--bins", "--tests", "--examples"];
         failures.extend(tools::run(cargo("build").args(everything).args(targets)).err());
@@ -91,5 +92,5 @@ pub(crate) fn run(only: Option<Part>) -> Outcome {
     if only == Some(Part::Motion) {
         failures.extend(hosts::run_motion().err());
     }
-    if failures.is_empty() { Ok(()) } else { Err(failures.join("\nxtask: ")) }
+    tools::all_succeeded(&failures)
 }

@@ -1,11 +1,29 @@
-//! Paths and child processes.
+//! Paths, files and child processes.
 
+use anyhow::{Context as _, Error, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// What a chore returns; the message names the step that failed and how.
-pub(crate) type Outcome<T = ()> = Result<T, String>;
+/// What this machine lacks, in words for the reader: the reason for which a test is skipped.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct Missing(pub(crate) String);
+
+impl From<Error> for Missing {
+    fn from(error: Error) -> Self {
+        Self(format!("{error:#}"))
+    }
+}
+
+/// Something that not every machine has, or why this one does not.
+pub(crate) type Available<T> = std::result::Result<T, Missing>;
+
+/// One error for all the failures of a chore that runs every step, or none.
+pub(crate) fn all_succeeded(failures: &[Error]) -> Result<()> {
+    let lines: Vec<_> = failures.iter().map(|failure| format!("{failure:#}")).collect();
+    if lines.is_empty() { Ok(()) } else { Err(anyhow!(lines.join("\nxtask: "))) }
+}
 
 /// The repository's root.
 pub(crate) fn root() -> PathBuf {
@@ -21,37 +39,37 @@ pub(crate) fn target() -> PathBuf {
     }
 }
 
-/// A cargo command that works on every documented toolchain and never changes `Cargo.lock`.
+/// A cargo command for any supported toolchain that never changes `Cargo.lock`.
 pub(crate) fn cargo(verb: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root()).arg(verb).args(["--ignore-rust-version", "--locked"]);
     command
 }
 
-/// Runs a command with its output on ours; prints the command first and its time after.
-pub(crate) fn run(command: &mut Command) -> Outcome {
+/// Runs a command, whose output goes to ours; prints the command before and the time it took after.
+pub(crate) fn run(command: &mut Command) -> Result<()> {
     let text = shown(command);
     println!("$ {text}");
     let start = Instant::now();
-    let status = command.status().map_err(|e| format!("`{text}` did not start: {e}"))?;
+    let status = command.status().with_context(|| format!("`{text}` did not start"))?;
     println!("  {:.1} s", start.elapsed().as_secs_f64());
-    if status.success() { Ok(()) } else { Err(format!("`{text}` failed: {status}")) }
+    if status.success() { Ok(()) } else { Err(anyhow!("`{text}` failed: {status}")) }
 }
 
-/// Runs a command silently; its standard output, or an error that ends with what it wrote on standard error.
-pub(crate) fn output(command: &mut Command) -> Outcome<String> {
+/// Runs a command silently and returns its standard output; an error ends with the last lines of its standard error.
+pub(crate) fn output(command: &mut Command) -> Result<String> {
     let text = shown(command);
-    let output = command.output().map_err(|e| format!("`{text}` did not start: {e}"))?;
+    let output = command.output().with_context(|| format!("`{text}` did not start"))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    let complaint = String::from_utf8_lossy(&output.stderr);
-    let tail: Vec<_> = complaint.lines().rev().take(6).collect();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let tail: Vec<_> = stderr.lines().rev().take(6).collect();
     let tail: Vec<_> = tail.into_iter().rev().collect();
-    Err(format!("`{text}` failed: {}: {}", output.status, tail.join(" / ")))
+    Err(anyhow!("`{text}` failed: {}: {}", output.status, tail.join(" / ")))
 }
 
-/// The command as a person would type it, paths shortened to the repository's root.
+/// The command as typed in the repository's root, with paths relative to it.
 pub(crate) fn shown(command: &Command) -> String {
     let root = format!("{}{}", root().display(), std::path::MAIN_SEPARATOR);
     let mut words = Vec::new();
@@ -70,25 +88,77 @@ pub(crate) fn shown(command: &Command) -> String {
 }
 
 /// Reads a text file; the error names it.
-pub(crate) fn read(path: &Path) -> Outcome<String> {
-    std::fs::read_to_string(path).map_err(|e| format!("{}: cannot read: {e}", path.display()))
+pub(crate) fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).with_context(|| format!("{}: cannot read", path.display()))
 }
 
-/// Writes a file whole or not at all, with its folder.
-pub(crate) fn write(path: &Path, content: &str) -> Outcome {
-    let complain = |e| format!("{}: cannot write: {e}", path.display());
+/// Writes a file whole or not at all; creates its folder.
+pub(crate) fn write(path: &Path, content: &str) -> Result<()> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(complain)?;
+        create_folder(folder)?;
     }
     let beside = path.with_extension("partial");
-    std::fs::write(&beside, content).map_err(complain)?;
-    std::fs::rename(&beside, path).map_err(complain)
+    std::fs::write(&beside, content)
+        .and_then(|()| std::fs::rename(&beside, path))
+        .with_context(|| format!("{}: cannot write", path.display()))
+}
+
+/// The Rust files below a folder, sorted.
+pub(crate) fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let cannot = || format!("{}: cannot read", folder.display());
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).with_context(cannot)? {
+        let path = entry.with_context(cannot)?.path();
+        if path.is_dir() {
+            files.extend(rust_files(&path)?);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Creates a folder and those above it.
+pub(crate) fn create_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot create", folder.display()))
+}
+
+/// Deletes a folder with all that is in it, if it exists.
+pub(crate) fn remove_folder(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).with_context(|| format!("{}: cannot remove", folder.display()))?;
+    }
+    Ok(())
+}
+
+/// Copies a file, or a folder with all that is in it; creates the folders above.
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<()> {
+    copy_except(from, to, &[])
+}
+
+/// Likewise, without the files and folders that have one of these names.
+pub(crate) fn copy_except(from: &Path, to: &Path, names: &[&str]) -> Result<()> {
+    let cannot = || format!("{}: cannot copy to {}", from.display(), to.display());
+    if !from.is_dir() {
+        create_folder(to.parent().unwrap_or(to))?;
+        return std::fs::copy(from, to).map(drop).with_context(cannot);
+    }
+    create_folder(to)?;
+    for entry in std::fs::read_dir(from).with_context(cannot)? {
+        let entry = entry.with_context(cannot)?;
+        let name = entry.file_name();
+        if !names.iter().any(|skipped| name == *skipped) {
+            copy_except(&entry.path(), &to.join(&name), names)?;
+        }
+    }
+    Ok(())
 }
 
 /// Builds the released command as a user would and returns its path.
-pub(crate) fn command_line() -> Outcome<PathBuf> {
-    // The same arguments as the alias `cargo anthronet`, so that neither builds what the other has built.
+pub(crate) fn command_line() -> Result<PathBuf> {
+    // The same arguments as the alias `cargo anthronet`, so that both share one build.
     run(cargo("build").args(["--release", "--package", "anthronet-cli", "--bin", "anthronet"]))?;
     let path = target().join("release").join(format!("anthronet{}", std::env::consts::EXE_SUFFIX));
-    if path.is_file() { Ok(path) } else { Err(format!("{}: not there after a build", path.display())) }
+    if path.is_file() { Ok(path) } else { Err(anyhow!("{}: not there after a build", path.display())) }
 }

@@ -1,8 +1,9 @@
-//! `cargo xtask train`: the committed model, from nothing.
+//! `cargo xtask train`: the committed model, from scratch.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
+use anyhow::Result;
 
-pub(crate) fn run(rest: &[String]) -> Outcome {
+pub(crate) fn run(rest: &[String]) -> Result<()> {
     let command = ["--release", "--package", "anthronet-cli", "--bin", "anthronet", "--features", "train"];
     tools::run(cargo("run").args(command).args(["--", "train", "generator"]).args(rest))
 }

@@ -48,7 +48,7 @@ pub(super) fn table(folder: &Path, bodies: usize) -> Result<MotionTable> {
 
 /// The motion files of a folder, in the order of their names.
 fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(folder).map_err(|e| Failure::io("read", folder, &e))?;
+    let entries = std::fs::read_dir(folder).map_err(|e| Failure::io("read", folder, e))?;
     let mut files: Vec<PathBuf> = entries
         .filter_map(|entry| entry.ok().map(|e| e.path()))
         .filter(|path| Format::of_path(path, Purpose::ReadMotion).is_ok())
@@ -86,7 +86,7 @@ fn row(path: &Path, motion: &Motion, bodies: &[Target]) -> Result<Row> {
     let mut row = Row::new(name);
     for body in bodies {
         let retarget = |options: &RetargetOptions| {
-            retarget::retarget(&motion.clips, &body.skeleton, options).map_err(|e| Failure::in_file(path, &e))
+            retarget::retarget(&motion.clips, &body.skeleton, options).map_err(|e| Failure::in_file(path, e))
         };
         let (clips, report) = retarget(&RetargetOptions::default())?;
         let (unplanted, _) = retarget(&RetargetOptions { feet: None, ..RetargetOptions::default() })?;

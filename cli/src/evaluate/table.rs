@@ -7,7 +7,7 @@ use anthronet::retarget::feet::Contacts;
 use serde::Serialize;
 
 use super::soles::SkinMeasure;
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 
 /// One clip: maxima over the bodies unless stated otherwise; degrees and millimetres.
 #[derive(Clone, Debug, Serialize)]
@@ -183,7 +183,6 @@ impl MotionTable {
 
     /// As JSON.
     pub(super) fn to_json(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self);
-        Ok(text.map_err(|e| Failure::failed(format!("the table: {e}")))? + "\n")
+        Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }

@@ -64,10 +64,9 @@ impl Image {
             encoder.set_palette(palette);
         }
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        let failed = |e: png::EncodingError| Failure::failed(format!("cannot encode the PNG: {e}"));
-        let mut writer = encoder.write_header().map_err(failed)?;
-        writer.write_image_data(data).map_err(failed)?;
-        writer.finish().map_err(failed)?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(data)?;
+        writer.finish()?;
         Ok(bytes)
     }
 }

@@ -57,33 +57,35 @@ impl Definition {
         points.chain(self.edges.iter().flatten().copied())
     }
 
-    fn validate(&self, vertex_count: usize) -> std::result::Result<(), String> {
+    fn validate(&self, vertex_count: usize) -> Result<()> {
+        let fail =
+            |message: String| Error::invalid("measure definitions", format!("{}: {message}", self.name));
         let least = match self.kind {
             Kind::Tape => 3,
             Kind::Slice => 1,
             Kind::Length => 2,
         };
         if self.points.len() < least || (self.kind == Kind::Length && self.points.len() != 2) {
-            return Err(format!("{} points do not make a {:?}", self.points.len(), self.kind));
+            return Err(fail(format!("{} points do not make a {:?}", self.points.len(), self.kind)));
         }
         if let Some(v) = self.vertices().find(|v| *v as usize >= vertex_count) {
-            return Err(format!("vertex {v} of {vertex_count}"));
+            return Err(fail(format!("vertex {v} of {vertex_count}")));
         }
         for point in &self.points {
             let sum: f64 = point.0.iter().map(|t| t.1).sum();
             if !sum.is_finite() || (sum - 1.0).abs() > 1e-6 {
-                return Err(format!("weights of a point sum to {sum}, not 1"));
+                return Err(fail(format!("weights of a point sum to {sum}, not 1")));
             }
         }
         let unit = |v: DVec3| (v.length() - 1.0).abs() < 1e-6;
         if self.kind != Kind::Length && !unit(self.normal) {
-            return Err(format!("normal {} is not of unit length", self.normal));
+            return Err(fail(format!("normal {} is not of unit length", self.normal)));
         }
         if self.axis.is_some_and(|a| !unit(a)) {
-            return Err("axis is not of unit length".into());
+            return Err(fail("axis is not of unit length".into()));
         }
         if self.kind == Kind::Slice && self.edges.is_empty() {
-            return Err("a slice needs edges to cut".into());
+            return Err(fail("a slice needs edges to cut".into()));
         }
         Ok(())
     }
@@ -149,7 +151,7 @@ pub(super) fn read_list<'a>(
         if definition.name != name {
             return Err(fail(format!("expected {name}, got {}", definition.name)));
         }
-        definition.validate(vertex_count).map_err(|e| fail(format!("{name}: {e}")))?;
+        definition.validate(vertex_count)?;
     }
     Ok(list)
 }

@@ -29,76 +29,11 @@ impl Subdivision {
     pub fn new(cage: &Topology) -> Result<Self> {
         cage.validate()?;
         let (edges, face_edges) = edges_of(&cage.quads);
-        let (v_count, e_count, f_count) = (cage.vertex_count, edges.len(), cage.quads.len());
-
-        let mut edge_faces = vec![[u32::MAX; 2]; e_count];
-        let mut vertex_faces = vec![Vec::new(); v_count];
-        let mut vertex_edges = vec![Vec::new(); v_count];
-        for (f, (quad, of_face)) in cage.quads.iter().zip(&face_edges).enumerate() {
-            for &v in quad {
-                vertex_faces[v as usize].push(f as u32);
-            }
-            for &e in of_face {
-                let slots = &mut edge_faces[e as usize];
-                let free = slots.iter_mut().find(|slot| **slot == u32::MAX).ok_or_else(|| {
-                    Error::invalid(
-                        "topology",
-                        format!("edge {:?} has more than two faces", edges[e as usize]),
-                    )
-                })?;
-                *free = f as u32;
-            }
-        }
-        if let Some(e) = edge_faces.iter().position(|f| f[1] == u32::MAX) {
-            return Err(Error::invalid("topology", format!("edge {:?} is on a border", edges[e])));
-        }
-        for (e, edge) in edges.iter().enumerate() {
-            for &v in edge {
-                vertex_edges[v as usize].push(e as u32);
-            }
-        }
-
-        let mut rows = Rows::default();
-        for v in 0..v_count {
-            // (Q + 2R + (n − 3) S) / n: Q is the mean of the face points around, R that of the edge midpoints, S the vertex.
-            let n = vertex_faces[v].len() as f64;
-            if n < 3.0 || vertex_edges[v].len() != vertex_faces[v].len() {
-                return Err(Error::invalid("topology", format!("vertex {v} is not inside a closed surface")));
-            }
-            rows.add(v as u32, (n - 3.0) / n);
-            for &f in &vertex_faces[v] {
-                for &q in &cage.quads[f as usize] {
-                    rows.add(q, 0.25 / (n * n));
-                }
-            }
-            for &e in &vertex_edges[v] {
-                for &q in &edges[e as usize] {
-                    rows.add(q, 1.0 / (n * n));
-                }
-            }
-            rows.finish();
-        }
-        for (edge, faces) in edges.iter().zip(&edge_faces) {
-            for &q in edge {
-                rows.add(q, 0.25);
-            }
-            for &f in faces {
-                for &q in &cage.quads[f as usize] {
-                    rows.add(q, 0.0625);
-                }
-            }
-            rows.finish();
-        }
-        for quad in &cage.quads {
-            for &q in quad {
-                rows.add(q, 0.25);
-            }
-            rows.finish();
-        }
-
+        let rows = stencil_rows(cage, &edges, &Neighbours::of(cage, &edges, &face_edges)?)?;
+        let (v_count, e_count) = (cage.vertex_count, edges.len());
         let edge_point = |e: u32| v_count as u32 + e;
         let face_point = |f: usize| (v_count + e_count + f) as u32;
-        let mut quads = Vec::with_capacity(4 * f_count);
+        let mut quads = Vec::with_capacity(4 * cage.quads.len());
         for (f, (quad, of_face)) in cage.quads.iter().zip(&face_edges).enumerate() {
             for k in 0..4 {
                 quads.push([
@@ -110,7 +45,7 @@ impl Subdivision {
             }
         }
         let (uvs, quad_uvs) = refine_uvs(cage);
-        let refined = Topology { vertex_count: v_count + e_count + f_count, quads, uvs, quad_uvs };
+        let refined = Topology { vertex_count: v_count + e_count + cage.quads.len(), quads, uvs, quad_uvs };
         Ok(Self { refined, edges, offsets: rows.offsets, indices: rows.indices, weights: rows.weights })
     }
 
@@ -173,6 +108,88 @@ impl Subdivision {
             Err(Error::invalid("cage", format!("expected {cage} vertices, got {points}")))
         }
     }
+}
+
+/// The faces at each edge, and the faces and edges at each vertex, of the cage.
+struct Neighbours {
+    edge_faces: Vec<[u32; 2]>,
+    vertex_faces: Vec<Vec<u32>>,
+    vertex_edges: Vec<Vec<u32>>,
+}
+
+impl Neighbours {
+    fn of(cage: &Topology, edges: &[[u32; 2]], face_edges: &[[u32; 4]]) -> Result<Self> {
+        let mut edge_faces = vec![[u32::MAX; 2]; edges.len()];
+        let mut vertex_faces = vec![Vec::new(); cage.vertex_count];
+        let mut vertex_edges = vec![Vec::new(); cage.vertex_count];
+        for (f, (quad, of_face)) in cage.quads.iter().zip(face_edges).enumerate() {
+            for &v in quad {
+                vertex_faces[v as usize].push(f as u32);
+            }
+            for &e in of_face {
+                let slots = &mut edge_faces[e as usize];
+                let free = slots.iter_mut().find(|slot| **slot == u32::MAX).ok_or_else(|| {
+                    Error::invalid(
+                        "topology",
+                        format!("edge {:?} has more than two faces", edges[e as usize]),
+                    )
+                })?;
+                *free = f as u32;
+            }
+        }
+        if let Some(e) = edge_faces.iter().position(|f| f[1] == u32::MAX) {
+            return Err(Error::invalid("topology", format!("edge {:?} is on a border", edges[e])));
+        }
+        for (e, edge) in edges.iter().enumerate() {
+            for &v in edge {
+                vertex_edges[v as usize].push(e as u32);
+            }
+        }
+        Ok(Self { edge_faces, vertex_faces, vertex_edges })
+    }
+}
+
+/// The rows of the stencil: vertex points, edge points, face points.
+fn stencil_rows(cage: &Topology, edges: &[[u32; 2]], neighbours: &Neighbours) -> Result<Rows> {
+    let Neighbours { edge_faces, vertex_faces, vertex_edges } = neighbours;
+    let mut rows = Rows::default();
+    for v in 0..cage.vertex_count {
+        // (Q + 2R + (n − 3) S) / n: Q is the mean of the face points around, R that of the edge midpoints, S the vertex.
+        let n = vertex_faces[v].len() as f64;
+        if n < 3.0 || vertex_edges[v].len() != vertex_faces[v].len() {
+            return Err(Error::invalid("topology", format!("vertex {v} is not inside a closed surface")));
+        }
+        rows.add(v as u32, (n - 3.0) / n);
+        for &f in &vertex_faces[v] {
+            for &q in &cage.quads[f as usize] {
+                rows.add(q, 0.25 / (n * n));
+            }
+        }
+        for &e in &vertex_edges[v] {
+            for &q in &edges[e as usize] {
+                rows.add(q, 1.0 / (n * n));
+            }
+        }
+        rows.finish();
+    }
+    for (edge, faces) in edges.iter().zip(edge_faces) {
+        for &q in edge {
+            rows.add(q, 0.25);
+        }
+        for &f in faces {
+            for &q in &cage.quads[f as usize] {
+                rows.add(q, 0.0625);
+            }
+        }
+        rows.finish();
+    }
+    for quad in &cage.quads {
+        for &q in quad {
+            rows.add(q, 0.25);
+        }
+        rows.finish();
+    }
+    Ok(rows)
 }
 
 /// Texture coordinates and faces over them, refined linearly per chart: corners stay, then midpoints of edges, then

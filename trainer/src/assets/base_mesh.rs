@@ -44,7 +44,7 @@ pub struct BaseMesh {
     pub raw_of_surface: Vec<u32>,
     /// Vertices of `base.obj` by group, as `basemesh_vertex_groups.json` lists them.
     pub groups: BTreeMap<String, Vec<u32>>,
-    /// For each vertex of `base.obj` its mirror image, where `hm08.mirror` knows one.
+    /// For each vertex of `base.obj` its mirror image, where `hm08.mirror` has one.
     pub mirror: BTreeMap<u32, u32>,
 }
 

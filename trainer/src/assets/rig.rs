@@ -15,7 +15,7 @@ use serde::Deserialize;
 use super::{BaseMesh, Wheel};
 use crate::{Error, Result};
 
-/// A joint of the rig, before any body gives it a place.
+/// A joint of the rig, without a position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSource {
     /// Name, UE-like: `upperarm_l`.
@@ -39,7 +39,7 @@ pub struct Rig {
     pub weights: Vec<Vec<(u16, f32)>>,
 }
 
-/// Shares of a vertex below this are left out: MakeHuman has strays of 1e-5 that move nothing one can see.
+/// Smaller weights are dropped: MakeHuman has stray ones of 1e-5 without visible effect.
 const LEAST_WEIGHT: f32 = 1e-4;
 
 #[derive(Deserialize)]
@@ -173,7 +173,7 @@ impl Rig {
         self.joints.iter().position(|j| j.name == name)
     }
 
-    /// Where this joint stands.
+    /// The index of this joint.
     ///
     /// # Errors
     /// [`Error::Source`] naming the joint when the rig has none of that name.
@@ -196,7 +196,7 @@ impl Rig {
                 *dense[v as usize].entry(joint).or_insert(0.0) += w;
             }
         }
-        // What hangs below the default rig's jaw (lower lip, chin) moves with ours, taken from the head's share.
+        // What belongs to the default rig's jaw (lower lip, chin) moves with ours; its weight is taken from the head's.
         let mut jaw_share = vec![0.0_f32; mesh.raw_positions.len()];
         for (name, list) in &default.weights {
             if hangs_below(default_rig, name, "jaw") {
@@ -248,7 +248,7 @@ impl Rig {
         };
         for (limb, joint) in self.joints.iter().enumerate() {
             let Some((plan, _)) = RigJoint::from_name(&joint.name).and_then(twists_of) else { continue };
-            // Places of the nodes along the bone, in order: helpers and the limb itself at the other end.
+            // Positions of the nodes along the bone, in order: helpers, and the limb itself at the other end.
             let mut nodes: Vec<(f32, usize)> =
                 plan.helpers.iter().enumerate().map(|(i, (_, place))| (*place, limb + 1 + i)).collect();
             nodes.push((if plan.undo { 1.0 } else { 0.0 }, limb));

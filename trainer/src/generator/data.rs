@@ -1,4 +1,4 @@
-//! From bodies to what the network sees: standardised and encoded conditions, the linear skip, scaled residuals.
+//! From bodies to the network's inputs: standardised and encoded conditions, the linear skip, scaled residuals.
 
 use anthronet::measure::MEASURE_COUNT;
 use anthronet::network::config::{CONDITION_COUNT, GeneratorConfig};
@@ -30,7 +30,7 @@ pub(crate) struct Frame {
     skip: bool,
 }
 
-/// A set in the network's terms.
+/// A set of bodies as inputs and targets of the network.
 #[derive(Debug)]
 pub(crate) struct Prepared {
     pub(crate) count: usize,
@@ -128,13 +128,13 @@ impl Frame {
         out
     }
 
-    /// What the skip leaves over, metres.
+    /// The residual of the skip, metres.
     fn residual(&self, set: &TrainingSet, i: usize) -> Vec<f64> {
         let coefficients = &set.coefficients[i * self.k..(i + 1) * self.k];
         coefficients.iter().zip(self.offset(set, i)).map(|(&c, o)| f64::from(c) - o).collect()
     }
 
-    /// A set in the network's terms.
+    /// A set of bodies as inputs and targets of the network.
     pub(crate) fn prepare(&self, set: &TrainingSet, offsets: bool) -> Prepared {
         let (k, width) = (self.k, self.fourier.output_len());
         let mut residuals = vec![0.0; set.count * k];
@@ -295,7 +295,7 @@ fn measure_statistics(set: &TrainingSet) -> Result<([f64; MEASURE_COUNT], [f64; 
             std[j] += (f64::from(row[j]) - mean[j]).powi(2) / set.count as f64;
         }
     }
-    // A measure that never changes says nothing; any deviation will do.
+    // A constant measure carries no information; any deviation will do.
     std.iter_mut().for_each(|s| *s = if *s > 1e-12 { s.sqrt() } else { 1.0 });
     Ok((mean, std))
 }

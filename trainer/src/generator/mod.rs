@@ -27,7 +27,7 @@ pub use synthetic::synthetic_set;
 
 use crate::{Error, Result};
 
-/// Bodies as the generator learns them.
+/// Bodies to train the generator on.
 #[derive(Clone, Debug)]
 pub struct TrainingSet {
     /// Number N of bodies.
@@ -85,7 +85,7 @@ pub struct QuadraticForm {
     pub constant: f64,
 }
 
-/// What the coefficients stand for.
+/// Statistics of the shape space that the coefficients belong to.
 #[derive(Clone, Debug)]
 pub struct ShapeStatistics {
     /// Number V of vertices of the mesh behind the coefficients.
@@ -100,14 +100,14 @@ pub struct ShapeStatistics {
 /// both `n × K`.
 pub type PointDistance = Arc<dyn Fn(&[f32], &[f32]) -> f64 + Send + Sync>;
 
-/// How to train.
+/// Options of the training.
 #[derive(Clone)]
 pub struct TrainingOptions {
-    /// Where the checkpoint is kept.
+    /// Folder of the checkpoint.
     pub out_dir: PathBuf,
     /// Fixes initial weights, order and noise.
     pub seed: u64,
-    /// Passes over the training set.
+    /// Number of epochs.
     pub epochs: usize,
     /// Threads; 0 for as many as there are cores.
     pub threads: usize,
@@ -154,7 +154,7 @@ impl Default for TrainingOptions {
     }
 }
 
-/// How good the network is on the validation set, z = encoder mean unless said.
+/// Metrics of the network on the validation set, z = encoder mean unless stated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Epochs done.
@@ -163,7 +163,7 @@ pub struct Metrics {
     pub training: [f64; 3],
     /// Root mean square vertex distance, mm, exact for the coefficients.
     pub rms_mm: f64,
-    /// The same at z = 0: what the measures leave open.
+    /// The same at z = 0: the variation that the measures do not determine.
     pub rms_z0_mm: f64,
     /// The same for z drawn from the encoder's distribution.
     pub rms_sampled_mm: f64,
@@ -193,7 +193,7 @@ pub struct TrainedGenerator {
     pub measure_std: [f64; MEASURE_COUNT],
     /// On the validation set, after the last epoch.
     pub metrics: Metrics,
-    /// Every validation on the way.
+    /// Metrics of every validation during the training.
     pub history: Vec<Metrics>,
     /// Deviation of z per latent number over the validation set; 1 fits the prior.
     pub latent_std: Vec<f64>,

@@ -90,7 +90,7 @@ fn check(
     Ok(())
 }
 
-/// A training under way.
+/// The state of a training.
 struct Run<'a> {
     config: &'a GeneratorConfig,
     options: &'a TrainingOptions,
@@ -189,7 +189,7 @@ impl<'a> Run<'a> {
         let mut sums = [0.0; 3];
         let mut batches = 0.0;
         for rows in order.chunks(self.options.batch) {
-            // Batch norm of one body is not defined; the body comes round again.
+            // Batch norm of one body is undefined; later epochs see the body.
             if rows.len() < 2 {
                 continue;
             }

@@ -1,5 +1,5 @@
-//! Bodies that never lived: coefficients with a decaying spectrum, mixed linearly and quadratically from random
-//! traits, and measures that see some of them. For tests and for timing, without the real data.
+//! Synthetic bodies: coefficients with a decaying spectrum, mixed linearly and quadratically from random traits, and
+//! measures that depend on some of them. For tests and for timing, without the real data.
 
 use anthronet::measure::MEASURE_COUNT;
 use anthronet::random::Random;

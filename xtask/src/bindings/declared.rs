@@ -1,6 +1,7 @@
-//! What the sources of `ffi` declare to others, as syn reads it: constants, structures, callbacks and functions.
+//! The public declarations in the sources of `ffi`, parsed by syn: constants, structures, callbacks and functions.
 
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Result, anyhow};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use syn::spanned::Spanned as _;
@@ -20,7 +21,7 @@ pub(super) enum Type {
     },
 }
 
-/// What is called, in one direction or the other.
+/// A function of the library or a callback of the caller.
 pub(super) struct Function {
     pub(super) name: String,
     /// Names, empty where a callback has none, and types.
@@ -36,20 +37,20 @@ pub(super) struct Declared {
     /// Other names of types.
     pub(super) aliases: BTreeMap<String, Type>,
     pub(super) callbacks: Vec<Function>,
-    /// `#[repr(C)]` structures with their fields; all others are known by their handles alone.
+    /// `#[repr(C)]` structures with their fields; all others are opaque handles.
     pub(super) structures: Vec<(String, Vec<(String, Type)>)>,
     pub(super) functions: Vec<Function>,
 }
 
 impl Declared {
-    /// Reads source files. What is declared in a way that is not known here is an error that names its line.
-    pub(super) fn read(sources: impl Iterator<Item = PathBuf>) -> Outcome<Self> {
+    /// Reads source files. An unsupported declaration is an error that names its line.
+    pub(super) fn read(sources: impl Iterator<Item = PathBuf>) -> Result<Self> {
         let mut declared = Self::default();
         for path in sources {
-            let complain = |e: syn::Error| format!("{}:{}: {e}", path.display(), e.span().start().line);
-            let file = syn::parse_file(&tools::read(&path)?).map_err(complain)?;
+            let in_file = |e: syn::Error| anyhow!("{}:{}: {e}", path.display(), e.span().start().line);
+            let file = syn::parse_file(&tools::read(&path)?).map_err(in_file)?;
             for item in file.items {
-                declared.item(item).map_err(complain)?;
+                declared.item(item).map_err(in_file)?;
             }
         }
         Ok(declared)

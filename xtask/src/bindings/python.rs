@@ -1,10 +1,10 @@
-//! The declarations that Python calls, in the words of ctypes.
+//! The declarations for Python, as ctypes.
 //!
-//! What is not known here is an error; `tests/python/test_declarations.py` compares what was made with what a C compiler makes
-//! of the header.
+//! An unsupported type is an error; `tests/python/test_declarations.py` compares the generated layouts with those that a C
+//! compiler gives the header.
 
 use super::declared::{Declared, Function, Type};
-use crate::tools::Outcome;
+use anyhow::{Context as _, Result, bail};
 use std::fmt::Write as _;
 
 const PREAMBLE: &str = r#""""Declarations of libanthronet: what `include/anthronet.h` says, in the words of ctypes.
@@ -13,7 +13,7 @@ Made from ffi/src by `cargo xtask gen`; do not edit.
 """
 "#;
 
-/// What of ctypes may be needed, in the order in which Python's formatters want it.
+/// The names of ctypes that may be needed, in the order of Python's formatters.
 const CTYPES: [&str; 12] = [
     "CFUNCTYPE",
     "POINTER",
@@ -29,14 +29,14 @@ const CTYPES: [&str; 12] = [
     "c_void_p",
 ];
 
-/// The Python module that declares what the sources declare.
-pub(super) fn declarations(declared: &Declared) -> Outcome<String> {
+/// The Python module for these declarations.
+pub(super) fn declarations(declared: &Declared) -> Result<String> {
     let mut text = "\n".to_owned();
     for (name, value) in &declared.constants {
         let _ = writeln!(text, "{} = {value}", name.strip_prefix("ANTHRONET_").unwrap_or(name));
     }
     for callback in &declared.callbacks {
-        // What a callback is given is not ended by a zero, as bytes would have to be.
+        // Text for a callback is not NUL-terminated, as c_char_p requires.
         let kinds = parameters(declared, callback, "c_void_p")?;
         let result = result(declared, callback)?;
         let _ = writeln!(text, "\n{} = CFUNCTYPE({result}, {kinds})", class(&callback.name));
@@ -66,7 +66,7 @@ pub(super) fn declarations(declared: &Declared) -> Outcome<String> {
 
 type Structure<'a> = (&'a str, &'a [(String, Type)]);
 
-/// The structures in the order in which the functions use them, each after those that it is made of: the header's order.
+/// The structures in the order in which the functions use them, each after those it contains: the header's order.
 fn in_order_of_use(declared: &Declared) -> Vec<Structure<'_>> {
     fn add<'a>(declared: &'a Declared, kind: &'a Type, found: &mut Vec<Structure<'a>>) {
         let name = match kind {
@@ -87,14 +87,14 @@ fn in_order_of_use(declared: &Declared) -> Vec<Structure<'_>> {
     found
 }
 
-fn result(declared: &Declared, function: &Function) -> Outcome<String> {
+fn result(declared: &Declared, function: &Function) -> Result<String> {
     function.result.as_ref().map_or_else(|| Ok("None".to_owned()), |kind| value(declared, kind))
 }
 
 /// A type that is passed by value: a number, a structure as a field, or a callback.
-fn value(declared: &Declared, kind: &Type) -> Outcome<String> {
+fn value(declared: &Declared, kind: &Type) -> Result<String> {
     let Type::Named(name) = kind else {
-        return Err("pointers and arrays are not passed by value".to_owned());
+        bail!("pointers and arrays are not passed by value");
     };
     let number = match name.as_str() {
         "i32" => "c_int32",
@@ -109,25 +109,28 @@ fn value(declared: &Declared, kind: &Type) -> Outcome<String> {
         }
         _ => {
             let meant = declared.aliases.get(name);
-            return value(declared, meant.ok_or_else(|| format!("do not know the type `{name}` in Python"))?);
+            return value(
+                declared,
+                meant.with_context(|| format!("do not know the type `{name}` in Python"))?,
+            );
         }
     };
     Ok(number.to_owned())
 }
 
-/// The types of all parameters; `text` is that of text which is read.
-fn parameters(declared: &Declared, function: &Function, text: &str) -> Outcome<String> {
+/// The types of all parameters; `text` is the type of text that the function reads.
+fn parameters(declared: &Declared, function: &Function, text: &str) -> Result<String> {
     let mut kinds = Vec::new();
     for (i, (_, kind)) in function.parameters.iter().enumerate() {
         let counted = function.parameters.get(i + 1).is_some_and(|(next, _)| next == "count");
-        kinds.push(parameter(declared, kind, counted, text).map_err(|e| format!("{}: {e}", function.name))?);
+        kinds.push(parameter(declared, kind, counted, text).with_context(|| function.name.clone())?);
     }
     Ok(kinds.join(", "))
 }
 
-/// Pointers to structures are typed and text is bytes; all others take handles, arrays and addresses alike, and so
-/// do those that a count follows.
-fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Outcome<String> {
+/// Pointers to structures are typed and text is bytes; all others are void pointers, for handles, arrays and addresses, as
+/// are those that a count follows.
+fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Result<String> {
     let Type::Pointer { constant, to } = kind else { return value(declared, kind) };
     Ok(match &**to {
         Type::Named(name) if !counted && declared.fields(name).is_some() => {
@@ -138,7 +141,7 @@ fn parameter(declared: &Declared, kind: &Type, counted: bool, text: &str) -> Out
     })
 }
 
-fn field(declared: &Declared, kind: &Type) -> Outcome<String> {
+fn field(declared: &Declared, kind: &Type) -> Result<String> {
     match kind {
         Type::Pointer { .. } => Ok("c_void_p".to_owned()),
         Type::Array(of, count) => Ok(format!("{} * {count}", value(declared, of)?)),

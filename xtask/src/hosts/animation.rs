@@ -1,18 +1,24 @@
-//! Animated glTF, plain and compressed, and VRM in programs that are not ours.
+//! Animated glTF, plain and compressed, and VRM in third-party programs.
 
 use super::Tally;
 use crate::environment::Environment;
 use crate::requests;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long Godot may take to import one figure.
+/// Time limit for Godot to import one character.
 const GODOT_LIMIT: Duration = Duration::from_secs(120);
 
 /// The Khronos validator, numpy, three.js, three-vrm, Blender and Godot over files of `anthronet`.
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     let mut made = Vec::new();
     let clips = ["--clip", "walk", "--clip", "wave", "--clip", requests::BVH];
     for (name, arguments) in [
@@ -54,19 +60,19 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     Ok(())
 }
 
-/// Converted to its own format, a file stays the same.
+/// Converting a file to its own format gives the same bytes.
 fn same_again(anthronet: &Path, file: &Path, tally: &mut Tally) {
     let again = file.with_extension("again.glb");
     let mut command = Command::new(anthronet);
     let converted = tools::output(command.arg("convert").arg(file).arg(&again));
     let compared = converted.and_then(|_| {
-        let [a, b] = [file, &again].map(|f| std::fs::read(f).map_err(|e| format!("{}: {e}", f.display())));
-        if a? == b? { Ok(()) } else { Err("other bytes".to_owned()) }
+        let [a, b] = [file, &again].map(|f| std::fs::read(f).with_context(|| f.display().to_string()));
+        if a? == b? { Ok(()) } else { Err(anyhow!("the bytes differ")) }
     });
     tally.case("convert to the same format gives the same bytes", compared);
 }
 
-fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally: &mut Tally) -> Outcome {
+fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally: &mut Tally) -> Result<()> {
     for file in [plain, compressed] {
         let name = format!("three.js plays {}", file.file_name().unwrap_or_default().display());
         match environment.node_script("animation_threejs.mjs")? {
@@ -82,26 +88,25 @@ fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally:
     Ok(())
 }
 
-/// Godot imports the file as a resource of a project, in which a script then looks at it.
-fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
+/// Godot imports the file as a resource of a project, and a script checks it there.
+fn in_godot(godot: &Path, file: &Path, folder: &Path, tally: &mut Tally) -> Result<()> {
     let project = folder.join("godot");
-    let fault = |e: std::io::Error| format!("{}: {e}", project.display());
-    std::fs::create_dir_all(&project).map_err(fault)?;
+    tools::create_folder(&project)?;
     for name in ["project.godot", "check.gd", "figure.glb.import"] {
         let text = tools::read(&tools::root().join("tests/godot").join(name))?;
         tools::write(&project.join(name), &text)?;
     }
-    std::fs::copy(file, project.join("figure.glb")).map_err(fault)?;
-    std::fs::copy(format!("{}.expected.json", file.display()), project.join("expected.json"))
-        .map_err(fault)?;
+    tools::copy(file, &project.join("figure.glb"))?;
+    let expected = PathBuf::from(format!("{}.expected.json", file.display()));
+    tools::copy(&expected, &project.join("expected.json"))?;
     tally.case("Godot imports", import(godot, &project));
     tally.script("Godot", Command::new(godot).arg("--path").arg(&project).args(["--script", "check.gd"]));
     Ok(())
 }
 
-/// Opens the project in the editor until the figure is imported. Debian's build of the editor never ends by itself: it
-/// repeats an error for ever when it quits.
-fn import(godot: &Path, project: &Path) -> Outcome {
+/// Opens the project in the editor until the character is imported. Debian's build of the editor never exits by itself: on
+/// quitting it repeats an error endlessly.
+fn import(godot: &Path, project: &Path) -> Result<()> {
     let mut command = Command::new(godot);
     command.arg("--path").arg(project).args(["--editor", "--quit"]);
     let mut editor = command
@@ -109,22 +114,22 @@ fn import(godot: &Path, project: &Path) -> Outcome {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|e| format!("did not start: {e}"))?;
+        .context("did not start")?;
     let start = Instant::now();
-    // Written last.
+    // The last file that the import writes.
     let imported = || -> Option<PathBuf> {
         let mut files = std::fs::read_dir(project.join(".import")).ok()?.flatten().map(|entry| entry.path());
         files.find(|path| path.extension().is_some_and(|ending| ending == "md5"))
     };
     let done = loop {
-        let ended = editor.try_wait().map_err(|e| e.to_string())?.is_some();
+        let ended = editor.try_wait()?.is_some();
         if imported().is_some() || ended || start.elapsed() > GODOT_LIMIT {
             break imported();
         }
         std::thread::sleep(Duration::from_millis(100));
     };
-    // It may have ended in the meantime.
+    // It may have exited in the meantime.
     let _ = editor.kill();
-    editor.wait().map_err(|e| e.to_string())?;
-    done.map(drop).ok_or_else(|| format!("not imported after {:.0} s", start.elapsed().as_secs_f64()))
+    editor.wait()?;
+    done.map(drop).with_context(|| format!("not imported after {:.0} s", start.elapsed().as_secs_f64()))
 }

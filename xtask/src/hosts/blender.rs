@@ -1,16 +1,22 @@
-//! The Blender extension: packed, installed and used in every Blender that it supports.
+//! The Blender extension: packaged, installed and used in every Blender that it supports.
 
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::package_blender;
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available};
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The picture that the tests render, in the folder that they are given.
+/// The picture that the tests render into their folder.
 const PICTURE: &str = "blender_people.png";
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     let archive = match package_blender(environment, anthronet)? {
         Ok(archive) => archive,
         Err(reason) => {
@@ -33,25 +39,25 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     Ok(())
 }
 
-/// The picture of the documentation, as the tests render it. The inner error is a reason for which this machine cannot.
+/// The picture of the documentation, as the tests render it.
 pub(crate) fn picture(
     anthronet: &Path,
     environment: &Environment,
     folder: &Path,
-) -> Outcome<Result<PathBuf, String>> {
+) -> Result<Available<PathBuf>> {
     let archive = match package_blender(environment, anthronet)? {
         Ok(archive) => archive,
         Err(reason) => return Ok(Err(reason)),
     };
-    let python = environment.python.as_ref().map_err(String::clone)?;
-    tools::run(script("blender_addon.py", python, &archive).arg(folder).arg("picturing"))?;
+    let python = environment.python.clone()?;
+    tools::run(script("blender_addon.py", &python, &archive).arg(folder).arg("picturing"))?;
     Ok(Ok(folder.join(PICTURE)))
 }
 
 /// A script of `tests` in a Blender, with the extension as its first argument.
 fn script(name: &str, python: &Path, archive: &Path) -> Command {
     let mut command = Command::new(python);
-    // The library has to come from the extension, not from a developer's folder.
+    // The library must come from the extension, not from a developer's folder.
     command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("ANTHRONET_LIBRARY");
     command.arg(tools::root().join("tests").join(name)).arg(archive);
     command

@@ -1,21 +1,22 @@
-//! The C ABI from C99 and C++17: what it returns, what it refuses, what it leaves behind, what it exports.
+//! The C ABI from C99 and C++17: results, refused arguments, leaks, exported symbols.
 //!
-//! The consumers lie in `tests/c`. gcc, and clang where there is one, compile them without a warning; the sanitizers and
-//! valgrind look on. The library itself is not instrumented: no stable Rust compiler does that.
+//! The programs are in `tests/c`. gcc, and clang if installed, compile them without a warning; they run under the
+//! sanitizers and valgrind. The library itself is not instrumented, which stable Rust does not support.
 
 use super::Tally;
 use crate::bindings::HEADER;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, Available, cargo};
+use anyhow::{Error, Result, anyhow, bail};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Strict, and as far as the consumers go beyond C99, POSIX: threads, clocks.
+/// Strict; beyond C99 the programs need threads and clocks of POSIX.
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-D_POSIX_C_SOURCE=200809L"];
 const C99: [&str; 1] = ["-std=c99"];
 const CPP17: [&str; 3] = ["-std=c++17", "-x", "c++"];
 const SANITIZERS: [&str; 3] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"];
-/// What the static library needs of the system.
+/// System libraries that the static library needs.
 const SYSTEM: [&str; 5] = ["-lstdc++", "-lgcc_s", "-lpthread", "-ldl", "-lm"];
 
 const VALUES: [&str; 7] = [
@@ -39,35 +40,33 @@ const ABUSE: [&str; 7] = [
 
 /// Cycles of generate and free.
 const CYCLES: &str = "10000";
-/// What the resident set may grow by meanwhile, MiB: less than three bodies.
+/// Limit of the growth of the resident set meanwhile, MiB: less than three bodies.
 const GROWTH: &str = "4";
 
 const MEBIBYTE: u64 = 1 << 20;
-/// The bar of the stripped library.
+/// Limit of the size of the stripped library.
 const LARGEST: u64 = 40 * MEBIBYTE;
-/// Part of glibc, and the unwinder that every system with a C++ program has.
+/// Libraries that it may need: those of glibc, and the unwinder, which comes with every C++ runtime.
 const NEEDED: [&str; 4] = ["libc.so", "libm.so", "libgcc_s.so", "ld-linux"];
-/// What the project's wheels promise: manylinux_2_34.
+/// The newest glibc that it may need, by the platform tag of the wheels: manylinux_2_34.
 const GLIBC: (u32, u32) = (2, 34);
 
-pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(programs: &Available<()>, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("c");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     library()?;
     tally.case("every function has a test in C", every_function_is_called());
     if let Err(reason) = programs {
-        for name in [
-            "the C ABI from C and C++",
-            "the C ABI under sanitizers and valgrind",
-            "what the library exports",
-        ] {
+        for name in
+            ["the C ABI from C and C++", "the C ABI under sanitizers and valgrind", "exports of the library"]
+        {
             tally.skip(name, reason);
         }
         return Ok(());
     }
     let bench = Bench { folder, library: tools::target().join("release") };
     exports(&bench, tally);
-    // Those that take long first.
+    // The slow ones first.
     let mut scripts = abuse(&bench, tally);
     scripts.extend(values(&bench, tally));
     tally.scripts(scripts);
@@ -79,7 +78,7 @@ pub(crate) fn run(programs: &Result<(), String>, folder: &Path, tally: &mut Tall
     Ok(())
 }
 
-/// Where consumers are built, and against what.
+/// Where the programs are built, and the folder of the library.
 struct Bench {
     folder: PathBuf,
     library: PathBuf,
@@ -101,7 +100,7 @@ impl Bench {
         self.built(tally, name, &mut command)
     }
 
-    /// Compiles a program that carries the library.
+    /// Compiles a program with the static library.
     fn build_static(
         &self,
         tally: &mut Tally,
@@ -117,7 +116,7 @@ impl Bench {
     fn compiler(&self, compiler: &str, flags: &[&str], sources: &[&str], program: &Path) -> Command {
         let mut command = Command::new(compiler);
         let sources = sources.iter().map(|source| tools::root().join("tests/c").join(source));
-        // Not to be taken for C++, too.
+        // `-x none`, so that the library is not compiled as C++.
         command.args(WARNINGS).args(flags).args(sources).args(["-x", "none"]).arg("-o").arg(program);
         command
     }
@@ -141,21 +140,21 @@ impl Bench {
         };
         let name = program.file_name().unwrap_or_default().to_string_lossy();
         let folder = self.folder.join(format!("files of {name}"));
-        // Where it is not made the tests say so.
+        // If that fails the tests report it.
         let _ = std::fs::create_dir_all(&folder);
         command.arg(tools::root().join("model/anthronet.safetensors")).arg(folder);
         command
     }
 
-    /// Likewise under valgrind, with fewer rounds, and its name.
-    fn watched(&self, name: &str, program: &Path) -> (String, Command) {
+    /// Likewise under valgrind, with fewer rounds; with its name.
+    fn under_valgrind(&self, name: &str, program: &Path) -> (String, Command) {
         let mut command = self.tests(program, &VALGRIND);
         command.arg("few");
         (format!("{name} under valgrind"), command)
     }
 }
 
-/// What every function returns: C99 and C++17, both libraries, both compilers, the sanitizers, and valgrind.
+/// Tests of the results of every function: C99 and C++17, both libraries, both compilers, the sanitizers, valgrind.
 fn values(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
     let clang = tools::output(Command::new("clang").arg("--version")).is_ok();
     let sanitized = |standard: &[&'static str]| [standard, &SANITIZERS].concat();
@@ -179,14 +178,14 @@ fn values(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
         [("values in C99", "gcc", &C99[..]), ("values in C++17", "g++", &CPP17[..])]
     {
         if let Some(program) = bench.build(tally, name, compiler, &[standard, &["-g"]].concat(), &VALUES) {
-            scripts.push(bench.watched(name, &program));
+            scripts.push(bench.under_valgrind(name, &program));
         }
     }
     scripts
 }
 
-/// What every function refuses, watched by the sanitizers and, with fewer rounds, by valgrind, which sees into the
-/// library, too.
+/// Tests of what every function refuses, under the sanitizers and, with fewer rounds, under valgrind, which checks the
+/// library too.
 fn abuse(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
     let mut scripts = Vec::new();
     let sanitized = [&C99[..], &SANITIZERS].concat();
@@ -194,12 +193,12 @@ fn abuse(bench: &Bench, tally: &mut Tally) -> Vec<(String, Command)> {
         scripts.push(("abuse under sanitizers".to_owned(), bench.tests(&program, &[])));
     }
     if let Some(program) = bench.build(tally, "abuse", "gcc", &[&C99[..], &["-g"]].concat(), &ABUSE) {
-        scripts.push(bench.watched("abuse", &program));
+        scripts.push(bench.under_valgrind("abuse", &program));
     }
     scripts
 }
 
-/// Fails on reads and writes where nobody may, and on memory that nobody knows of any more.
+/// Fails on invalid reads and writes and on lost memory.
 const VALGRIND: [&str; 6] = [
     "valgrind",
     "--quiet",
@@ -209,53 +208,52 @@ const VALGRIND: [&str; 6] = [
     "--errors-for-leak-kinds=definite,indirect",
 ];
 
-/// Many bodies made and freed: the resident set stays, and valgrind finds nothing lost after a few.
+/// Many bodies made and freed: the resident set does not grow, and valgrind finds no leak after a few.
 fn leaks(bench: &Bench, tally: &mut Tally) {
     let flags = [&C99[..], &["-O1", "-g"]].concat();
     let Some(program) = bench.build(tally, "cycles", "gcc", &flags, &["cycles.c"]) else { return };
     tally.script("generate and free", Command::new(&program).args([CYCLES, GROWTH]));
     let mut few = Command::new(VALGRIND[0]);
-    // Valgrind holds freed memory back, so the resident set says nothing.
+    // Valgrind delays the reuse of freed memory, so the resident set is not limited.
     few.args(&VALGRIND[1..]).arg(&program).args(["12", "1000000"]);
     let lost = tools::output(&mut few).map(drop);
     tally.case("valgrind finds nothing lost in 12 cycles of generate and free", lost);
 }
 
 /// Builds the library as it is released.
-fn library() -> Outcome {
+fn library() -> Result<()> {
     tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))
 }
 
-/// The same requests through the crate and through the library opened by a Rust program. It leaves the lists of requests and
-/// of what they must give to the tests of the other languages, in `tmp/same_bytes`.
-pub(super) fn byte_lists() -> Outcome {
+/// The same requests through the crate and through the library opened by a Rust program. Writes the lists of requests and of
+/// expected hashes for the tests in other languages to `tmp/same_bytes`.
+pub(super) fn byte_lists() -> Result<()> {
     library()?;
-    // With the packages, features and profile of the unit tests, which have built it by now: that the profile differs
-    // from the library's makes the test the harder.
+    // With the packages, features and profile of the unit tests, which have built it by now; a profile other than the
+    // library's makes the test stricter.
     let mut test = cargo("test");
     test.args(["--workspace", "--all-features", "--test", "same_bytes"]);
     tools::run(test.env("ANTHRONET_LIBRARY", tools::target().join("release/libanthronet.so")))
 }
 
 /// The same requests through the crate, the library opened by a Rust program, C and C++.
-fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
+fn same_bytes(bench: &Bench, tally: &mut Tally) -> Result<()> {
     let library = bench.library.join("libanthronet.so");
     tally.case("same bytes: 200 requests through the crate and through the library", byte_lists());
-    // The sanitizer's allocator, which sees freed memory used by libc and freed twice, and what is lost: the code is not
-    // instrumented.
+    // The code is not instrumented; the sanitizer's allocator still finds double frees, leaks, and uses of freed memory by
+    // libc.
     let sanitizer = tools::output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
     let preload = format!("LD_PRELOAD={}", sanitizer.trim());
     let sanitized = ["env", &preload, "ASAN_OPTIONS=detect_leaks=1"];
-    for (watcher, runner) in [("AddressSanitizer's allocator", &sanitized[..]), ("valgrind", &VALGRIND[..])] {
+    for (checker, runner) in [("AddressSanitizer's allocator", &sanitized[..]), ("valgrind", &VALGRIND[..])] {
         let runner = runner.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(",");
-        let mut watched = cargo("test");
-        watched
-            .args(["--workspace", "--all-features", "--test", "same_bytes"])
+        let mut test = cargo("test");
+        test.args(["--workspace", "--all-features", "--test", "same_bytes"])
             .args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")])
             .env("ANTHRONET_LIBRARY", &library)
             .env("ANTHRONET_REQUESTS", "4");
-        let name = format!("{watcher}: a program in Rust that opens the library, 4 requests");
-        tally.case(&name, tools::run(&mut watched));
+        let name = format!("{checker}: a program in Rust that opens the library, 4 requests");
+        tally.case(&name, tools::run(&mut test));
     }
     let list = tools::target().join("tmp/same_bytes");
     let expected = tools::read(&list.join("sha256.txt"))?;
@@ -281,18 +279,18 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Outcome {
 }
 
 /// Fails with the first line that differs.
-fn same_lines(expected: &str, got: &str) -> Outcome {
+fn same_lines(expected: &str, got: &str) -> Result<()> {
     let (expected, got): (Vec<_>, Vec<_>) = (expected.lines().collect(), got.lines().collect());
     if expected.len() != got.len() {
-        return Err(format!("expected {} lines, got {}", expected.len(), got.len()));
+        bail!("expected {} lines, got {}", expected.len(), got.len());
     }
     match expected.iter().zip(&got).enumerate().find(|(_, (a, b))| a != b) {
         None => Ok(()),
-        Some((i, (a, b))) => Err(format!("request {i}: expected {a}, got {b}")),
+        Some((i, (a, b))) => Err(anyhow!("request {i}: expected {a}, got {b}")),
     }
 }
 
-/// What a stripped library shows, weighs and needs.
+/// Exported symbols, size and dependencies of the stripped library.
 fn exports(bench: &Bench, tally: &mut Tally) {
     let stripped = bench.folder.join("libanthronet.so");
     let made = bench.library.join("libanthronet.so");
@@ -309,15 +307,15 @@ fn exports(bench: &Bench, tally: &mut Tally) {
     });
     tally.case("the library exports the functions of the header and nothing else", shown);
 
-    let size = std::fs::metadata(&stripped).map_err(|e| e.to_string()).map(|file| file.len());
+    let size = std::fs::metadata(&stripped).map(|file| file.len()).map_err(Error::from);
     let name = format!(
-        "stripped it weighs {} MiB of {}",
+        "stripped it has {} MiB, limit {}",
         size.as_ref().map_or(0, |s| s / MEBIBYTE),
         LARGEST / MEBIBYTE
     );
     tally.case(
         &name,
-        size.and_then(|size| if size < LARGEST { Ok(()) } else { Err(format!("{size} bytes")) }),
+        size.and_then(|size| if size < LARGEST { Ok(()) } else { Err(anyhow!("{size} bytes")) }),
     );
 
     let dynamic = tools::output(Command::new("readelf").args(["--wide", "--dynamic"]).arg(&stripped));
@@ -329,7 +327,7 @@ fn exports(bench: &Bench, tally: &mut Tally) {
             &names.filter(|name| !NEEDED.iter().any(|known| name.starts_with(known))).collect::<Vec<_>>(),
         )
     });
-    tally.case("it needs glibc and the unwinder alone", foreign);
+    tally.case("it needs glibc and the unwinder only", foreign);
 
     let versions = tools::output(Command::new("readelf").args(["--wide", "--version-info"]).arg(&stripped));
     let newest = versions.map(|text| {
@@ -342,31 +340,31 @@ fn exports(bench: &Bench, tally: &mut Tally) {
     let (major, minor) = GLIBC;
     let old_enough = newest.and_then(|newest: (u32, u32)| match newest <= GLIBC {
         true => Ok(()),
-        false => Err(format!("needs {}.{}", newest.0, newest.1)),
+        false => Err(anyhow!("needs {}.{}", newest.0, newest.1)),
     });
     tally.case(&format!("it runs with glibc {major}.{minor}"), old_enough);
 }
 
-fn none(what: &str, found: &[&str]) -> Outcome {
-    if found.is_empty() { Ok(()) } else { Err(format!("{what}: {}", found.join(", "))) }
+fn none(what: &str, found: &[&str]) -> Result<()> {
+    if found.is_empty() { Ok(()) } else { Err(anyhow!("{what}: {}", found.join(", "))) }
 }
 
 /// Every function of the header is called by the tests of values, and by those of abuse unless it cannot be misused.
-fn every_function_is_called() -> Outcome {
+fn every_function_is_called() -> Result<()> {
     let header = tools::read(&tools::root().join(HEADER))?;
-    let read = |names: &[&str]| -> Outcome<String> {
+    let read = |names: &[&str]| -> Result<String> {
         names.iter().map(|name| tools::read(&tools::root().join("tests/c").join(name))).collect()
     };
     let (values, abuse) = (read(&VALUES)?, read(&ABUSE)?);
     let (values, abuse) = (functions(&values), functions(&abuse));
     let functions = functions(&header);
     if functions.len() < 50 {
-        return Err(format!("{HEADER}: found {} functions", functions.len()));
+        bail!("{HEADER}: found {} functions", functions.len());
     }
     let takes_nothing = |name: &str| name.ends_with("_count") || name == "anthronet_abi_version";
     let untested = functions.iter().filter(|name| !values.contains(*name));
-    let unharmed = functions.iter().filter(|name| !abuse.contains(*name) && !takes_nothing(name));
-    none("without a test", &untested.chain(unharmed).copied().collect::<Vec<_>>())
+    let unabused = functions.iter().filter(|name| !abuse.contains(*name) && !takes_nothing(name));
+    none("without a test", &untested.chain(unabused).copied().collect::<Vec<_>>())
 }
 
 /// The words `anthronet_…(` of a text in C, comments left out.

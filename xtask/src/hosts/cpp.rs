@@ -1,18 +1,24 @@
-//! The package for C++: built by CMake and Ninja as its users do, run, and what it wrote looked at by others.
+//! The package for C++: used from CMake and Ninja as its users do, run, and its files checked by third-party programs.
 
+use anyhow::{Result, anyhow};
 use std::path::Path;
 use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::package_cpp;
-use crate::tools::{self, Outcome};
+use crate::tools;
 
-/// A person with something given and something drawn.
+/// A request with given measures and a seed.
 const REQUEST: &str =
     r#"{"sex": "male", "measures": {"height": 1.78, "chest_circumference": 1.02}, "seed": 3}"#;
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     tally.case("C++: the README's program is the compiled one", readme_is_compiled());
     let [cmake, ninja] = match ["cmake", "ninja"].map(|name| environment.program(name)) {
         [Ok(cmake), Ok(ninja)] => [cmake, ninja],
@@ -60,7 +66,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     Ok(())
 }
 
-fn in_other_programs(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+fn in_other_programs(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
     let [glb, usdc, person, text] =
         ["walk.glb", "walk.usdc", "person.glb", "walk.txt"].map(|name| folder.join(name));
     match environment.node_script("validate.mjs")? {
@@ -79,19 +85,19 @@ fn in_other_programs(environment: &Environment, folder: &Path, tally: &mut Tally
     Ok(())
 }
 
-fn readme_is_compiled() -> Outcome {
+fn readme_is_compiled() -> Result<()> {
     let [readme, example] =
         ["cxx/README.md", "cxx/examples/person.cpp"].map(|file| tools::read(&tools::root().join(file)));
     match readme?.contains(example?.trim_end()) {
         true => Ok(()),
-        false => Err("cxx/README.md does not show cxx/examples/person.cpp".to_owned()),
+        false => Err(anyhow!("cxx/README.md does not show cxx/examples/person.cpp")),
     }
 }
 
-fn ends_in_metres(said: &str) -> Outcome {
+fn ends_in_metres(said: &str) -> Result<()> {
     let metres = said.trim().strip_suffix(" m").and_then(|number| number.parse::<f64>().ok());
     match metres {
         Some(waist) if (0.4..1.5).contains(&waist) => Ok(()),
-        _ => Err(format!("expected the circumference of a waist, got `{}`", said.trim())),
+        _ => Err(anyhow!("expected the circumference of a waist, got `{}`", said.trim())),
     }
 }

@@ -1,8 +1,8 @@
-//! The cross-boundary tests: files of the released command in programs that are not ours.
+//! The cross-boundary tests: files of the released command in third-party programs.
 //!
 //! The scripts lie in `tests/`. A script prints one line per case, `ok NAME`, `FAILED NAME: why` or
-//! `skipped NAME: why`; all its other lines are for the reader. The tests of the Python package are pytest's, which
-//! `tests/python/conftest.py` makes print the same.
+//! `skipped NAME: why`; other lines are for the reader. The tests of the Python package run under pytest, with the same
+//! output from `tests/python/conftest.py`.
 
 mod animation;
 mod blender;
@@ -18,20 +18,19 @@ mod usd;
 
 use crate::environment::{self, Environment};
 use crate::requests::PEOPLE;
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available};
 use crate::{bless, requests};
+use anyhow::{Context as _, Error, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tally::Tally;
 
-pub(crate) fn run() -> Outcome {
+pub(crate) fn run() -> Result<()> {
     let anthronet = tools::command_line()?;
     let environment = environment::prepare()?;
     let folder = tools::target().join("test-env/out");
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: cannot empty: {e}", folder.display()))?;
-    }
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::remove_folder(&folder)?;
+    tools::create_folder(&folder)?;
 
     let mut tally = Tally::default();
     println!("cross-boundary tests");
@@ -52,15 +51,15 @@ pub(crate) fn run() -> Outcome {
     close(&tally)
 }
 
-/// The consumers of the C ABI alone.
-pub(crate) fn run_c() -> Outcome {
+/// Only the programs that use the C ABI.
+pub(crate) fn run_c() -> Result<()> {
     let mut tally = Tally::default();
     c::run(&environment::c_programs(), &tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
 }
 
-/// The package for C++ alone.
-pub(crate) fn run_cpp() -> Outcome {
+/// Only the package for C++.
+pub(crate) fn run_cpp() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
     let mut tally = Tally::default();
@@ -68,8 +67,8 @@ pub(crate) fn run_cpp() -> Outcome {
     close(&tally)
 }
 
-/// The Python package alone.
-pub(crate) fn run_python() -> Outcome {
+/// Only the Python package.
+pub(crate) fn run_python() -> Result<()> {
     let (anthronet, environment) = (tools::command_line()?, environment::prepare()?);
     c::byte_lists()?;
     let mut tally = Tally::default();
@@ -77,48 +76,47 @@ pub(crate) fn run_python() -> Outcome {
     close(&tally)
 }
 
-/// The Unity package alone.
-pub(crate) fn run_unity() -> Outcome {
+/// Only the Unity package.
+pub(crate) fn run_unity() -> Result<()> {
     c::byte_lists()?;
     let mut tally = Tally::default();
     unity::run(&tools::target().join("test-env/out"), &mut tally)?;
     close(&tally)
 }
 
-/// The Blender extension alone.
-pub(crate) fn run_blender() -> Outcome {
+/// Only the Blender extension.
+pub(crate) fn run_blender() -> Result<()> {
     let mut tally = Tally::default();
     let folder = tools::target().join("test-env/out");
     blender::run(&tools::command_line()?, &environment::prepare()?, &folder, &mut tally)?;
     close(&tally)
 }
 
-/// The picture of the Blender extension, rendered anew into a folder; the inner error is a reason for which this machine
-/// cannot.
-pub(crate) fn blender_picture(folder: &Path) -> Outcome<Result<PathBuf, String>> {
+/// Renders the picture of the Blender extension into a folder.
+pub(crate) fn blender_picture(folder: &Path) -> Result<Available<PathBuf>> {
     blender::picture(&tools::command_line()?, &environment::prepare()?, folder)
 }
 
-/// The table of motion alone.
-pub(crate) fn run_motion() -> Outcome {
+/// Only the table of motion.
+pub(crate) fn run_motion() -> Result<()> {
     let mut tally = Tally::default();
     motion::run(&tools::command_line()?, &mut tally);
     close(&tally)
 }
 
 /// Prints the counts.
-fn close(tally: &Tally) -> Outcome {
+fn close(tally: &Tally) -> Result<()> {
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.skipped);
     match tally.failed {
         0 => Ok(()),
-        n => Err(format!("{n} cross-boundary tests failed")),
+        n => Err(anyhow!("{n} cross-boundary tests failed")),
     }
 }
 
 /// `anthronet generate` with these arguments into a file.
-fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Outcome {
+fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u32>) -> Result<()> {
     let mut command = Command::new(anthronet);
-    // From the root, where the motion files of the tests are.
+    // Paths of motion files are relative to the root.
     command.current_dir(tools::root()).arg("generate").args(arguments).arg("-o").arg(file);
     if let Some(threads) = threads {
         command.env("RAYON_NUM_THREADS", threads.to_string());
@@ -126,31 +124,31 @@ fn generate(anthronet: &Path, arguments: &[&str], file: &Path, threads: Option<u
     tools::output(&mut command).map(drop)
 }
 
-/// The command that users build has no networks and says how to get one that has. The workspace's tests build it with.
+/// The command as users build it has no networks and says how to get them; the workspace's tests build it with networks.
 fn without_networks(anthronet: &Path, tally: &mut Tally) {
     for arguments in [&["evaluate"][..], &["train", "generator"], &["train", "scores"]] {
         let text = arguments.join(" ");
         let result = Command::new(anthronet).args(arguments).output();
-        let result = result.map_err(|e| e.to_string()).and_then(|output| {
+        let result = result.map_err(Error::from).and_then(|output| {
             let said = String::from_utf8_lossy(&output.stderr);
             let expected = format!("this build has no networks: run `cargo anthronet-train {text}`");
             let right = output.status.code() == Some(2) && said.contains(&expected);
-            right.then_some(()).ok_or_else(|| format!("{}: {said}", output.status))
+            right.then_some(()).with_context(|| format!("{}: {said}", output.status))
         });
         tally.case(&format!("without networks: {text}"), result);
     }
 }
 
 /// The same request gives the same bytes, whatever the number of threads, and the bytes of the golden.
-fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
+fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Result<()> {
     let golden = bless::golden()?;
     for person in PEOPLE {
-        let hash = |threads| -> Outcome<String> {
+        let hash = |threads| -> Result<String> {
             let file = folder.join(format!("{}_{threads}_threads.glb", person.name));
             generate(anthronet, person.arguments, &file, Some(threads))?;
             bless::hash(&file)
         };
-        let hashes = [1, 2, 8].into_iter().map(hash).collect::<Outcome<Vec<_>>>();
+        let hashes = [1, 2, 8].into_iter().map(hash).collect::<Result<Vec<_>>>();
         let hashes = match hashes {
             Ok(hashes) => hashes,
             Err(why) => {
@@ -162,16 +160,16 @@ fn same_bytes(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Outcome {
         let differ = || format!("1, 2 and 8 threads gave {}", hashes.join(", "));
         tally.case(
             &format!("same bytes over threads: {}", person.name),
-            same.then_some(()).ok_or_else(differ),
+            same.then_some(()).with_context(differ),
         );
 
         let name = format!("same bytes as the golden: {}", person.name);
         match golden.as_ref().map(|golden| golden.get(person.name)) {
             None => tally.skip(&name, "tests/golden/hashes.json is missing, `cargo xtask bless` writes it"),
-            Some(None) => tally.case(&name, Err("not in tests/golden/hashes.json".to_owned())),
+            Some(None) => tally.case(&name, Err(anyhow!("not in tests/golden/hashes.json"))),
             Some(Some(expected)) => {
                 let differs = || format!("expected {expected}, got {}", hashes[0]);
-                tally.case(&name, (*expected == hashes[0]).then_some(()).ok_or_else(differs));
+                tally.case(&name, (*expected == hashes[0]).then_some(()).with_context(differs));
             }
         }
     }
@@ -208,7 +206,7 @@ fn in_other_programs(
     folder: &Path,
     files: &[PathBuf],
     tally: &mut Tally,
-) -> Outcome {
+) -> Result<()> {
     match environment.node_script("validate.mjs")? {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),
@@ -222,7 +220,7 @@ fn in_other_programs(
     let python = |script| environment.python_script(script);
     tally.script("measures by numpy and scipy", python("measure_glb.py")?.arg(anthronet).arg(folder));
 
-    // What the two programs below have to agree with, once per file.
+    // The reference for the two programs below, once per file.
     for (stem, arguments) in [
         ("posed_4", [requests::README, &["--influences", "4"]].concat()),
         ("posed_8", [requests::README, &["--influences", "8"]].concat()),

@@ -1,16 +1,17 @@
 //! Morph targets in the Khronos validator, three.js, Pixar's USD and Blender.
 
+use anyhow::Result;
 use std::path::Path;
 use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 
-/// What the example writes; the library has no character with morph targets yet that the command could.
+/// Files of the example; no character of the library has morph targets that the command could write.
 const FILES: [&str; 5] = ["morph.glb", "morph_meshopt.glb", "morph.vrm", "morph.usda", "morph.usdc"];
 
-pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("morph");
     // With the packages, features and profile of the unit tests, which have built it by now.
     let build = ["--workspace", "--all-features", "--example", "morph_dump"];

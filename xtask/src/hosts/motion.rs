@@ -1,11 +1,12 @@
-//! Motion files of others on bodies from small to tall: the table that `anthronet evaluate` prints, against its bars.
+//! Motion files retargeted to bodies from short to tall: the table of `anthronet evaluate`, checked against its limits.
 
 use super::Tally;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A number of the table, the most that it may be, and its unit.
+/// A number of the table, its limit and its unit.
 const BARS: [(&str, f64, &str); 5] = [
     ("direction_worst_clip_mean_deg", 3.0, "°"),
     ("beyond_limits_deg", 5.0, "°"),
@@ -34,15 +35,15 @@ pub(crate) fn run(anthronet: &Path, tally: &mut Tally) {
         println!("  {row}");
     }
     for (name, most, unit) in BARS {
-        // What is missing or not a number is not within its bar either.
+        // A missing number fails too.
         let within = table[name].as_f64().is_some_and(|value| value <= most);
         let said = format!("{name} {} {unit}, at most {most}", table[name]);
-        tally.case(&format!("motion files: {said}"), within.then_some(()).ok_or(said));
+        tally.case(&format!("motion files: {said}"), within.then_some(()).context(said.clone()));
     }
     let counts = (table["bodies"].as_u64(), table["clips"].as_u64());
     let said = || format!("{} clips on {} bodies", table["clips"], table["bodies"]);
     let enough = counts >= (Some(10), Some(30));
-    tally.case(&format!("motion files: {}", said()), enough.then_some(()).ok_or_else(said));
+    tally.case(&format!("motion files: {}", said()), enough.then_some(()).with_context(said));
 }
 
 fn clips() -> PathBuf {
@@ -50,9 +51,9 @@ fn clips() -> PathBuf {
     shared.unwrap_or_else(|| tools::root().join("../shared")).join("data/clips")
 }
 
-fn table(anthronet: &Path, folder: &Path) -> Outcome<serde_json::Value> {
+fn table(anthronet: &Path, folder: &Path) -> Result<serde_json::Value> {
     let mut command = Command::new(anthronet);
     command.args(["evaluate", "--table", "motion", "--json", "--clips"]).arg(folder);
     let text = tools::output(&mut command)?;
-    serde_json::from_str(&text).map_err(|e| format!("the table: {e}"))
+    serde_json::from_str(&text).context("the table")
 }

@@ -1,15 +1,21 @@
-//! The Python package: its wheel in a clean environment of every Python that is there, measures by numpy and scipy,
-//! speed beside its bars.
+//! The Python package: its wheel in a clean environment of every Python on the machine, measures by numpy and scipy, and
+//! speed against its limits.
 
+use anyhow::Result;
 use std::path::Path;
 use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::{self, Environment};
 use crate::package;
-use crate::tools::{self, Outcome};
+use crate::tools;
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     let python = match &environment.python {
         Ok(python) => python,
         Err(reason) => {
@@ -25,7 +31,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         }
     };
     let folder = folder.join("python");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     let mut of_the_wheel = pytest(python, "test_wheel.py", &folder.join("wheel"));
     tally.script("the Python wheel", of_the_wheel.arg("--wheel").arg(&wheel));
     let mut types = pytest(python, "test_types.py", &folder.join("types"));
@@ -52,7 +58,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
         if version == environment::PYTHONS[0] {
             case("declarations", "test_declarations.py", &[]);
             case("files", "test_files.py", &[Path::new("--anthronet"), anthronet]);
-            // The consumers in C, which come first, have left the list.
+            // Written by the tests of the C ABI, which run first.
             let same_bytes = tools::target().join("tmp/same_bytes");
             case("same bytes", "test_same_bytes.py", &[Path::new("--same-bytes"), &same_bytes]);
             speed = Some(pytest(&clean, "test_speed.py", &folder.join("speed")));
@@ -68,8 +74,7 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
     Ok(())
 }
 
-/// Runs a file or folder of `tests/python` on the package that this Python has; what its tests write is left in a folder of
-/// their own.
+/// Runs a file or folder of `tests/python` on the package installed in this Python; its output files go to `folder`.
 fn pytest(python: &Path, tests: &str, folder: &Path) -> Command {
     let mut command = Command::new(python);
     command.env("PYTHONDONTWRITEBYTECODE", "1").env_remove("PYTHONPATH").env_remove("ANTHRONET_LIBRARY");

@@ -1,13 +1,14 @@
 //! Skinning against Blender's Armature modifier, UsdSkel, three.js, and its definition in double precision.
 
+use anyhow::Result;
 use std::path::Path;
 use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
 
-pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("skin");
     // With the packages, features and profile of the unit tests, which have built it by now; results do not depend on it.
     let build = ["--workspace", "--all-features", "--example", "skin_dump"];

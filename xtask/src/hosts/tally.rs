@@ -1,12 +1,13 @@
 //! Counting of cases, those of scripts included.
 
-use crate::tools::Outcome;
+use anyhow::{Result, anyhow};
+use std::fmt::Display;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What a script said, and how long it took.
+/// The output of a script, and how long it took.
 type Done = (std::io::Result<Output>, Duration);
 
 /// Cases so far.
@@ -19,14 +20,15 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Prints and counts one case.
-    pub(crate) fn case(&mut self, name: &str, result: Outcome) {
+    pub(crate) fn case(&mut self, name: &str, result: Result<()>) {
         match result {
             Ok(()) => self.line(&format!("ok {name}")),
-            Err(why) => self.line(&format!("FAILED {name}: {why}")),
+            Err(why) => self.line(&format!("FAILED {name}: {why:#}")),
         }
     }
 
-    pub(crate) fn skip(&mut self, name: &str, why: &str) {
+    /// Prints and counts a case that this machine cannot run.
+    pub(crate) fn skip(&mut self, name: &str, why: impl Display) {
         self.line(&format!("skipped {name}: {why}"));
     }
 
@@ -41,8 +43,7 @@ impl Tally {
         }
     }
 
-    /// Runs scripts that are not in each other's way on all cores, and counts them in order as [`script`](Self::script)
-    /// does, each when it is through.
+    /// Runs independent scripts in parallel on all cores, then counts them in order as [`script`](Self::script) does.
     pub(crate) fn scripts(&mut self, scripts: Vec<(String, Command)>) {
         let (names, commands): (Vec<_>, Vec<_>) = scripts.into_iter().unzip();
         let slots: Vec<Mutex<Option<Done>>> = names.iter().map(|_| Mutex::new(None)).collect();
@@ -79,7 +80,7 @@ impl Tally {
         }
     }
 
-    /// Runs a script and counts the cases that it prints; a script that breaks off is a failed case of its own.
+    /// Runs a script and counts the cases that it prints; a script that exits early is a failed case of its own.
     pub(crate) fn script(&mut self, name: &str, command: &mut Command) {
         println!("-- {name}");
         let before = self.counts();
@@ -98,16 +99,16 @@ impl Tally {
         (self.passed + self.failed + self.skipped, self.failed)
     }
 
-    /// A script that broke off or ran nothing is a failed case of its own. `before`: the counts before its lines.
+    /// Adds a failed case for a script that exited early or ran nothing. `before`: the counts before its lines.
     fn ended(&mut self, name: &str, before: (u32, u32), status: std::io::Result<ExitStatus>) {
         let (before, failed_before) = before;
         match status {
-            Err(e) => self.case(name, Err(format!("did not start: {e}"))),
+            Err(e) => self.case(name, Err(anyhow!("did not start: {e}"))),
             Ok(status) if !status.success() && self.failed == failed_before => {
-                self.case(name, Err(format!("broke off: {status}")));
+                self.case(name, Err(anyhow!("broke off: {status}")));
             }
             Ok(_) if self.counts().0 == before => {
-                self.case(name, Err("ran no case".to_owned()));
+                self.case(name, Err(anyhow!("ran no case")));
             }
             Ok(_) => {}
         }

@@ -1,17 +1,18 @@
 //! The Unity package: compiled by mono against stand-ins for Unity's own API and run with the real library.
 //!
-//! No Unity is run: `tests/unity/signatures.txt` lists what the stand-ins take for granted.
+//! Unity itself is not run: `tests/unity/signatures.txt` lists what the stand-ins assume of it.
 
 use super::tally::Tally;
 use crate::bindings::HEADER;
 use crate::environment;
 use crate::package::{package_unity, packed_library};
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Result, anyhow};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is compiled together: what the tests see of the package is all of it.
+/// Compiled into one assembly, so that the tests see all of the package.
 const SOURCES: [&str; 5] = [
     "unity_plugin/Runtime",
     "unity_plugin/Editor",
@@ -19,12 +20,12 @@ const SOURCES: [&str; 5] = [
     "unity_plugin/Tests",
     "tests/unity",
 ];
-/// What players compile: without the editor, and without Burst's package.
+/// Sources that players compile: without the editor, and without the Burst package.
 const PLAYER: [&str; 3] = ["unity_plugin/Runtime", "unity_plugin/Samples~", "tests/unity/stubs"];
-/// Characters that are made to measure how long it takes.
+/// Number of characters in the measurement of speed.
 const CROWD: &str = "1000";
 
-pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Result<()> {
     let archive = package_unity();
     match environment::python() {
         Ok(python) => {
@@ -35,13 +36,13 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
         }
         Err(reason) => tally.skip("Unity package", &reason),
     }
-    tally.case("the Unity package is packed", archive.map(drop));
+    tally.case("the Unity package is built", archive.map(drop));
     if let Err(reason) = environment::mono() {
         tally.skip("the Unity package under mono", &reason);
         return Ok(());
     }
     let folder = folder.join("unity");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: cannot create: {e}", folder.display()))?;
+    tools::create_folder(&folder)?;
     let player = compile(&folder.join("player.dll"), &PLAYER, &["-target:library"]);
     tally.case("the Unity package compiles for players", player);
     let program = folder.join("anthronet-unity-tests.exe");
@@ -54,7 +55,7 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
     }
     let library = packed_library();
     tally.case(
-        "the Unity package's library exports the C interface and what Unity looks for",
+        "the Unity package's library exports the C interface and the entries that Unity calls",
         exports(&library),
     );
     let with_library = |program: &str| {
@@ -82,10 +83,10 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
         }
     }
     if results.exists() {
-        std::fs::remove_file(&results).map_err(|e| format!("{}: cannot remove: {e}", results.display()))?;
+        std::fs::remove_file(&results).with_context(|| format!("{}: cannot remove", results.display()))?;
     }
-    // That tests failed is in its results; what it prints besides is for whoever looks into the folder.
-    let console = tools::output(&mut nunit).unwrap_or_else(|why| why);
+    // Failed tests are in the results; the output is kept for debugging.
+    let console = tools::output(&mut nunit).unwrap_or_else(|error| format!("{error:#}"));
     tools::write(&folder.join("console.txt"), &console)?;
     let mut report = with_library("mono");
     report.arg(&program).arg("--report").arg(&results);
@@ -96,11 +97,11 @@ pub(crate) fn run(folder: &Path, tally: &mut Tally) -> Outcome {
     Ok(())
 }
 
-/// What Unity calls, and what asks for what is behind it, beside the functions of the header.
+/// Exports beside the functions of the header: those that Unity calls, and accessors of their state.
 const ENTRIES: [&str; 4] =
     ["UnityPluginLoad", "UnityPluginUnload", "anthronet_unity_interfaces", "anthronet_unity_render_event"];
 
-fn exports(library: &Path) -> Outcome {
+fn exports(library: &Path) -> Result<()> {
     let symbols = tools::output(Command::new("nm").args(["-D", "--defined-only"]).arg(library))?;
     let shown: BTreeSet<_> = symbols.lines().filter_map(|line| line.split(' ').next_back()).collect();
     let header = tools::read(&tools::root().join(HEADER))?;
@@ -109,12 +110,12 @@ fn exports(library: &Path) -> Outcome {
     if differ.is_empty() {
         Ok(())
     } else {
-        Err(format!("not in both library and header: {}", differ.join(", ")))
+        Err(anyhow!("not in both library and header: {}", differ.join(", ")))
     }
 }
 
-/// Compiles scripts. Unity 2021 takes more than this language version; mono's compiler takes no more.
-fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Outcome {
+/// Compiles scripts. Unity 2021 supports a newer language version; mono's compiler does not.
+fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Result<()> {
     let mut command = Command::new("mcs");
     command.args(["-nologo", "-unsafe", "-langversion:7.2", "-warn:4", "-warnaserror"]);
     command.args(["-r:System.dll", "-r:System.Core.dll"]).args(arguments);
@@ -125,8 +126,8 @@ fn compile(out: &Path, sources: &[&str], arguments: &[&str]) -> Outcome {
     tools::run(&mut command)
 }
 
-/// Sizes and offsets as a compiler of C has them, in a file.
-fn layout(text: &str, folder: &Path) -> Outcome<PathBuf> {
+/// Writes sizes and offsets of the structures, according to a C compiler, to a file.
+fn layout(text: &str, folder: &Path) -> Result<PathBuf> {
     let [source, program, file] = ["layout.c", "layout", "layout.txt"].map(|name| folder.join(name));
     tools::write(&source, text)?;
     let include = tools::root().join("ffi/include");

@@ -1,12 +1,12 @@
 //! USD in Pixar's own library and in Blender, against the .glb of the same person and motion.
 
+use anyhow::{Context as _, Result};
 use std::path::Path;
 
 use super::generate;
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::requests::{BVH, README};
-use crate::tools::Outcome;
 
 /// One file of every ending; quads and triangles, both numbers of influences, several clips.
 const FILES: [(&str, &str, &[&str]); 3] = [
@@ -15,7 +15,12 @@ const FILES: [(&str, &str, &[&str]); 3] = [
     ("triangles", "usdz", &["--lod", "2", "--clip", "range_of_motion"]),
 ];
 
-pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, tally: &mut Tally) -> Outcome {
+pub(crate) fn run(
+    anthronet: &Path,
+    environment: &Environment,
+    folder: &Path,
+    tally: &mut Tally,
+) -> Result<()> {
     for (name, ending, arguments) in FILES {
         let arguments = [README, arguments].concat();
         let file = folder.join(format!("usd_{name}.{ending}"));
@@ -28,10 +33,12 @@ pub(crate) fn run(anthronet: &Path, environment: &Environment, folder: &Path, ta
             tally.case(&format!("generate usd_{name}.{ending}"), Err(why));
             continue;
         }
-        let read = |path: &Path| std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()));
+        let read = |path: &Path| std::fs::read(path).with_context(|| path.display().to_string());
         let same = read(&file)? == read(&again)?;
-        let differ = || "differ from those of one thread".to_owned();
-        tally.case(&format!("bytes of usd_{name}.{ending}"), same.then_some(()).ok_or_else(differ));
+        tally.case(
+            &format!("bytes of usd_{name}.{ending}"),
+            same.then_some(()).context("differ from those of one thread"),
+        );
 
         let title = format!("Pixar's USD, {name}.{ending}");
         match environment.python_script("usd_check.py") {

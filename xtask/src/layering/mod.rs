@@ -1,40 +1,39 @@
-//! Who may use whom inside the library: the table, held against the paths that the code really names.
+//! Which rooms of the library may use which: the paths in the code, checked against the table.
 //!
-//! A room is a folder or a file directly under `core/src`. Every path that starts at the crate's root is looked at,
-//! wherever it stands: `use crate::mesh::…`, `crate::mesh::…` in an expression, `use crate::{mesh, rig::…}`, and
+//! A room is a folder or a file directly under `core/src`. Every path that starts at the crate's root is checked,
+//! wherever it occurs: `use crate::mesh::…`, `crate::mesh::…` in an expression, `use crate::{mesh, rig::…}`, and
 //! chains of `super` that climb as far. Names that the root re-exports count as the room they come from.
 
 mod paths;
 mod table;
 
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Result, anyhow};
 use std::collections::BTreeMap;
 use std::path::Path;
 use syn::{Item, ItemMod, Meta};
 
-/// Where the table is, for whom it has nothing.
+/// Where the table is, for error messages.
 const TABLE: &str = "the table of xtask/src/layering/table.rs";
 
-/// One line per use of a room that the table does not grant: `path:line: …`.
-pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {
+/// One line per use of a room that the table does not allow: `path:line: …`.
+pub(crate) fn violations(source: &Path) -> Result<Vec<String>> {
     let lib = source.join("lib.rs");
     let shown = |path: &Path| path.strip_prefix(tools::root()).unwrap_or(path).display().to_string();
-    let broken = |path: &Path, e: &syn::Error| format!("{}:{}: {e}", shown(path), e.span().start().line);
+    let broken = |path: &Path, e: &syn::Error| anyhow!("{}:{}: {e}", shown(path), e.span().start().line);
     let root = syn::parse_file(&tools::read(&lib)?).map_err(|e| broken(&lib, &e))?;
     let root_names: BTreeMap<String, String> = paths::root_names(&root).into_iter().collect();
     let mut violations = Vec::new();
     if let Some(line) = open_beyond_tests(&root) {
         violations.push(format!(
-            "{}:{line}: `{}` is for tests alone: it needs `#[cfg(test)]`",
+            "{}:{line}: `{}` is for tests only: it needs `#[cfg(test)]`",
             shown(&lib),
             table::TESTING
         ));
     }
-    let mut files = Vec::new();
-    rust_files(source, &mut Vec::new(), &mut files)?;
-    for modules in files {
+    for path in tools::rust_files(source)? {
+        let modules = modules_of(source, &path);
         let Some(room) = modules.first() else { continue };
-        let path = file_of(source, &modules);
         if !table::is_room(room) {
             violations.push(format!("{}:1: the room `{room}` is not in {TABLE}", shown(&path)));
             continue;
@@ -53,7 +52,7 @@ pub(crate) fn violations(source: &Path) -> Outcome<Vec<String>> {
     Ok(violations)
 }
 
-/// The line at which the root declares the room of the tests without leaving it to tests.
+/// The line at which the root declares the room for tests without `#[cfg(test)]`.
 fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
     let for_tests = |module: &ItemMod| {
         module.attrs.iter().any(|attribute| match &attribute.meta {
@@ -69,43 +68,22 @@ fn open_beyond_tests(lib: &syn::File) -> Option<usize> {
     })
 }
 
-/// Collects the module paths of all files below a folder, in order: `mesh/mod.rs` and `mesh.rs` are `[mesh]`.
-fn rust_files(folder: &Path, modules: &mut Vec<String>, files: &mut Vec<Vec<String>>) -> Outcome {
-    let complain = |e: std::io::Error| format!("{}: cannot read: {e}", folder.display());
-    let mut entries =
-        std::fs::read_dir(folder).map_err(complain)?.collect::<Result<Vec<_>, _>>().map_err(complain)?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let path = entry.path();
-        let Some(stem) = path.file_stem().map(|s| s.to_string_lossy().into_owned()) else { continue };
-        if path.is_dir() {
-            modules.push(stem);
-            rust_files(&path, modules, files)?;
-            modules.pop();
-        } else if path.extension().is_some_and(|e| e == "rs") && !(modules.is_empty() && stem == "lib") {
-            let mut own = modules.clone();
-            if stem != "mod" {
-                own.push(stem);
-            }
-            files.push(own);
-        }
+/// The module path of a file below the sources: `mesh/mod.rs` and `mesh.rs` are `[mesh]`, `lib.rs` is `[]`.
+fn modules_of(source: &Path, file: &Path) -> Vec<String> {
+    let inner = file.strip_prefix(source).unwrap_or(file).with_extension("");
+    let mut modules: Vec<_> = inner.iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    if modules == ["lib"] || modules.last().is_some_and(|last| last == "mod") {
+        modules.pop();
     }
-    Ok(())
-}
-
-/// The file of a module path.
-fn file_of(source: &Path, modules: &[String]) -> std::path::PathBuf {
-    let base = modules.iter().fold(source.to_path_buf(), |path, module| path.join(module));
-    let file = base.with_extension("rs");
-    if file.is_file() { file } else { base.join("mod.rs") }
+    modules
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The complaints about a library of these files.
-    fn complaints(files: &[(&str, &str)]) -> Vec<String> {
+    /// The violations in a library of these files.
+    fn violations_in(files: &[(&str, &str)]) -> Vec<String> {
         let folder = tempfile::tempdir().unwrap();
         for (path, text) in files {
             tools::write(&folder.path().join(path), text).unwrap();
@@ -122,8 +100,8 @@ mod tests {
     }
 
     #[test]
-    fn what_the_table_does_not_grant_is_told_with_its_line() {
-        let found = complaints(&[
+    fn what_the_table_does_not_allow_is_reported_with_its_line() {
+        let found = violations_in(&[
             ("lib.rs", "pub use error::Error;\npub use body::Body;"),
             ("error.rs", "fn f() {}"),
             ("attic/mod.rs", ""),
@@ -144,15 +122,15 @@ mod tests {
     }
 
     #[test]
-    fn the_room_of_the_tests_is_for_tests_alone() {
+    fn the_room_for_tests_needs_cfg_test() {
         let rest = [
             ("testing/mod.rs", "use crate::scene::Scene;"),
             ("mesh.rs", "#[cfg(test)]\nmod tests { use crate::testing::body; }"),
         ];
-        let with = |lib| complaints(&[&[("lib.rs", lib)], &rest[..]].concat());
+        let with = |lib| violations_in(&[&[("lib.rs", lib)], &rest[..]].concat());
         assert!(with("#[cfg(test)]\nmod testing;").is_empty());
-        let told = "lib.rs:2: `testing` is for tests alone: it needs `#[cfg(test)]`";
-        assert_eq!(with("\npub mod testing;"), [told]);
-        assert_eq!(with("#[cfg(any(test, unix))]\nmod testing;"), [told]);
+        let reported = "lib.rs:2: `testing` is for tests only: it needs `#[cfg(test)]`";
+        assert_eq!(with("\npub mod testing;"), [reported]);
+        assert_eq!(with("#[cfg(any(test, unix))]\nmod testing;"), [reported]);
     }
 }

@@ -1,4 +1,4 @@
-//! Every path of a source file that starts at the crate's root, as syn reads it.
+//! Every path in a source file that starts at the crate's root, parsed by syn.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::visit::{self, Visit};
@@ -34,24 +34,23 @@ fn leaves(tree: &UseTree, room: &str, names: &mut Vec<(String, String)>) {
     }
 }
 
-/// How far a path has come, from its first name on.
+/// The module that the names of a path so far lead to.
 #[derive(Clone, Copy)]
 enum Place {
-    /// In the module where it stands, or this many modules above.
+    /// The module that contains the path, or this many modules above it.
     Above(usize),
-    /// At the crate's root: what comes next is a name of it.
+    /// The crate's root: the next name is one of its items.
     Root,
 }
 
 struct Paths {
-    /// How many modules lie around the code that is looked at, inline ones too.
+    /// Number of modules around the current code, inline ones included.
     depth: usize,
     found: Vec<(usize, String)>,
 }
 
 impl Paths {
-    /// Where a path is after one more name; none where it has left for a module that is not the root. A name at the root
-    /// is noted.
+    /// The module after one more name; `None` when the path cannot reach the root any more. Records a name at the root.
     fn step(&mut self, place: Place, name: &Ident) -> Option<Place> {
         match place {
             Place::Root => {
@@ -67,7 +66,7 @@ impl Paths {
     }
 
     fn note(&mut self, span: proc_macro2::Span, name: &str) {
-        // `crate::{self}` is the root itself, of which nothing is named.
+        // `crate::{self}` names the root itself.
         if name != "self" {
             self.found.push((span.start().line, name.to_owned()));
         }
@@ -83,7 +82,7 @@ impl Paths {
             UseTree::Name(name) => drop(self.step(place, &name.ident)),
             UseTree::Rename(name) => drop(self.step(place, &name.ident)),
             UseTree::Group(group) => group.items.iter().for_each(|tree| self.tree(tree, place)),
-            // All of the root is every room: no table grants that.
+            // A glob of the root is every room, which no row of the table allows.
             UseTree::Glob(glob) if matches!(place, Place::Root) => {
                 self.note(glob.star_token.spans[0], "*");
             }
@@ -91,8 +90,8 @@ impl Paths {
         }
     }
 
-    /// Paths among the tokens of a macro, of which nobody but the macro knows what they are: from a name that no `::`
-    /// precedes as far as names and `::` take turns, and into braces at the end.
+    /// Paths among the tokens of a macro, which need not parse as Rust: alternating names and `::`, from a name without `::`
+    /// before it, and into braces at the end.
     fn tokens(&mut self, tokens: TokenStream) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let mut i = 0;
@@ -184,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn every_way_to_name_the_root_is_seen() {
+    fn every_way_to_name_the_root_is_found() {
         let source = "use crate::mesh::Topology;\nuse crate::{\n  measure::{self, Sex}, rig::Skeleton,\n  Error};\n\
                       fn f() -> crate::Result<()> { crate::export::gltf::to_glb() }\npub(crate) fn g() {}\n\
                       impl crate::pose::Pose for Vec<crate::skin::Job> {}\npub(in crate::clip) fn h() {}";
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn macros_are_looked_into() {
+    fn paths_in_macros_are_found() {
         let source = "macro_rules! m { ($x:expr) => {\nuse $crate::{body::Body, mesh::{a, b}};\ncrate::rig::f($x); } }\n\
                       fn f() { assert_eq!(crate::pose::A,\n[super::clip::g(), other::crate_::x]); }\n\
                       #[cfg_attr(test, doc(crate::skin))]\nstruct S;";
@@ -228,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn all_of_the_root_and_other_crates_are_told_apart() {
+    fn globs_of_the_root_and_other_crates_are_distinguished() {
         let source =
             "use crate::*;\nuse crate::{self as root, mesh::*};\nuse ::body::Body;\nfn f() { ::body::g() }";
         assert_eq!(names(source, 1), lines([(1, "*"), (2, "mesh")]));

@@ -1,6 +1,6 @@
-//! The table of who may use whom. ARCHITECTURE.md has it too, for readers, and a test compares the two.
+//! The table of which rooms may use which. ARCHITECTURE.md has it too, for readers, and a test compares the two.
 
-/// A room and the rooms it may use, each of which stands above it; `lib.rs` may use everybody.
+/// A room and the rooms it may use, all of them above it; `lib.rs` may use every room.
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
@@ -25,11 +25,11 @@ const TABLE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Rooms without a view of bodies, open to everybody.
+/// Rooms that know nothing of bodies: every room may use them.
 const OPEN: &[&str] = &["error", "random", "side"];
 
-/// What tests share, where the library has such a room: it stands above and below all others, and so it is not in the
-/// table. Where it may be named is the compiler's to say, as the room is not there outside of tests.
+/// The room that tests share: it may use every room and every room may use it, so it is not in the table. The compiler
+/// refuses uses outside of tests, as the room does not exist there.
 pub(super) const TESTING: &str = "testing";
 
 /// Whether it is a room of the library.
@@ -97,16 +97,16 @@ mod tests {
             let mut our_granted = our_granted.to_vec();
             granted.sort_unstable();
             our_granted.sort_unstable();
-            assert_eq!(granted, our_granted, "ARCHITECTURE.md and {here} grant `{room}` different rooms");
+            assert_eq!(granted, our_granted, "ARCHITECTURE.md and {here} allow `{room}` different rooms");
         }
         assert_eq!(theirs.len(), TABLE.len(), "ARCHITECTURE.md and {here} have a different number of rooms");
         let (_, rest) = text.split_once("\nEverybody may use ").unwrap();
         let open = quoted(rest.split('.').next().unwrap());
-        assert_eq!(open, OPEN, "ARCHITECTURE.md and {here} open different rooms to everybody");
+        assert_eq!(open, OPEN, "ARCHITECTURE.md and {here} open different rooms to every room");
     }
 
     #[test]
-    fn what_tests_share_is_open_both_ways_and_nothing_else_is() {
+    fn only_the_room_for_tests_is_open_both_ways() {
         assert!(is_room(TESTING) && may_use("error", TESTING) && may_use(TESTING, "import"));
         assert!(may_use("mesh", "error") && may_use("measure", "mesh") && may_use("mesh", "mesh"));
         assert!(!may_use("mesh", "measure") && !may_use("error", "mesh"));

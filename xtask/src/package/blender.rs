@@ -2,19 +2,17 @@
 
 use super::python::package_python;
 use crate::environment::Environment;
-use crate::tools::{self, Outcome};
+use crate::tools::{self, Available};
+use anyhow::{Context as _, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where the wheel lies in the extension, as `blender_manifest.toml` names it.
+/// The folder of the wheel in the extension, as in `blender_manifest.toml`.
 const WHEELS: &str = "wheels";
 
-/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the command line, which tells
-/// what the model's measures are. The inner error is a reason for which this machine cannot.
-pub(crate) fn package_blender(
-    environment: &Environment,
-    anthronet: &Path,
-) -> Outcome<Result<PathBuf, String>> {
+/// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the measures that the command
+/// lists.
+pub(crate) fn package_blender(environment: &Environment, anthronet: &Path) -> Result<Available<PathBuf>> {
     let python = match (&environment.python, &environment.blender) {
         (Ok(python), Ok(())) => python,
         (Err(reason), _) | (_, Err(reason)) => return Ok(Err(reason.clone())),
@@ -22,18 +20,15 @@ pub(crate) fn package_blender(
     let wheel = package_python(python)?;
     let source = tools::root().join("blender_addon");
     let stage = tools::target().join("dist/stage/anthronet");
-    if stage.exists() {
-        std::fs::remove_dir_all(&stage).map_err(|e| format!("{}: cannot empty: {e}", stage.display()))?;
-    }
-    copy(&source, &stage)?;
-    let name = wheel.file_name().and_then(|name| name.to_str()).ok_or("the wheel has no name")?;
+    tools::remove_folder(&stage)?;
+    // Without what Python and earlier packaging leave in it.
+    tools::copy_except(&source, &stage, &["__pycache__", "data", WHEELS])?;
+    let name = wheel.file_name().and_then(|name| name.to_str()).context("the wheel has no name")?;
     let manifest = tools::read(&source.join("blender_manifest.toml"))?;
     if !manifest.contains(&format!("./{WHEELS}/{name}")) {
-        return Err(format!("blender_manifest.toml: expected the wheel {name}"));
+        bail!("blender_manifest.toml: expected the wheel {name}");
     }
-    let wheels = stage.join(WHEELS);
-    std::fs::create_dir_all(&wheels).map_err(|e| format!("{}: cannot create: {e}", wheels.display()))?;
-    std::fs::copy(&wheel, wheels.join(name)).map_err(|e| format!("{}: cannot copy: {e}", wheel.display()))?;
+    tools::copy(&wheel, &stage.join(WHEELS).join(name))?;
     tools::write(&stage.join("data/measures.json"), &measures(anthronet)?)?;
 
     let archive =
@@ -53,11 +48,11 @@ pub(crate) fn package_blender(
     Ok(Ok(archive))
 }
 
-/// What the extension knows of the measures before it loads the library.
-fn measures(anthronet: &Path) -> Outcome<String> {
+/// The measures, as JSON, for the extension to show before it loads the library.
+fn measures(anthronet: &Path) -> Result<String> {
     let info = tools::output(Command::new(anthronet).args(["info", "--json"]))?;
-    let info: serde_json::Value = serde_json::from_str(&info).map_err(|e| format!("info --json: {e}"))?;
-    let known = info["measures"].as_array().ok_or("info --json: no measures")?.iter().map(|measure| {
+    let info: serde_json::Value = serde_json::from_str(&info).context("info --json")?;
+    let known = info["measures"].as_array().context("info --json: no measures")?.iter().map(|measure| {
         let fields = ["name", "kind", "standard", "min", "max"];
         let fields = fields.map(|field| (field.to_owned(), measure[field].clone()));
         serde_json::Value::Object(fields.into_iter().collect())
@@ -65,29 +60,10 @@ fn measures(anthronet: &Path) -> Outcome<String> {
     Ok(serde_json::json!({ "measures": known.collect::<Vec<_>>() }).to_string() + "\n")
 }
 
-/// Blender's program that builds and validates extensions; it comes with the module.
-fn extension_tool(python: &Path) -> Outcome<PathBuf> {
+/// Blender's program that builds and validates extensions; part of its Python module.
+fn extension_tool(python: &Path) -> Result<PathBuf> {
     let script = "import glob, importlib.util, os; \
                   folder = os.path.dirname(importlib.util.find_spec('bpy').origin); \
                   print(glob.glob(folder + '/*/scripts/addons_core/bl_pkg/cli/blender_ext.py')[0])";
     Ok(PathBuf::from(tools::output(Command::new(python).args(["-c", script]))?.trim()))
-}
-
-/// Copies a folder, but for what Python and packaging leave in it.
-fn copy(from: &Path, to: &Path) -> Outcome {
-    let complain = |e: std::io::Error| format!("{}: cannot copy: {e}", from.display());
-    std::fs::create_dir_all(to).map_err(complain)?;
-    for entry in std::fs::read_dir(from).map_err(complain)? {
-        let entry = entry.map_err(complain)?;
-        let (name, path) = (entry.file_name(), entry.path());
-        if ["__pycache__", "data", WHEELS].iter().any(|left| name == *left) {
-            continue;
-        }
-        if path.is_dir() {
-            copy(&path, &to.join(name))?;
-        } else {
-            std::fs::copy(&path, to.join(name)).map_err(complain)?;
-        }
-    }
-    Ok(())
 }

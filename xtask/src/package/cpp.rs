@@ -1,4 +1,4 @@
-//! `cargo xtask package cpp`: a folder that CMake's `find_package(anthronet)` finds.
+//! `cargo xtask package cpp`: a folder for CMake's `find_package(anthronet)`.
 //!
 //! ```text
 //! target/dist/cpp/include/anthronet/{anthronet.hpp, bridge.h}   include/rust/cxx.h
@@ -6,42 +6,47 @@
 //! target/dist/cpp/examples                                      README.md, licences
 //! ```
 //!
-//! The C ABI's header is not in it: the archive does not hold those functions, and two archives of Rust in one program
-//! would hold the same runtime twice.
+//! It does not contain the C ABI's header: the archive lacks those functions, and two Rust archives in one program would
+//! duplicate the runtime.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
+use anyhow::{Context as _, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// What a build of the crate tells.
+/// The results of building the crate.
 #[derive(Default)]
 struct Built {
     archive: PathBuf,
     /// The folder with the generated headers.
     include: PathBuf,
-    /// What the archive needs of the system, as CMake links it.
+    /// System libraries that the archive needs, as CMake links them.
     libraries: Vec<String>,
 }
 
-/// Builds the archive and puts the package together; its folder.
-pub(crate) fn package_cpp() -> Outcome<PathBuf> {
+/// Builds the archive, assembles the package and returns its folder.
+pub(crate) fn package_cpp() -> Result<PathBuf> {
     let built = build()?;
     let source = tools::root().join("cxx");
     let package = tools::target().join("dist/cpp");
-    if package.exists() {
-        std::fs::remove_dir_all(&package).map_err(|e| format!("{}: cannot empty: {e}", package.display()))?;
-    }
+    tools::remove_folder(&package)?;
     let archive = built.archive.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    copy(&built.archive, &package.join("lib").join(&archive))?;
-    copy(&source.join("include/anthronet/anthronet.hpp"), &package.join("include/anthronet/anthronet.hpp"))?;
-    copy(&built.include.join("anthronet-cxx/src/bridge.rs.h"), &package.join("include/anthronet/bridge.h"))?;
-    copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
+    tools::copy(&built.archive, &package.join("lib").join(&archive))?;
+    tools::copy(
+        &source.join("include/anthronet/anthronet.hpp"),
+        &package.join("include/anthronet/anthronet.hpp"),
+    )?;
+    tools::copy(
+        &built.include.join("anthronet-cxx/src/bridge.rs.h"),
+        &package.join("include/anthronet/bridge.h"),
+    )?;
+    tools::copy(&built.include.join("rust/cxx.h"), &package.join("include/rust/cxx.h"))?;
     for name in ["README.md", "examples/person.cpp", "examples/walk.cpp"] {
-        copy(&source.join(name), &package.join(name))?;
+        tools::copy(&source.join(name), &package.join(name))?;
     }
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
-        copy(&tools::root().join(name), &package.join(name))?;
+        tools::copy(&tools::root().join(name), &package.join(name))?;
     }
     let version = env!("CARGO_PKG_VERSION");
     let numbers: Vec<_> = version.split('.').collect();
@@ -65,18 +70,18 @@ pub(crate) fn package_cpp() -> Outcome<PathBuf> {
     Ok(package)
 }
 
-fn build() -> Outcome<Built> {
-    // Cargo tells in JSON where it put what, and rustc in a note what the archive needs; cargo repeats both when nothing
-    // was to be built.
+fn build() -> Result<Built> {
+    // Cargo reports the paths of its outputs as JSON, and rustc the archive's system libraries in a note; cargo repeats both
+    // when everything is up to date.
     let mut command = cargo("rustc");
     command
         .args(["--release", "--package", "anthronet-cxx", "--message-format=json"])
         .args(["--", "--print", "native-static-libs"])
         .stderr(Stdio::inherit());
-    let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
+    let output = command.output().context("cargo did not start")?;
     let mut built = Built::default();
     for line in String::from_utf8_lossy(&output.stdout).lines() {
-        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's messages: {e}"))?;
+        let message: Value = serde_json::from_str(line).context("cargo's messages")?;
         let ours = message["package_id"].as_str().is_some_and(|id| id.contains("anthronet-cxx"));
         match message["reason"].as_str() {
             Some("compiler-message") if ours => {
@@ -98,15 +103,15 @@ fn build() -> Outcome<Built> {
         }
     }
     if !output.status.success() {
-        return Err(format!("cargo rustc --package anthronet-cxx failed: {}", output.status));
+        bail!("cargo rustc --package anthronet-cxx failed: {}", output.status);
     }
     if built.libraries.is_empty() || built.include.as_os_str().is_empty() || !built.archive.is_file() {
-        return Err("cargo did not say where anthronet-cxx is and what it needs".to_owned());
+        bail!("cargo did not say where anthronet-cxx is and what it needs");
     }
     Ok(built)
 }
 
-/// `-lm -lpthread -framework X kernel32.lib` as CMake takes it, each once.
+/// `-lm -lpthread -framework X kernel32.lib` as CMake expects them, each once.
 fn libraries(words: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut words = words.split_whitespace();
@@ -120,14 +125,6 @@ fn libraries(words: &str) -> Vec<String> {
         }
     }
     found
-}
-
-fn copy(from: &Path, to: &Path) -> Outcome {
-    let complain = |e| format!("{} to {}: cannot copy: {e}", from.display(), to.display());
-    if let Some(folder) = to.parent() {
-        std::fs::create_dir_all(folder).map_err(complain)?;
-    }
-    std::fs::copy(from, to).map(drop).map_err(complain)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `cargo xtask package`: what is handed to users, in `target/dist`.
+//! `cargo xtask package`: the packages for users, in `target/dist`.
 
 mod blender;
 mod cpp;
@@ -11,9 +11,10 @@ pub(crate) use python::{library, package_python};
 pub(crate) use unity::{package_unity, packed_library};
 
 use crate::environment;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::Result;
 
-/// What can be packaged.
+/// The packages.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Kind {
     /// The wheel of the Python package, with the library inside
@@ -26,7 +27,7 @@ pub(crate) enum Kind {
     Unity,
 }
 
-pub(crate) fn run(kind: Kind) -> Outcome {
+pub(crate) fn run(kind: Kind) -> Result<()> {
     let made = match kind {
         Kind::Python => package_python(&environment::python()?)?,
         Kind::Cpp => package_cpp()?,

@@ -1,23 +1,23 @@
-//! `cargo xtask package python`: the wheel, made by pip as a user would.
+//! `cargo xtask package python`: the wheel, built by pip as users do.
 
-use crate::tools::{self, Outcome, cargo};
+use crate::tools::{self, cargo};
+use anyhow::{Context as _, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Builds the shared library as users get it and returns its path.
-pub(crate) fn library() -> Outcome<PathBuf> {
+/// Builds the shared library as released and returns its path.
+pub(crate) fn library() -> Result<PathBuf> {
     tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))?;
     let name = format!("{}anthronet{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let path = tools::target().join("release").join(name);
-    if path.is_file() { Ok(path) } else { Err(format!("{}: not there after a build", path.display())) }
+    if path.is_file() { Ok(path) } else { Err(anyhow!("{}: not there after a build", path.display())) }
 }
 
-/// The wheel of the Python package, made by pip as a user would: its build backend builds the library, which is there
-/// already where the tests have got so far.
-pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
+/// The wheel of the Python package, built by pip as users do; its build backend finds the library already built.
+pub(crate) fn package_python(python: &Path) -> Result<PathBuf> {
     library()?;
     let dist = tools::target().join("dist");
-    let wheels = || -> Outcome<Vec<PathBuf>> {
+    let wheels = || -> Result<Vec<PathBuf>> {
         let entries = std::fs::read_dir(&dist).into_iter().flatten().flatten().map(|entry| entry.path());
         let ours = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -25,9 +25,9 @@ pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
         };
         Ok(entries.filter(ours).collect())
     };
-    // Older versions would be taken for this one.
+    // Wheels of older versions could be mistaken for this one.
     for old in wheels()? {
-        std::fs::remove_file(&old).map_err(|e| format!("{}: cannot remove: {e}", old.display()))?;
+        std::fs::remove_file(&old).with_context(|| format!("{}: cannot remove", old.display()))?;
     }
     let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--wheel-dir"];
     let mut command = Command::new(python);
@@ -35,6 +35,6 @@ pub(crate) fn package_python(python: &Path) -> Outcome<PathBuf> {
     tools::run(&mut command)?;
     match wheels()?.as_slice() {
         [wheel] => Ok(wheel.clone()),
-        found => Err(format!("{}: expected one wheel after pip, found {}", dist.display(), found.len())),
+        found => Err(anyhow!("{}: expected one wheel after pip, found {}", dist.display(), found.len())),
     }
 }

@@ -1,11 +1,12 @@
 //! `cargo xtask package unity`: the package as Unity's package manager installs it from a file.
 
 use super::library;
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where the library of this system goes in `Runtime/Plugins`, and its name there.
+/// Path of this system's library in `Runtime/Plugins`.
 const PLUGIN: &[&str] = if cfg!(windows) {
     &["Windows", "x86_64", "anthronet.dll"]
 } else if cfg!(target_os = "macos") {
@@ -14,27 +15,25 @@ const PLUGIN: &[&str] = if cfg!(windows) {
     &["Linux", "x86_64", "libanthronet.so"]
 };
 
-/// Makes `target/dist/com.anthronet.unity-<version>.tgz` from `unity_plugin` and the library of this system, with the
-/// import settings that wait for it in `Plugins~`.
-pub(crate) fn package_unity() -> Outcome<PathBuf> {
+/// Makes `target/dist/com.anthronet.unity-<version>.tgz` from `unity_plugin` and the library of this system, with its
+/// import settings from `Plugins~`.
+pub(crate) fn package_unity() -> Result<PathBuf> {
     let library = library()?;
     let dist = tools::target().join("dist");
     let stage = dist.join("stage/unity");
-    if stage.exists() {
-        std::fs::remove_dir_all(&stage).map_err(|e| format!("{}: cannot empty: {e}", stage.display()))?;
-    }
+    tools::remove_folder(&stage)?;
     let package = stage.join("package");
-    copy(&tools::root().join("unity_plugin"), &package)?;
+    tools::copy(&tools::root().join("unity_plugin"), &package)?;
     let (mut from, mut to) = (package.join("Plugins~"), package.join("Runtime/Plugins"));
     for name in PLUGIN {
-        std::fs::create_dir_all(&to).map_err(|e| format!("{}: cannot create: {e}", to.display()))?;
+        tools::create_folder(&to)?;
         (from, to) = (from.join(name), to.join(name));
-        copy(&with_meta(&from), &with_meta(&to))?;
+        tools::copy(&with_meta(&from), &with_meta(&to))?;
     }
     link(&library, &to)?;
-    // There Unity asks for no .meta files.
+    // Unity needs no .meta files in this folder.
     for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD_PARTY.md"] {
-        copy(&tools::root().join(name), &package.join("Documentation~").join(name))?;
+        tools::copy(&tools::root().join(name), &package.join("Documentation~").join(name))?;
     }
     let archive = dist.join(format!("com.anthronet.unity-{}.tgz", env!("CARGO_PKG_VERSION")));
     let plain = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"];
@@ -42,11 +41,11 @@ pub(crate) fn package_unity() -> Outcome<PathBuf> {
     Ok(archive)
 }
 
-/// The library of the package. On Linux it has what Unity looks for in a rendering plugin besides: the archive beside
-/// the shared library, linked with a file of C.
-fn link(library: &Path, to: &Path) -> Outcome {
+/// The library of the package. On Linux it also has the entries of a rendering plugin: the static library, linked with a
+/// file of C.
+fn link(library: &Path, to: &Path) -> Result<()> {
     if !cfg!(target_os = "linux") {
-        return copy(library, to);
+        return tools::copy(library, to);
     }
     let root = tools::root();
     let sources = root.join("unity_plugin/Plugins~");
@@ -67,7 +66,7 @@ fn link(library: &Path, to: &Path) -> Outcome {
     tools::run(command.args(["-ldl", "-lm"]))
 }
 
-/// Where packing puts the library of this system: a folder in which programs find it.
+/// Path of this system's library after packaging.
 pub(crate) fn packed_library() -> PathBuf {
     PLUGIN
         .iter()
@@ -78,18 +77,4 @@ fn with_meta(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".meta");
     name.into()
-}
-
-/// Copies a file, or a folder with all that is in it.
-fn copy(from: &Path, to: &Path) -> Outcome {
-    let complain = |e: std::io::Error| format!("{}: cannot copy: {e}", from.display());
-    if !from.is_dir() {
-        return std::fs::copy(from, to).map(drop).map_err(complain);
-    }
-    std::fs::create_dir_all(to).map_err(complain)?;
-    for entry in std::fs::read_dir(from).map_err(complain)? {
-        let entry = entry.map_err(complain)?;
-        copy(&entry.path(), &to.join(entry.file_name()))?;
-    }
-    Ok(())
 }

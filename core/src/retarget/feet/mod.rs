@@ -144,6 +144,4 @@ fn for_each_pose(clip: &Clip, mut visit: impl FnMut(usize, &Pose)) {
 }
 
 #[cfg(test)]
-mod builtin_tests;
-#[cfg(test)]
 mod tests;

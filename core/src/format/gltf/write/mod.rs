@@ -197,6 +197,4 @@ fn percent_encoded(name: &str) -> String {
 }
 
 #[cfg(test)]
-mod motion_tests;
-#[cfg(test)]
 mod tests;

@@ -1,3 +1,5 @@
+mod builtin;
+
 use glam::Vec3;
 
 use super::*;

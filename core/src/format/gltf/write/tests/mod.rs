@@ -1,5 +1,7 @@
 //! The written bytes are taken apart by hand here: reading them back with the crate's own importer would prove little.
 
+mod motion;
+
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 

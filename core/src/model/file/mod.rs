@@ -5,9 +5,12 @@
 //! provenance, and a checksum: the SHA-256 of the whole file with the checksum's own 64 digits as zeros, which detects a
 //! change anywhere in the file. Sizes in the file are checked against each other before they are used.
 
+mod arrays;
+
+use arrays::{Arrays, Reader};
 use glam::Vec3;
 use half::f16;
-use safetensors::tensor::{Dtype, SafeTensors, TensorView};
+use safetensors::tensor::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -16,8 +19,8 @@ use super::shape_space::ShapeSpace;
 use crate::condition::{MeasureRange, Prior};
 use crate::measure::MEASURE_COUNT;
 use crate::mesh::Topology;
+use crate::network::Tensors;
 use crate::network::config::GeneratorConfig;
-use crate::network::{Tensor, Tensors};
 use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
 
@@ -95,6 +98,27 @@ struct Metadata {
     config: GeneratorConfig,
     provenance: Provenance,
     sha256: String,
+}
+
+impl Metadata {
+    /// The metadata in a file's header, of this format's version.
+    fn read(bytes: &[u8], origin: &str) -> Result<Self> {
+        let fail = |message: String| model_error(origin, message);
+        let (_, header) = SafeTensors::read_metadata(bytes)
+            .map_err(|e| fail(format!("not a whole safetensors file: {e}")))?;
+        let text = header.metadata().as_ref().and_then(|m| m.get(METADATA_KEY)).ok_or_else(|| {
+            fail("expected metadata `anthronet`, got none: not a model of AnthroNet".into())
+        })?;
+        let json: serde_json::Value =
+            serde_json::from_str(text).map_err(|e| fail(format!("metadata: {e}")))?;
+        if json["format_version"] != FORMAT_VERSION {
+            return Err(fail(format!(
+                "expected format version {FORMAT_VERSION}, got {}",
+                json["format_version"]
+            )));
+        }
+        serde_json::from_value(json).map_err(|e| fail(format!("metadata: {e}")))
+    }
 }
 
 /// Placeholder for the checksum while it is computed.
@@ -190,24 +214,10 @@ impl ModelParts {
 
     /// As [`from_bytes`](Self::from_bytes), but verifies the checksum only if `verify`.
     pub(super) fn read(bytes: &[u8], origin: &str, verify: bool) -> Result<Self> {
-        let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
-        let (_, header) = SafeTensors::read_metadata(bytes)
-            .map_err(|e| fail(format!("not a whole safetensors file: {e}")))?;
-        let text = header.metadata().as_ref().and_then(|m| m.get(METADATA_KEY)).ok_or_else(|| {
-            fail("expected metadata `anthronet`, got none: not a model of AnthroNet".into())
-        })?;
-        let version: serde_json::Value =
-            serde_json::from_str(text).map_err(|e| fail(format!("metadata: {e}")))?;
-        if version["format_version"] != FORMAT_VERSION {
-            return Err(fail(format!(
-                "expected format version {FORMAT_VERSION}, got {}",
-                version["format_version"]
-            )));
-        }
-        let metadata: Metadata =
-            serde_json::from_value(version).map_err(|e| fail(format!("metadata: {e}")))?;
+        let fail = |message: String| model_error(origin, message);
+        let metadata = Metadata::read(bytes, origin)?;
         if verify {
-            verify_checksum(bytes, &metadata.sha256).map_err(fail)?;
+            verify_checksum(bytes, &metadata.sha256, origin)?;
         }
         let file = SafeTensors::deserialize(bytes).map_err(|e| fail(e.to_string()))?;
         let reader = Reader { file: &file, origin };
@@ -216,13 +226,6 @@ impl ModelParts {
         if topology_hash(&cage) != metadata.topology_hash {
             return Err(fail("the topology does not match its hash: the file is damaged".into()));
         }
-        let reduced = |level: &str| -> Result<ReducedMesh> {
-            Ok(ReducedMesh {
-                vertices: reader.get(&format!("{level}.vertices"), Dtype::U32)?,
-                triangles: reader.get(&format!("{level}.triangles"), Dtype::U32)?,
-                triangle_uvs: reader.get(&format!("{level}.triangle_uvs"), Dtype::U32)?,
-            })
-        };
         let mut start = cage.vertex_count;
         let mut accessories = Vec::new();
         for name in metadata.accessories {
@@ -247,7 +250,7 @@ impl ModelParts {
         }
         let (joint_names, joint_parents) = metadata.joints.into_iter().unzip();
         Ok(Self {
-            reduced: [reduced("lod2")?, reduced("lod3")?],
+            reduced: [reader.reduced("lod2")?, reader.reduced("lod3")?],
             cage,
             accessories,
             mean,
@@ -365,10 +368,10 @@ fn find(within: &[u8], what: &[u8]) -> Option<usize> {
 }
 
 /// Compares the checksum stored in a file with the one computed from its bytes.
-fn verify_checksum(bytes: &[u8], stored: &str) -> std::result::Result<(), String> {
+fn verify_checksum(bytes: &[u8], stored: &str, origin: &str) -> Result<()> {
     let place = find(&bytes[..header_end(bytes)], stored.as_bytes())
         .filter(|_| stored.len() == NO_CHECKSUM.len())
-        .ok_or_else(|| "metadata: sha256: expected 64 hexadecimal digits".to_owned())?;
+        .ok_or_else(|| model_error(origin, "metadata: sha256: expected 64 hexadecimal digits".into()))?;
     let mut hash = Sha256::new();
     hash.update(&bytes[..place]);
     hash.update(NO_CHECKSUM);
@@ -377,87 +380,12 @@ fn verify_checksum(bytes: &[u8], stored: &str) -> std::result::Result<(), String
     if computed == stored {
         return Ok(());
     }
-    Err(format!("the SHA-256 of the file is {computed}, its header says {stored}: the file is damaged"))
+    Err(model_error(
+        origin,
+        format!("the SHA-256 of the file is {computed}, its header says {stored}: the file is damaged"),
+    ))
 }
 
-#[derive(Default)]
-struct Arrays(Vec<(String, Dtype, Vec<usize>, Vec<u8>)>);
-
-impl Arrays {
-    fn add<T: bytemuck::NoUninit>(&mut self, name: &str, dtype: Dtype, shape: Vec<usize>, data: &[T]) {
-        self.0.push((name.to_owned(), dtype, shape, bytemuck::cast_slice(data).to_vec()));
-    }
-
-    fn topology(&mut self, name: &str, topology: &Topology) {
-        let faces = topology.quads.len();
-        self.add(&format!("{name}.vertex_count"), Dtype::U32, vec![1], &[topology.vertex_count as u32]);
-        self.add(&format!("{name}.quads"), Dtype::U32, vec![faces, 4], &topology.quads);
-        self.add(&format!("{name}.uvs"), Dtype::F32, vec![topology.uvs.len(), 2], &topology.uvs);
-        self.add(&format!("{name}.quad_uvs"), Dtype::U32, vec![faces, 4], &topology.quad_uvs);
-    }
-
-    fn serialize(&self, metadata: &Metadata) -> Result<Vec<u8>> {
-        let bad = |e: String| Error::invalid("model file", e);
-        let views = self
-            .0
-            .iter()
-            .map(|(name, dtype, shape, data)| {
-                TensorView::new(*dtype, shape.clone(), data)
-                    .map(|view| (name.clone(), view))
-                    .map_err(|e| bad(format!("{name}: {e}")))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let text = serde_json::to_string(metadata).map_err(|e| bad(e.to_string()))?;
-        let extra = std::collections::HashMap::from([(METADATA_KEY.to_owned(), text)]);
-        safetensors::serialize(views, Some(extra)).map_err(|e| bad(e.to_string()))
-    }
-}
-
-struct Reader<'a> {
-    file: &'a SafeTensors<'a>,
-    origin: &'a str,
-}
-
-impl Reader<'_> {
-    fn fail(&self, message: String) -> Error {
-        Error::Model { origin: self.origin.to_owned(), message }
-    }
-
-    /// The array's content as a list of `T`.
-    fn get<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
-        &self,
-        name: &str,
-        dtype: Dtype,
-    ) -> Result<Vec<T>> {
-        let view = self.file.tensor(name).map_err(|e| self.fail(format!("array `{name}`: {e}")))?;
-        if view.dtype() != dtype || view.data().len() % size_of::<T>() != 0 {
-            return Err(self.fail(format!(
-                "array `{name}`: expected {dtype:?}, got {:?} of shape {:?}",
-                view.dtype(),
-                view.shape()
-            )));
-        }
-        Ok(bytemuck::pod_collect_to_vec(view.data()))
-    }
-
-    fn topology(&self, name: &str) -> Result<Topology> {
-        let count: Vec<u32> = self.get(&format!("{name}.vertex_count"), Dtype::U32)?;
-        let topology = Topology {
-            vertex_count: count.first().map_or(0, |n| *n as usize),
-            quads: self.get(&format!("{name}.quads"), Dtype::U32)?,
-            uvs: self.get(&format!("{name}.uvs"), Dtype::F32)?,
-            quad_uvs: self.get(&format!("{name}.quad_uvs"), Dtype::U32)?,
-        };
-        topology.validate().map_err(|e| self.fail(e.to_string()))?;
-        Ok(topology)
-    }
-
-    fn network(&self, name: &str) -> Result<Tensor> {
-        let view = self.file.tensor(name).map_err(|e| self.fail(format!("array `{name}`: {e}")))?;
-        let data = match view.dtype() {
-            Dtype::F32 => self.get::<f32>(name, Dtype::F32)?,
-            _ => self.get::<f16>(name, Dtype::F16)?.iter().map(|x| x.to_f32()).collect(),
-        };
-        Ok(Tensor { shape: view.shape().to_vec(), data })
-    }
+fn model_error(origin: &str, message: String) -> Error {
+    Error::Model { origin: origin.to_owned(), message }
 }

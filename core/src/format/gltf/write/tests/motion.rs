@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde_json::json;
 
-use super::tests::Parsed;
 use super::*;
 use crate::clip::{Clip, TranslationTrack};
 use crate::format::vrm::{VrmMeta, to_vrm};

@@ -1,20 +1,21 @@
-//! The C header and the bindings of C# and Python, all of them from the sources of `ffi`.
+//! The C header and the bindings for C# and Python, generated from the sources of `ffi`.
 
 mod declared;
 mod python;
 
-use crate::tools::{self, Outcome};
+use crate::tools;
+use anyhow::{Context as _, Error, Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 
 /// The header that C and C++ include.
 pub(crate) const HEADER: &str = "ffi/include/anthronet.h";
-/// The declarations that C# calls.
+/// The declarations for C#.
 pub(crate) const CSHARP: &str = "unity_plugin/Runtime/Native/NativeMethods.g.cs";
 
-/// The declarations that Python calls.
+/// The declarations for Python.
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
-/// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
+/// The files of `ffi/src` in the order of their declarations: a type comes before its users.
 const SOURCES: [&str; 18] = [
     "version",
     "status",
@@ -37,28 +38,28 @@ const SOURCES: [&str; 18] = [
 ];
 
 /// All of them, with their paths in the source tree.
-fn all() -> Outcome<[(&'static str, String); 3]> {
+fn all() -> Result<[(&'static str, String); 3]> {
     let python = python::declarations(&declared::Declared::read(sources())?)?;
     Ok([(HEADER, header()?), (CSHARP, csharp()?), (PYTHON, python)])
 }
 
 /// Writes them into the source tree.
-pub(crate) fn write() -> Outcome {
+pub(crate) fn write() -> Result<()> {
     for (path, text) in all()? {
         tools::write(&tools::root().join(path), &text)?;
     }
     Ok(())
 }
 
-/// Fails unless the files in the source tree are what the sources make, byte by byte.
-pub(crate) fn check() -> Outcome {
+/// Fails unless the files in the source tree equal the generated ones, byte by byte.
+pub(crate) fn check() -> Result<()> {
     for (path, text) in all()? {
         let there = tools::read(&tools::root().join(path))?;
         if there != text {
-            return Err(format!("{path}: is not what ffi/src makes: run `cargo xtask gen` and commit it"));
+            bail!("{path}: differs from what ffi/src generates: run `cargo xtask gen` and commit it");
         }
     }
-    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are what ffi/src makes");
+    println!("bindings: {HEADER}, {CSHARP} and {PYTHON} are up to date");
     Ok(())
 }
 
@@ -67,17 +68,17 @@ fn sources() -> impl Iterator<Item = PathBuf> {
     SOURCES.into_iter().map(move |name| folder.join(name).with_extension("rs"))
 }
 
-fn header() -> Outcome<String> {
+fn header() -> Result<String> {
     let root = tools::root().join("ffi");
-    let config = cbindgen::Config::from_file(root.join("cbindgen.toml"))?;
+    let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).map_err(Error::msg)?;
     let builder = sources().fold(cbindgen::Builder::new().with_config(config), |b, file| b.with_src(file));
-    let bindings = builder.generate().map_err(|e| format!("{HEADER}: {e}"))?;
+    let bindings = builder.generate().context(HEADER)?;
     let mut bytes = Vec::new();
     bindings.write(&mut bytes);
-    String::from_utf8(bytes).map_err(|e| format!("{HEADER}: {e}"))
+    String::from_utf8(bytes).context(HEADER)
 }
 
-fn csharp() -> Outcome<String> {
+fn csharp() -> Result<String> {
     let scratch = tools::target().join("gen").join(Path::new(CSHARP).file_name().unwrap_or_default());
     tools::write(&scratch, "")?;
     sources()
@@ -90,7 +91,7 @@ fn csharp() -> Outcome<String> {
         .csharp_use_function_pointer(false)
         .csharp_generate_const_filter(|name| name.starts_with("ANTHRONET_"))
         .generate_csharp_file(&scratch)
-        .map_err(|e| format!("{CSHARP}: {e}"))?;
+        .map_err(|error| anyhow!("{CSHARP}: {error}"))?;
     tools::read(&scratch)
 }
 
@@ -99,8 +100,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_python_does_not_know_is_an_error_that_says_where() {
-        let made = |source: &str| {
+    fn an_unknown_declaration_is_an_error_with_its_line() {
+        let made = |source: &str| -> Result<String> {
             let file = tempfile::NamedTempFile::new().unwrap();
             std::fs::write(file.path(), source).unwrap();
             let declared = declared::Declared::read(std::iter::once(file.path().to_path_buf()))?;
@@ -115,7 +116,7 @@ mod tests {
             ("pub extern \"C\" fn f(a: u16) {}", "f: do not know the type `u16` in Python"),
             ("pub extern \"C\" fn f() { ", ":1: "),
         ] {
-            let error: String = made(source).unwrap_err();
+            let error = format!("{:#}", made(source).unwrap_err());
             assert!(error.contains(why), "`{error}` lacks `{why}`");
         }
     }

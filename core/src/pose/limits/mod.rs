@@ -285,5 +285,4 @@ impl JointLimits {
 }
 
 #[cfg(test)]
-#[path = "limits_tests.rs"]
 mod tests;
