@@ -70,6 +70,11 @@ pub(crate) fn at<'a, T>(all: &'a [T], index: usize, what: &str) -> Result<&'a T>
         .ok_or_else(|| Error::request(what, format!("expected less than {}, got {index}", all.len())))
 }
 
+/// A number that 0 stands in for where the default is asked for.
+pub(crate) fn given(number: f64) -> Option<f64> {
+    (number != 0.0).then_some(number)
+}
+
 /// A number that is one.
 pub(crate) fn finite(what: &str, value: f64) -> Result<()> {
     if value.is_finite() {

@@ -7,14 +7,15 @@ use std::sync::Arc;
 use anthronet::clip::{Clip, MAX_FRAMES, MAX_ROTATIONS};
 use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::math::RigidTransform;
-use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetSwitches};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, FingerMode, Overrides, RetargetOptions, RootMotion, TransferOptions};
 use anthronet::skeleton::{MAX_JOINTS, Skeleton};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
 use crate::bytes::anthronet_bytes;
 use crate::clip::anthronet_clip;
-use crate::options::{Descriptor, choice, described, flag, space};
+use crate::options::{Descriptor, choice, described, flag, given, space};
 use crate::pointer::{Out, anthronet_text, at, at_most, file, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
 use crate::status::{ANTHRONET_ERROR_INDEX, Fault, Outcome, anthronet_error, anthronet_status, guard};
@@ -85,8 +86,15 @@ pub struct anthronet_motion(Motion);
 
 fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
     let asked = described(pointer, "options")?;
-    let up = choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?;
-    Ok(ReadOptions::of_numbers(asked.metres_per_unit, up, asked.frames_per_second)?)
+    let options = ReadOptions {
+        unit: None,
+        up: choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?,
+        frames_per_second: given(asked.frames_per_second),
+    };
+    match given(asked.metres_per_unit) {
+        None => Ok(options),
+        Some(metres) => Ok(options.with_metres_per_unit(metres)?),
+    }
 }
 
 fn give(out: Out<*mut anthronet_motion>, motion: Motion) {
@@ -296,21 +304,26 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
 }
 
 fn options_of(asked: &anthronet_retarget_options) -> Outcome<RetargetOptions> {
-    let switches = RetargetSwitches {
-        fingers: choice(
-            &[FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest],
-            asked.fingers,
-            "fingers",
-        )?,
-        no_limits: flag(asked.no_limits, "no_limits")?,
-        no_feet: flag(asked.no_feet, "no_feet")?,
+    const FINGERS: [FingerMode; 3] = [FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest];
+    const ROOTS: [RootMotion; 2] = [RootMotion::Pelvis, RootMotion::Root];
+    let transfer = TransferOptions {
+        fingers: choice(&FINGERS, asked.fingers, "fingers")?,
+        root: choice(&ROOTS, asked.root_motion, "root_motion")?,
+        ..TransferOptions::default()
+    };
+    let mapping = match text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")? {
+        "" => Overrides::new(),
+        json => retarget::read_overrides(json, Path::new("mapping_json"))?,
+    };
+    Ok(RetargetOptions {
+        mapping,
+        transfer,
+        limits: !flag(asked.no_limits, "no_limits")?,
+        feet: (!flag(asked.no_feet, "no_feet")?).then(FeetOptions::default),
         in_place: flag(asked.in_place, "in_place")?,
         looped: flag(asked.looped, "looped")?,
-        root_motion: flag(asked.root_motion, "root_motion")?,
-        mapping_json: text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?,
-        frames_per_second: asked.frames_per_second,
-    };
-    Ok(switches.try_into()?)
+        frames_per_second: given(asked.frames_per_second),
+    })
 }
 
 fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {

@@ -137,6 +137,11 @@ pub(crate) fn choice<T: Copy>(all: &[T], number: u32, what: &str) -> Outcome<T> 
     all.get(number as usize).copied().ok_or_else(|| unknown(what, all.len() as u32 - 1, number))
 }
 
+/// A number that 0 stands in for where the default is asked for.
+pub(crate) fn given(number: f64) -> Option<f64> {
+    (number != 0.0).then_some(number)
+}
+
 /// 0 or 1.
 pub(crate) fn flag(number: u32, what: &str) -> Outcome<bool> {
     choice(&[false, true], number, what)
