@@ -5,8 +5,8 @@
 //!
 //! | [`Space`] | up | forward | character's left | hand | from ours (x, y, z) |
 //! |---|---|---|---|---|---|
-//! | `YUp` (ours, glTF, USD) | +Y | +Z | +X | right | (x, y, z) |
-//! | `ZUp` (Blender, AMASS) | +Z | −Y | +X | right | (x, −z, y) |
+//! | `Gltf` (ours, USD) | +Y | +Z | +X | right | (x, y, z) |
+//! | `Blender` (AMASS) | +Z | −Y | +X | right | (x, −z, y) |
 //! | `Unity` | +Y | +Z | −X | left | (−x, y, z) |
 
 use std::{f32::consts::FRAC_1_SQRT_2, fmt, str::FromStr};
@@ -143,8 +143,8 @@ impl Axis {
     /// The space with this axis up.
     pub fn space(self) -> Space {
         match self {
-            Self::Y => Space::YUp,
-            Self::Z => Space::ZUp,
+            Self::Y => Space::Gltf,
+            Self::Z => Space::Blender,
         }
     }
 
@@ -190,11 +190,11 @@ impl FromStr for Axis {
 /// Axes and handedness of a program or file; see the table of the [module](self). Lengths stay metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Space {
-    /// The library's own.
+    /// The library's own, glTF's and USD's.
     #[default]
-    YUp,
-    /// Blender's: the front of a character looks along −Y.
-    ZUp,
+    Gltf,
+    /// Blender's and AMASS's: the front of a character looks along −Y.
+    Blender,
     /// Unity's, left-handed.
     Unity,
 }
@@ -203,8 +203,8 @@ impl Space {
     /// A point, direction or normal of ours in this space.
     pub fn from_ours(self, v: Vec3) -> Vec3 {
         match self {
-            Self::YUp => v,
-            Self::ZUp => Vec3::new(v.x, -v.z, v.y),
+            Self::Gltf => v,
+            Self::Blender => Vec3::new(v.x, -v.z, v.y),
             Self::Unity => Vec3::new(-v.x, v.y, v.z),
         }
     }
@@ -212,8 +212,8 @@ impl Space {
     /// A point, direction or normal of this space in ours.
     pub fn to_ours(self, v: Vec3) -> Vec3 {
         match self {
-            Self::YUp => v,
-            Self::ZUp => Vec3::new(v.x, v.z, -v.y),
+            Self::Gltf => v,
+            Self::Blender => Vec3::new(v.x, v.z, -v.y),
             Self::Unity => Vec3::new(-v.x, v.y, v.z),
         }
     }
@@ -222,8 +222,8 @@ impl Space {
     /// so that +Y runs along its bone everywhere; a mirror mirrors them too.
     pub fn model_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
         let rotation = match self {
-            Self::YUp => rotation,
-            Self::ZUp => STAND_UP.conjugate() * rotation,
+            Self::Gltf => rotation,
+            Self::Blender => STAND_UP.conjugate() * rotation,
             Self::Unity => mirrored(rotation),
         };
         (rotation, self.from_ours(translation))
@@ -232,8 +232,8 @@ impl Space {
     /// A joint's rotation and translation to the model, in this space, as ours.
     pub fn model_from_joint_to_ours(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
         let rotation = match self {
-            Self::YUp => rotation,
-            Self::ZUp => STAND_UP * rotation,
+            Self::Gltf => rotation,
+            Self::Blender => STAND_UP * rotation,
             Self::Unity => mirrored(rotation),
         };
         (rotation, self.to_ours(translation))
@@ -243,7 +243,7 @@ impl Space {
     /// from ours to this space and back alike.
     pub fn parent_from_joint(self, rotation: Quat, translation: Vec3) -> (Quat, Vec3) {
         match self {
-            Self::YUp | Self::ZUp => (rotation, translation),
+            Self::Gltf | Self::Blender => (rotation, translation),
             Self::Unity => (mirrored(rotation), self.from_ours(translation)),
         }
     }
@@ -277,14 +277,14 @@ impl Space {
 mod tests {
     use super::*;
 
-    const SPACES: [Space; 3] = [Space::YUp, Space::ZUp, Space::Unity];
+    const SPACES: [Space; 3] = [Space::Gltf, Space::Blender, Space::Unity];
 
     #[test]
     fn a_character_stands_faces_and_holds_its_left_out_in_every_space() {
         let (left, up, front) = (Vec3::X, Vec3::Y, Vec3::Z);
         let seen = |space: Space| [left, up, front].map(|v| space.from_ours(v));
-        assert_eq!(seen(Space::YUp), [Vec3::X, Vec3::Y, Vec3::Z]);
-        assert_eq!(seen(Space::ZUp), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
+        assert_eq!(seen(Space::Gltf), [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert_eq!(seen(Space::Blender), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
         assert_eq!(seen(Space::Unity), [Vec3::NEG_X, Vec3::Y, Vec3::Z]);
     }
 

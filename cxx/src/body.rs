@@ -1,4 +1,4 @@
-//! Bodies: what a model makes of a request, and the account of it.
+//! Bodies: what a model makes of a request, and the report of it.
 
 use anthronet::measure::Sex;
 use anthronet::skeleton::humanoid::renamed;

@@ -1,4 +1,4 @@
-//! Motion: files as they were read, their way onto a body, and clips of the body's own skeleton.
+//! Motion: files as they were read, retargeted to bodies, and clips of a body's skeleton.
 
 use std::path::Path;
 
@@ -15,6 +15,7 @@ use anthronet::space::Space;
 use crate::Result;
 use crate::body::Body;
 use crate::bridge::ffi;
+use crate::context::Context;
 use crate::enums::{Meaning, at, finite, given};
 
 pub(crate) struct Clip {
@@ -73,6 +74,7 @@ impl Clip {
 
     pub(crate) fn sample(
         &self,
+        context: &mut Context,
         seconds: f64,
         wrap: ffi::Wrap,
         relative: ffi::Relative,
@@ -82,7 +84,9 @@ impl Clip {
         let (wrap, to_model, space) = (wrap.meaning()?, relative.meaning()?, space.meaning()?);
         finite("seconds", seconds)?;
         room(joints, self.joint_count())?;
-        self.write(&Sampler::new(&self.clip, wrap).sample(seconds), &mut Vec::new(), to_model, space, joints);
+        let Context { pose, model, .. } = context;
+        Sampler::new(&self.clip, wrap).sample_into(seconds, pose);
+        self.write(pose, model, to_model, space, joints);
         Ok(())
     }
 
@@ -144,7 +148,7 @@ impl Clip {
         Ok(clip::crossfade(&self.clip, &next.clip, seconds)?.into())
     }
 
-    /// A pose as it was asked for; `model` is room that may be used again.
+    /// Writes a pose for the caller; `model` is room for its joints relative to the model.
     fn write(
         &self,
         pose: &Pose,

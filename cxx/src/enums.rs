@@ -42,7 +42,7 @@ macro_rules! meaning {
 
 meaning!(Sex as Option<Sex>, "sex": Any => None, Female => Some(Sex::Female), Male => Some(Sex::Male));
 meaning!(Fill as Fill, "fill": Mean => Fill::Mean, Sample => Fill::Sample);
-meaning!(Space as Space, "space": Gltf => Space::YUp, Blender => Space::ZUp, Unity => Space::Unity);
+meaning!(Space as Space, "space": Gltf => Space::Gltf, Blender => Space::Blender, Unity => Space::Unity);
 meaning!(Layout as Layout, "layout": Render => Layout::Render, Model => Layout::Model);
 meaning!(JointNames as JointNames, "joint_names":
     Native => JointNames::Native, Unity => JointNames::Unity, Mixamo => JointNames::Mixamo, Vrm => JointNames::Vrm,
@@ -50,7 +50,7 @@ meaning!(JointNames as JointNames, "joint_names":
 meaning!(SkinMethod as SkinMethod, "method":
     Linear => SkinMethod::Linear, DualQuaternion => SkinMethod::DualQuaternion,
     JointTranslation => SkinMethod::JointTranslation);
-meaning!(Wrap as Wrap, "wrap": Once => Wrap::Once, Loop => Wrap::Loop, Travel => Wrap::Travel);
+meaning!(Wrap as Wrap, "wrap": Once => Wrap::Once, Loop => Wrap::Loop, RootMotion => Wrap::RootMotion);
 meaning!(Relative as bool, "relative": ToParent => false, ToModel => true);
 meaning!(Fingers as FingerMode, "fingers":
     Source => FingerMode::Source, Relaxed => FingerMode::Relaxed, Rest => FingerMode::Rest);

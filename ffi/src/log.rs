@@ -31,7 +31,7 @@ fn listener() -> MutexGuard<'static, Option<Listener>> {
     LISTENER.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets who hears messages; NULL for nobody, which is the default. When it returns, the former callback is not running
+/// Sets the callback that receives messages; NULL for none, which is the default. When it returns, the former callback is not running
 /// and will not be called again. `user` is handed to every call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_set_log_callback(

@@ -14,13 +14,13 @@ use crate::status::{
     ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
 };
 
-/// What the scales say of a mesh.
+/// Mass and volume of a measured mesh.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_measured {
     /// Set by the caller: `sizeof(anthronet_measured)`.
     pub struct_size: u32,
-    /// The level of detail that the mesh was recognised as.
+    /// The level of detail of the mesh, recognised by its number of vertices.
     pub lod: u32,
     /// Mass, kg.
     pub mass_kg: f64,

@@ -1,7 +1,7 @@
 //! Descriptors and enumerations: from numbers of the caller's to the core's types.
 //!
 //! A descriptor begins with its size as the caller compiled it. Fields beyond that are 0, and 0 stands for the default
-//! in every field, so that older callers meet newer libraries and the other way round.
+//! in every field, so that older callers work with newer libraries and newer callers with older ones.
 
 use anthronet::mesh::Lod;
 use anthronet::skeleton::humanoid::JointNames;
@@ -13,10 +13,10 @@ use crate::status::{ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_POINTER, ANTHRONET_ERR
 
 /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 pub const ANTHRONET_SPACE_GLTF: u32 = 0;
-/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
+/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. The axes of joints stay the same.
 pub const ANTHRONET_SPACE_BLENDER: u32 = 1;
-/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
-/// and joints' own axes are mirrored at X, too.
+/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles have the opposite
+/// winding, and the axes of joints are mirrored at X too.
 pub const ANTHRONET_SPACE_UNITY: u32 = 2;
 
 /// The rig's own names, such as `upperarm_l`.
@@ -148,7 +148,7 @@ pub(crate) fn flag(number: u32, what: &str) -> Outcome<bool> {
 }
 
 pub(crate) fn space(number: u32) -> Outcome<Space> {
-    choice(&[Space::YUp, Space::ZUp, Space::Unity], number, "space")
+    choice(&[Space::Gltf, Space::Blender, Space::Unity], number, "space")
 }
 
 pub(crate) fn joint_names(number: u32) -> Outcome<JointNames> {

@@ -1,4 +1,4 @@
-//! The caller's memory: every pointer that comes in is looked at here.
+//! The caller's memory: every pointer that a caller passes is checked here.
 
 use std::ffi::{c_char, c_void};
 use std::mem::MaybeUninit;
@@ -8,7 +8,7 @@ use crate::status::{
     Outcome,
 };
 
-/// Text of the library's: UTF-8, not ended by a zero, valid as long as what it was asked of.
+/// A text that the library owns: UTF-8, not ended by a zero, valid as long as the object that it was read from.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_text {
@@ -82,7 +82,7 @@ impl<T> Out<*mut T> {
 
 /// Takes a handle back and drops it; NULL is nothing.
 pub(crate) fn free<T>(handle: *mut T) {
-    // A defect is logged; there is nobody to return it to.
+    // A defect is logged, as there is no status to return.
     let _ = crate::status::caught(|| {
         if !handle.is_null() {
             // SAFETY: from `Out::give`, once, by contract.
@@ -127,7 +127,7 @@ impl<T> OutSlice<T> {
         Ok(Self { next: pointer, left })
     }
 
-    /// Writes what comes, as far as there is room.
+    /// Writes values as far as there is room.
     pub(crate) fn write(&mut self, values: impl IntoIterator<Item = T>) {
         for value in values.into_iter().take(self.left) {
             // SAFETY: not NULL, aligned, and one of the `left` places that are there by contract.

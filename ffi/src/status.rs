@@ -14,7 +14,7 @@ pub const ANTHRONET_OK: i32 = 0;
 pub const ANTHRONET_ERROR_POINTER: i32 = 101;
 /// A size, count, stride or `struct_size` is not what it must be.
 pub const ANTHRONET_ERROR_SIZE: i32 = 102;
-/// A number is none of the values of its enumeration.
+/// A number is not a value of its enumeration.
 pub const ANTHRONET_ERROR_ENUM: i32 = 103;
 /// An index is beyond the last.
 pub const ANTHRONET_ERROR_INDEX: i32 = 104;
@@ -36,7 +36,7 @@ pub const ANTHRONET_ERROR_INVALID: i32 = 501;
 pub const ANTHRONET_ERROR_BUSY: i32 = 601;
 /// The job was cancelled before this was made.
 pub const ANTHRONET_ERROR_CANCELLED: i32 = 602;
-/// What was asked for was taken before.
+/// The body was taken before.
 pub const ANTHRONET_ERROR_TAKEN: i32 = 603;
 /// An error of a kind that is younger than this header.
 pub const ANTHRONET_ERROR_OTHER: i32 = 900;
@@ -46,7 +46,7 @@ pub const ANTHRONET_ERROR_PANIC: i32 = 901;
 /// Bytes of a message with its terminating zero.
 const MESSAGE: usize = 512;
 
-/// What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+/// What went wrong. The caller's own; may be NULL in every call. Written only on failure.
 #[repr(C)]
 pub struct anthronet_error {
     /// The status that the call returned.

@@ -56,7 +56,7 @@ mod tests {
             vec![None, Some(Vec3::Y * 0.5)],
         )
         .unwrap();
-        for space in [Space::YUp, Space::ZUp, Space::Unity] {
+        for space in [Space::Gltf, Space::Blender, Space::Unity] {
             let joints: Vec<_> = skeleton.bind_joints(space).collect();
             assert_eq!(joints.iter().map(|joint| joint.parent).collect::<Vec<_>>(), [None, Some(0)]);
             assert_eq!(joints.iter().map(|joint| joint.bone_length).collect::<Vec<_>>(), [None, Some(0.5)]);
