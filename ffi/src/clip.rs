@@ -11,11 +11,9 @@ use anthronet::space::Space;
 use crate::body::anthronet_body;
 use crate::context::anthronet_context;
 use crate::options::{Descriptor, DescriptorOut, choice, space};
-use crate::pointer::{Out, OutSlice, anthronet_text, at, at_most, exactly, free, read, slice, text};
+use crate::pointer::{Out, OutSlice, anthronet_text, at, at_most, exactly, finite, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
-use crate::status::{
-    ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// The clip holds its first or last frame outside its duration.
 pub const ANTHRONET_WRAP_ONCE: u32 = 0;
@@ -121,8 +119,7 @@ pub unsafe extern "C" fn anthronet_clip_from_poses(
         let joints = rest.len() as u64;
         at_most("count", "transforms", (MAX_FRAMES as u64 * joints).min(MAX_ROTATIONS as u64), count)?;
         if !count.is_multiple_of(joints) {
-            let message = format!("count: expected frames x {joints} joints, got {count}");
-            return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+            return Err(Fault::size("count", format_args!("expected frames x {joints} joints, got {count}")));
         }
         let poses = crate::motion::locals(slice(frames, count, "frames")?, rest.parents(), space(in_space)?);
         Ok(Clip::from_poses(name, rest.clone(), frames_per_second, &poses)?)
@@ -368,15 +365,8 @@ fn time(seconds: f64) -> Outcome {
     if seconds.abs() <= LONGEST {
         return Ok(());
     }
-    let message = format!("seconds: expected a number from -{LONGEST} to {LONGEST}, got {seconds}");
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, message))
-}
-
-fn finite(what: &str, value: f64) -> Outcome {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
+    let message = format_args!("expected a number from -{LONGEST} to {LONGEST}, got {seconds}");
+    Err(Fault::request("seconds", message))
 }
 
 /// Writes a pose for the caller; `model` is room for its joints relative to the model.

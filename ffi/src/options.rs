@@ -8,8 +8,8 @@ use anthronet::skeleton::humanoid::JointNames;
 use anthronet::skin::SkinMethod;
 use anthronet::space::Space;
 
-use crate::pointer::{MAX_LIST, at_most};
-use crate::status::{ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome};
+use crate::pointer::{MAX_LIST, at_most, usable};
+use crate::status::{ANTHRONET_ERROR_ENUM, Fault, Outcome};
 
 /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 pub const ANTHRONET_SPACE_GLTF: u32 = 0;
@@ -44,18 +44,14 @@ pub const ANTHRONET_SKIN_JOINT_TRANSLATION: u32 = 2;
 pub(crate) unsafe trait Descriptor: Copy {}
 
 fn size_fault<T>(what: &str, got: u32) -> Fault {
-    let message =
-        format!("{what}: expected a struct_size of 4 to 4096, such as {}, got {got}", size_of::<T>());
-    Fault::new(ANTHRONET_ERROR_SIZE, message)
+    let expected = size_of::<T>();
+    Fault::size(what, format_args!("expected a struct_size of 4 to 4096, such as {expected}, got {got}"))
 }
 
 /// The size that a descriptor of the caller's says it has.
 fn said_size<T: Descriptor>(pointer: *const T, what: &str) -> Outcome<usize> {
-    if !pointer.is_aligned() {
-        let message = format!("{what}: expected a pointer aligned to {} bytes", align_of::<T>());
-        return Err(Fault::new(ANTHRONET_ERROR_POINTER, message));
-    }
-    // SAFETY: not NULL (the callers look), aligned, and begins with a u32.
+    usable(pointer, what)?;
+    // SAFETY: not NULL, aligned, and begins with a u32.
     let size = unsafe { pointer.cast::<u32>().read() };
     if !(4..=4096).contains(&size) {
         return Err(size_fault::<T>(what, size));
@@ -82,7 +78,7 @@ pub(crate) fn described_list<T: Descriptor>(pointer: *const T, count: u32, what:
         return Ok(Vec::new());
     }
     if pointer.is_null() {
-        return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
+        return Err(Fault::null(what));
     }
     at_most(what, "entries", MAX_LIST, count.into())?;
     let size = said_size(pointer, what)?;
@@ -94,8 +90,8 @@ pub(crate) fn described_list<T: Descriptor>(pointer: *const T, count: u32, what:
             // SAFETY: within the list, by the caller's word.
             let element = unsafe { pointer.byte_add(i * size) };
             if said_size(element, what)? != size {
-                let message = format!("{what} {i}: expected the struct_size of the first, {size}");
-                return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+                let message = format_args!("expected the struct_size of the first, {size}");
+                return Err(Fault::size(&format!("{what} {i}"), message));
             }
             described(element, what)
         })
@@ -110,9 +106,6 @@ pub(crate) struct DescriptorOut<T> {
 
 impl<T: Descriptor> DescriptorOut<T> {
     pub(crate) fn new(pointer: *mut T, what: &str) -> Outcome<Self> {
-        if pointer.is_null() {
-            return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
-        }
         Ok(Self { pointer, size: said_size(pointer, what)? })
     }
 

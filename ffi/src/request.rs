@@ -8,8 +8,8 @@ use anthronet::network::config::MAX_LATENT;
 
 use crate::bytes::anthronet_bytes;
 use crate::options::{choice, flag};
-use crate::pointer::{Out, OutSlice, at_most, beyond, change, exactly, free, read, slice, text};
-use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::pointer::{Out, OutSlice, at_most, beyond, change, exactly, finite, free, read, slice, text};
+use crate::status::{anthronet_error, anthronet_status, guard};
 
 /// Inferred from the measures.
 pub const ANTHRONET_SEX_ANY: u32 = 0;
@@ -238,11 +238,4 @@ pub unsafe extern "C" fn anthronet_request_set_nearest(
         change(request, "request")?.0.nearest = nearest;
         Ok(())
     })
-}
-
-fn finite(what: &str, value: f64) -> Outcome {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
 }

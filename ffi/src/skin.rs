@@ -12,9 +12,7 @@ use crate::mesh::anthronet_mesh;
 use crate::options::{Descriptor, described_list, skin_method};
 use crate::pointer::{Out, at, at_most, buffer, exactly, free, read, slice};
 use crate::skeleton::anthronet_transform;
-use crate::status::{
-    ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{ANTHRONET_ERROR_POINTER, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// A part of a mesh ready to be posed. Immutable; may be used by many threads and jobs at once.
 pub struct anthronet_skinner(Skinner);
@@ -242,7 +240,7 @@ struct Rows {
 impl Rows {
     fn new(first: *mut c_void, bytes: u64, stride: u64, count: usize, what: &str) -> Outcome<Self> {
         if first.is_null() {
-            return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
+            return Err(Fault::null(what));
         }
         at_most(what, "bytes", isize::MAX as u64, bytes)?;
         let stride = if stride == 0 { WIDTH as u64 } else { stride };
@@ -251,10 +249,9 @@ impl Rows {
         match needed.filter(|needed| *needed <= bytes && stride >= WIDTH as u64) {
             Some(needed) => Ok(Self { first, bytes: needed, stride: stride as usize }),
             None => {
-                let message = format!(
-                    "{what}: expected {count} rows of {WIDTH} bytes, {stride} bytes apart, in {bytes} bytes"
-                );
-                Err(Fault::new(ANTHRONET_ERROR_SIZE, message))
+                let message =
+                    format!("expected {count} rows of {WIDTH} bytes, {stride} bytes apart, in {bytes} bytes");
+                Err(Fault::size(what, message))
             }
         }
     }
@@ -277,9 +274,8 @@ impl Extent {
     fn new<T>(job: usize, first: *const T, bytes: u64, written: bool, what: &'static str) -> Outcome<Self> {
         let start = first.addr() as u64;
         let end = start.checked_add(bytes);
-        let beyond =
-            || Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: {bytes} is more than memory holds"));
-        Ok(Self { start, end: end.ok_or_else(beyond)?, written, job, what })
+        let end = end.ok_or_else(|| Fault::beyond_memory(what, bytes))?;
+        Ok(Self { start, end, written, job, what })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Status codes, the error that a caller may pass, and the guard around every entry.
 
 use std::ffi::c_char;
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use anthronet::Error;
@@ -68,6 +69,26 @@ pub(crate) type Outcome<T = ()> = Result<T, Fault>;
 impl Fault {
     pub(crate) fn new(code: i32, message: impl Into<String>) -> Self {
         Self { code, message: message.into() }
+    }
+
+    /// A pointer that has to be given is NULL.
+    pub(crate) fn null(what: &str) -> Self {
+        Self::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL"))
+    }
+
+    /// A size or count does not fit.
+    pub(crate) fn size(what: &str, message: impl Display) -> Self {
+        Self::new(ANTHRONET_ERROR_SIZE, format!("{what}: {message}"))
+    }
+
+    /// A size that no memory has.
+    pub(crate) fn beyond_memory(what: &str, size: u64) -> Self {
+        Self::size(what, format_args!("{size} is more than memory holds"))
+    }
+
+    /// A number or name of a request is not one that it may have.
+    pub(crate) fn request(what: &str, message: impl Display) -> Self {
+        Self::new(ANTHRONET_ERROR_REQUEST, format!("{what}: {message}"))
     }
 }
 
