@@ -34,7 +34,7 @@
 // Done.
 #define ANTHRONET_OK 0
 
-// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+// A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
 #define ANTHRONET_ERROR_POINTER 101
 
 // A size, count, stride or `struct_size` is not what it must be.
@@ -58,7 +58,7 @@
 // A model file is damaged or of another version.
 #define ANTHRONET_ERROR_MODEL 301
 
-// A file is not what it should be.
+// A file is damaged or not of its format.
 #define ANTHRONET_ERROR_FILE 401
 
 // The operating system refused to read or write.
@@ -70,13 +70,13 @@
 // The job is still running.
 #define ANTHRONET_ERROR_BUSY 601
 
-// The job was cancelled before this was made.
+// The job was cancelled before the body was made.
 #define ANTHRONET_ERROR_CANCELLED 602
 
 // The body was taken before.
 #define ANTHRONET_ERROR_TAKEN 603
 
-// An error of a kind that is younger than this header.
+// Any other error.
 #define ANTHRONET_ERROR_OTHER 900
 
 // A defect of the library, caught; the message says where. Please report it.
@@ -116,10 +116,10 @@
 // The paper's formula: joints move vertices but do not turn them.
 #define ANTHRONET_SKIN_JOINT_TRANSLATION 2
 
-// Worth knowing.
+// Information.
 #define ANTHRONET_LOG_INFO 0
 
-// Something may not be as it was meant.
+// A warning: a result may not be as intended.
 #define ANTHRONET_LOG_WARNING 1
 
 // A defect that no call could return.
@@ -165,7 +165,7 @@
 // upwards in the others.
 #define ANTHRONET_ATTRIBUTE_UVS 2
 
-// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
 #define ANTHRONET_ATTRIBUTE_TRIANGLES 3
 
 // uint16 × influences per vertex: joints.
@@ -231,11 +231,16 @@
 // A person in the bind pose, with the report of how it was made. Immutable.
 typedef struct anthronet_body anthronet_body;
 
-// Bytes of the library's: a file in memory, or JSON as UTF-8.
+// Bytes that the library made: a file in memory, or JSON as UTF-8.
 typedef struct anthronet_bytes anthronet_bytes;
 
 // A motion of a body's joints, frame by frame. Immutable.
 typedef struct anthronet_clip anthronet_clip;
+
+// Memory that sampling and skinning work in, used again by the next call: it saves allocations and changes no result. Keep
+// one per character or per thread that calls; one call at a time may use it. It grows as calls need and is freed as a
+// whole. Where a function takes one, NULL stands for memory that is made for the call.
+typedef struct anthronet_context anthronet_context;
 
 // Requests that are being made into bodies by a thread of the library. May be polled and cancelled from any thread.
 typedef struct anthronet_job anthronet_job;
@@ -274,8 +279,8 @@ typedef struct anthronet_error {
     char message[512];
 } anthronet_error;
 
-// Takes a message: its level, `length` bytes of UTF-8 that are valid during the call alone, and what was passed with the
-// callback. Called from any thread, one call at a time; it must not call the library.
+// Receives a message: its level, `length` bytes of UTF-8 that are valid only during the call, and the `user` pointer of
+// the callback. Called from any thread, one call at a time; it must not call the library.
 typedef void (*anthronet_log_callback)(uint32_t level, const char *message, uint64_t length, void *user);
 
 // Mass and volume of a measured mesh.
@@ -372,7 +377,7 @@ typedef struct anthronet_joint {
     float joint_from_model[16];
 } anthronet_joint;
 
-// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
 typedef struct anthronet_humanoid_bone {
     // Set by the caller: `sizeof(anthronet_humanoid_bone)`.
     uint32_t struct_size;
@@ -436,7 +441,7 @@ typedef struct anthronet_mesh_part {
 
 // An array of a mesh.
 typedef struct anthronet_view {
-    // The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+    // The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
     const void *data;
     // Number of rows.
     uint64_t rows;
@@ -583,11 +588,11 @@ typedef struct anthronet_export_options {
 extern "C" {
 #endif // __cplusplus
 
-// The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another must not go
-// on.
+// The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another one must
+// stop.
 uint32_t anthronet_abi_version(void);
 
-// The version of the library, such as `0.1.0`; valid for ever.
+// The version of the library, such as `0.1.0`; always valid.
 anthronet_status anthronet_version(struct anthronet_text *out_version, struct anthronet_error *error);
 
 // Sets the callback that receives messages; NULL for none, which is the default. When it returns, the former callback is not running
@@ -653,7 +658,7 @@ anthronet_status anthronet_model_measure_range(const struct anthronet_model *mod
 // Number of measures.
 uint32_t anthronet_measure_count(void);
 
-// The name of a measure, such as `waist_circumference`; valid for ever.
+// The name of a measure, such as `waist_circumference`; always valid.
 anthronet_status anthronet_measure_name(uint32_t measure,
                                         struct anthronet_text *out_name,
                                         struct anthronet_error *error);
@@ -932,10 +937,16 @@ anthronet_status anthronet_mesh_read_blend_shape(const struct anthronet_mesh *me
                                                  uint64_t stride,
                                                  struct anthronet_error *error);
 
+// Makes a context, which holds nothing yet.
+anthronet_status anthronet_context_new(struct anthronet_context **out_context, struct anthronet_error *error);
+
+// Frees a context; NULL is nothing.
+void anthronet_context_free(struct anthronet_context *context);
+
 // Number of built-in clips.
 uint32_t anthronet_clip_builtin_count(void);
 
-// The name of a built-in clip, such as `walk`; valid for ever.
+// The name of a built-in clip, such as `walk`; always valid.
 anthronet_status anthronet_clip_builtin_name(uint32_t index,
                                              struct anthronet_text *out_name,
                                              struct anthronet_error *error);
@@ -962,7 +973,7 @@ anthronet_status anthronet_clip_from_poses(const struct anthronet_body *body,
 // Frees a clip; NULL is nothing.
 void anthronet_clip_free(struct anthronet_clip *clip);
 
-// What a clip is.
+// Describes a clip.
 anthronet_status anthronet_clip_describe(const struct anthronet_clip *clip,
                                          struct anthronet_clip_info *out_info,
                                          struct anthronet_error *error);
@@ -970,7 +981,7 @@ anthronet_status anthronet_clip_describe(const struct anthronet_clip *clip,
 // The pose of a clip at a time, from −1e9 to 1e9 seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
 // `ANTHRONET_RELATIVE_TO_…`; `context` may be NULL.
 anthronet_status anthronet_clip_sample(const struct anthronet_clip *clip,
-                                       anthronet_context *context,
+                                       struct anthronet_context *context,
                                        double seconds,
                                        uint32_t wrap,
                                        uint32_t relative,
@@ -1119,7 +1130,7 @@ anthronet_status anthronet_skinner_vertex_count(const struct anthronet_skinner *
 
 // Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
 // to its last, what a job writes must not overlap what another writes nor what any of them reads. `context` may be NULL.
-anthronet_status anthronet_skin(anthronet_context *context,
+anthronet_status anthronet_skin(struct anthronet_context *context,
                                 const struct anthronet_skin_job *jobs,
                                 uint32_t count,
                                 struct anthronet_error *error);

@@ -71,7 +71,7 @@ pub extern "C" fn anthronet_clip_builtin_count() -> u32 {
     BUILTIN.len() as u32
 }
 
-/// The name of a built-in clip, such as `walk`; valid for ever.
+/// The name of a built-in clip, such as `walk`; always valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_builtin_name(
     index: u32,
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn anthronet_clip_free(clip: *mut anthronet_clip) {
     free(clip);
 }
 
-/// What a clip is.
+/// Describes a clip.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_describe(
     clip: *const anthronet_clip,

@@ -37,7 +37,7 @@ pub extern "C" fn anthronet_measure_count() -> u32 {
     MEASURE_COUNT as u32
 }
 
-/// The name of a measure, such as `waist_circumference`; valid for ever.
+/// The name of a measure, such as `waist_circumference`; always valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_measure_name(
     measure: u32,

@@ -22,7 +22,7 @@ pub const ANTHRONET_ATTRIBUTE_NORMALS: u32 = 1;
 /// float × 2 per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
 /// upwards in the others.
 pub const ANTHRONET_ATTRIBUTE_UVS: u32 = 2;
-/// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+/// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
 pub const ANTHRONET_ATTRIBUTE_TRIANGLES: u32 = 3;
 /// uint16 × influences per vertex: joints.
 pub const ANTHRONET_ATTRIBUTE_JOINTS: u32 = 4;
@@ -100,7 +100,7 @@ unsafe impl Descriptor for anthronet_mesh_part {}
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_view {
-    /// The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+    /// The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
     pub data: *const c_void,
     /// Number of rows.
     pub rows: u64,

@@ -33,7 +33,7 @@ pub struct anthronet_joint {
     pub joint_from_model: [f32; 16],
 }
 
-/// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+/// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_humanoid_bone {

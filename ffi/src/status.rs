@@ -11,7 +11,7 @@ pub type anthronet_status = i32;
 
 /// Done.
 pub const ANTHRONET_OK: i32 = 0;
-/// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+/// A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
 pub const ANTHRONET_ERROR_POINTER: i32 = 101;
 /// A size, count, stride or `struct_size` is not what it must be.
 pub const ANTHRONET_ERROR_SIZE: i32 = 102;
@@ -27,7 +27,7 @@ pub const ANTHRONET_ERROR_REQUEST: i32 = 201;
 pub const ANTHRONET_ERROR_INFEASIBLE: i32 = 202;
 /// A model file is damaged or of another version.
 pub const ANTHRONET_ERROR_MODEL: i32 = 301;
-/// A file is not what it should be.
+/// A file is damaged or not of its format.
 pub const ANTHRONET_ERROR_FILE: i32 = 401;
 /// The operating system refused to read or write.
 pub const ANTHRONET_ERROR_IO: i32 = 402;
@@ -35,11 +35,11 @@ pub const ANTHRONET_ERROR_IO: i32 = 402;
 pub const ANTHRONET_ERROR_INVALID: i32 = 501;
 /// The job is still running.
 pub const ANTHRONET_ERROR_BUSY: i32 = 601;
-/// The job was cancelled before this was made.
+/// The job was cancelled before the body was made.
 pub const ANTHRONET_ERROR_CANCELLED: i32 = 602;
 /// The body was taken before.
 pub const ANTHRONET_ERROR_TAKEN: i32 = 603;
-/// An error of a kind that is younger than this header.
+/// Any other error.
 pub const ANTHRONET_ERROR_OTHER: i32 = 900;
 /// A defect of the library, caught; the message says where. Please report it.
 pub const ANTHRONET_ERROR_PANIC: i32 = 901;

@@ -361,6 +361,8 @@ FUNCTIONS = {
     "anthronet_mesh_blend_shape_name": (c_int32, [c_void_p, c_uint32, POINTER(Text), POINTER(Error)]),
     "anthronet_mesh_blend_shape_data": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, POINTER(View), POINTER(Error)]),
     "anthronet_mesh_read_blend_shape": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, c_void_p, c_uint64, c_uint64, POINTER(Error)]),
+    "anthronet_context_new": (c_int32, [c_void_p, POINTER(Error)]),
+    "anthronet_context_free": (None, [c_void_p]),
     "anthronet_clip_builtin_count": (c_uint32, []),
     "anthronet_clip_builtin_name": (c_int32, [c_uint32, POINTER(Text), POINTER(Error)]),
     "anthronet_clip_builtin": (c_int32, [c_char_p, c_uint64, c_void_p, c_void_p, POINTER(Error)]),

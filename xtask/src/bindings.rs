@@ -15,7 +15,7 @@ pub(crate) const CSHARP: &str = "unity_plugin/Runtime/Native/NativeMethods.g.cs"
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
 /// The files of `ffi/src` in the order of their declarations: what others are made of comes first.
-const SOURCES: [&str; 18] = [
+const SOURCES: [&str; 19] = [
     "version",
     "status",
     "pointer",
@@ -30,6 +30,7 @@ const SOURCES: [&str; 18] = [
     "skeleton",
     "mesh",
     "blend_shape",
+    "context",
     "clip",
     "motion",
     "skin",

@@ -28,7 +28,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_OK = 0;
         /// <summary>
-        ///  A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+        ///  A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
         /// </summary>
         internal const int ANTHRONET_ERROR_POINTER = 101;
         /// <summary>
@@ -60,7 +60,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_MODEL = 301;
         /// <summary>
-        ///  A file is not what it should be.
+        ///  A file is damaged or not of its format.
         /// </summary>
         internal const int ANTHRONET_ERROR_FILE = 401;
         /// <summary>
@@ -76,7 +76,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_BUSY = 601;
         /// <summary>
-        ///  The job was cancelled before this was made.
+        ///  The job was cancelled before the body was made.
         /// </summary>
         internal const int ANTHRONET_ERROR_CANCELLED = 602;
         /// <summary>
@@ -84,7 +84,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_TAKEN = 603;
         /// <summary>
-        ///  An error of a kind that is younger than this header.
+        ///  Any other error.
         /// </summary>
         internal const int ANTHRONET_ERROR_OTHER = 900;
         /// <summary>
@@ -137,11 +137,11 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_SKIN_JOINT_TRANSLATION = 2;
         /// <summary>
-        ///  Worth knowing.
+        ///  Information.
         /// </summary>
         internal const uint ANTHRONET_LOG_INFO = 0;
         /// <summary>
-        ///  Something may not be as it was meant.
+        ///  A warning: a result may not be as intended.
         /// </summary>
         internal const uint ANTHRONET_LOG_WARNING = 1;
         /// <summary>
@@ -202,7 +202,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_UVS = 2;
         /// <summary>
-        ///  uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+        ///  uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_TRIANGLES = 3;
         /// <summary>
@@ -293,14 +293,14 @@ namespace Anthronet.Native
 
 
         /// <summary>
-        ///  The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another must not go
-        ///  on.
+        ///  The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another one must
+        ///  stop.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_abi_version", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern uint anthronet_abi_version();
 
         /// <summary>
-        ///  The version of the library, such as `0.1.0`; valid for ever.
+        ///  The version of the library, such as `0.1.0`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_version", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_version(anthronet_text* out_version, anthronet_error* error);
@@ -386,7 +386,7 @@ namespace Anthronet.Native
         internal static extern uint anthronet_measure_count();
 
         /// <summary>
-        ///  The name of a measure, such as `waist_circumference`; valid for ever.
+        ///  The name of a measure, such as `waist_circumference`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_measure_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_measure_name(uint measure, anthronet_text* out_name, anthronet_error* error);
@@ -674,13 +674,25 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_read_blend_shape(anthronet_mesh* mesh, uint shape, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
 
         /// <summary>
+        ///  Makes a context, which holds nothing yet.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_context_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_context_new(anthronet_context** out_context, anthronet_error* error);
+
+        /// <summary>
+        ///  Frees a context; NULL is nothing.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_context_free", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern void anthronet_context_free(anthronet_context* context);
+
+        /// <summary>
         ///  Number of built-in clips.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_builtin_count", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern uint anthronet_clip_builtin_count();
 
         /// <summary>
-        ///  The name of a built-in clip, such as `walk`; valid for ever.
+        ///  The name of a built-in clip, such as `walk`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_builtin_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_builtin_name(uint index, anthronet_text* out_name, anthronet_error* error);
@@ -705,7 +717,7 @@ namespace Anthronet.Native
         internal static extern void anthronet_clip_free(anthronet_clip* clip);
 
         /// <summary>
-        ///  What a clip is.
+        ///  Describes a clip.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_describe", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_describe(anthronet_clip* clip, anthronet_clip_info* out_info, anthronet_error* error);
@@ -900,7 +912,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  Bytes of the library's: a file in memory, or JSON as UTF-8.
+    ///  Bytes that the library made: a file in memory, or JSON as UTF-8.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_bytes
@@ -1128,7 +1140,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+    ///  A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_humanoid_bone
@@ -1258,7 +1270,7 @@ namespace Anthronet.Native
     internal unsafe partial struct anthronet_view
     {
         /// <summary>
-        ///  The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+        ///  The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
         /// </summary>
         public void* data;
         /// <summary>
@@ -1280,6 +1292,16 @@ namespace Anthronet.Native
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_mesh
+    {
+    }
+
+    /// <summary>
+    ///  Memory that sampling and skinning work in, used again by the next call: it saves allocations and changes no result. Keep
+    ///  one per character or per thread that calls; one call at a time may use it. It grows as calls need and is freed as a
+    ///  whole. Where a function takes one, NULL stands for memory that is made for the call.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe partial struct anthronet_context
     {
     }
 
