@@ -35,6 +35,7 @@
 //! | [`skeleton::Pose`] | the joints at one moment | scratch: keep one per thread and character, nothing is allocated again |
 //! | [`clip::Clip`], [`clip::Sampler`] | a motion; reads poses off it | a clip is immutable and shared, a sampler is two words |
 //! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one skinning of it | a skinner is immutable and shared, a job borrows the caller's buffers |
+//! | [`skin::SkinContext`] | the memory that skinning works in | keep one per thread or character; it is used again by the next call |
 //! | [`scene::Scene`] | meshes, joints, materials, clips; knows nothing of bodies | plain data, what every file format is read into and written from |
 //!
 //! Data flows one way: `condition` → `model` → [`Body`] → `skeleton`, `clip`, `skin` → `scene` → `format`. ARCHITECTURE.md has the rooms
