@@ -107,10 +107,10 @@ class ANTHRONET_OT_symmetrise(ChangesCharacter, bpy.types.Operator):
         return _change_selected(context, lambda _, settings: _with_measures(settings, symmetrized))
 
 
-class ANTHRONET_OT_open_measures(ChangesCharacter, bpy.types.Operator):
+class ANTHRONET_OT_unset_measures(ChangesCharacter, bpy.types.Operator):
     """Make all measures of the selected characters not given, so that they are predicted"""
 
-    bl_idname = "anthronet.open_measures"
+    bl_idname = "anthronet.unset_measures"
     bl_label = "Clear All Measures"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -191,7 +191,7 @@ CLASSES = (
     ANTHRONET_OT_randomise,
     ANTHRONET_OT_mirror,
     ANTHRONET_OT_symmetrise,
-    ANTHRONET_OT_open_measures,
+    ANTHRONET_OT_unset_measures,
     ANTHRONET_OT_copy_request,
     ANTHRONET_OT_make_local,
     ANTHRONET_OT_request_save,

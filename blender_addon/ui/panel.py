@@ -114,7 +114,7 @@ class ANTHRONET_PT_measures(_CharacterPanel, bpy.types.Panel):
         row = self.layout.row(align=True)
         row.operator("anthronet.measure_selected", icon="DRIVER_DISTANCE")
         row.operator("anthronet.fit_selected")
-        self.layout.operator("anthronet.open_measures", icon="X")
+        self.layout.operator("anthronet.unset_measures", icon="X")
 
 
 def _measure_group_panel(group):

@@ -8,7 +8,7 @@ use anthronet::mesh::Lod;
 use anthronet::model::Model;
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
-use anthronet::skin::{SkinJob, SkinMethod, Skinner, SurfaceMut, skin_many};
+use anthronet::skin::{SkinContext, SkinJob, SkinMethod, Skinner, SurfaceMut, skin_many};
 use divan::Bencher;
 use glam::Vec3;
 
@@ -47,9 +47,10 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 fn bench(bencher: Bencher<'_, '_>, method: SkinMethod, lod: Lod, influences: usize, threads: usize) {
     let (skinner, pose) = posed(lod, influences).unwrap_or_else(|e| panic!("{e}"));
     let (mut positions, mut normals) = [(); 2].map(|()| vec![[0.0; 3]; skinner.vertex_count()]).into();
-    let pool = pool(threads);
+    let (pool, mut context) = (pool(threads), SkinContext::default());
     bencher.counter(divan::counter::ItemsCount::new(skinner.vertex_count())).bench_local(|| {
-        pool.install(|| skinner.skin(method, &pose, SurfaceMut::packed(&mut positions, &mut normals)))
+        let out = SurfaceMut::packed(&mut positions, &mut normals);
+        pool.install(|| skinner.skin(method, &pose, out, &mut context))
     });
 }
 
@@ -99,7 +100,7 @@ fn crowd_of_40(bencher: Bencher<'_, '_>, threads: usize) {
     let (skinner, pose) = posed(Lod::Lod1, 4).unwrap_or_else(|e| panic!("{e}"));
     let crowd = vec![skinner; 40];
     let mut out = vec![[0.0; 3]; 40 * 2 * crowd[0].vertex_count()];
-    let pool = pool(threads);
+    let (pool, mut context) = (pool(threads), SkinContext::default());
     bencher.bench_local(|| {
         let halves = out.chunks_mut(2 * crowd[0].vertex_count());
         let jobs = crowd.iter().zip(halves).map(|(skinner, half)| {
@@ -107,6 +108,6 @@ fn crowd_of_40(bencher: Bencher<'_, '_>, threads: usize) {
             let out = SurfaceMut::packed(positions, normals);
             SkinJob { skinner, method: SkinMethod::Linear, model_from_joints: &pose, offsets: None, out }
         });
-        pool.install(|| skin_many(jobs.collect()))
+        pool.install(|| skin_many(jobs.collect(), &mut context))
     });
 }

@@ -18,7 +18,7 @@ use anthronet::random::Random;
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::Influences;
 use anthronet::skeleton::{Pose, Skeleton};
-use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
+use anthronet::skin::{SkinContext, SkinMethod, Skinner, SurfaceMut};
 use glam::Vec3;
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
@@ -63,10 +63,10 @@ fn main() -> Outcome {
         write(&folder.join("normals.f32"), mesh.normals.as_flattened(), |x| x.to_le_bytes())?;
         write(&folder.join(format!("joints{per_vertex}.u16")), &influences.joints, |x| x.to_le_bytes())?;
         write(&folder.join(format!("weights{per_vertex}.f32")), &influences.weights, |x| x.to_le_bytes())?;
-        let mut out = (mesh.positions.clone(), mesh.normals.clone());
+        let (mut out, mut context) = ((mesh.positions.clone(), mesh.normals.clone()), SkinContext::default());
         for (p, pose) in poses.iter().enumerate() {
             for (name, method) in METHODS {
-                skinner.skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1))?;
+                skinner.skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1), &mut context)?;
                 let stem = format!("{name}_{per_vertex}_pose{p}");
                 for (what, array) in [("positions", &out.0), ("normals", &out.1)] {
                     let file = folder.join(format!("{stem}_{what}.f32"));
@@ -125,14 +125,14 @@ fn answer_times(skinner: &Skinner, influences: &Influences, pose: &[RigidTransfo
     let from = vec![vec![1_u8; bytes_moved(influences) / 2]; CROWD];
     let mut to = from.clone();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let mut out = std::io::stdout();
+    let (mut out, mut context) = (std::io::stdout(), SkinContext::default());
     for (turn, line) in std::io::stdin().lock().lines().enumerate() {
         line?;
         let turn = turn % CROWD;
         let (skinner, (positions, normals)) = (&skinners[turn], &mut vectors[turn]);
         let skinned = pool.install(|| {
             let start = Instant::now();
-            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(positions, normals))?;
+            skinner.skin(SkinMethod::Linear, pose, SurfaceMut::packed(positions, normals), &mut context)?;
             anthronet::Result::Ok(start.elapsed())
         })?;
         let start = Instant::now();

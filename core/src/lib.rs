@@ -35,6 +35,7 @@
 //! | [`skeleton::Pose`] | one transform per joint, relative to its parent | a reusable buffer: keep one per thread and character and nothing is allocated per frame |
 //! | [`clip::Clip`], [`clip::Sampler`] | a motion; evaluates it at a time | a clip is immutable and shared, a sampler is two words |
 //! | [`skin::Skinner`], [`skin::SkinJob`] | a surface with its weights; one evaluation of it | a skinner is immutable and shared, a job borrows the caller's buffers |
+//! | [`skin::SkinContext`] | the memory that skinning works in | keep one per thread or character; the next call reuses it |
 //! | [`scene::Scene`] | meshes, joints, materials, clips, of any character | plain data that every file format is read into and written from |
 //!
 //! Data flows one way: `condition` → `model` → [`Body`] → `skeleton`, `clip`, `skin` → `scene` → `format`. ARCHITECTURE.md lists

@@ -5,20 +5,20 @@
 //!
 //! | [`Space`] | up | forward | character's left | handedness | our (x, y, z) becomes |
 //! |---|---|---|---|---|---|
-//! | `YUp` (ours, glTF, USD) | +Y | +Z | +X | right | (x, y, z) |
-//! | `ZUp` (Blender, AMASS) | +Z | −Y | +X | right | (x, −z, y) |
+//! | `Gltf` (ours, USD) | +Y | +Z | +X | right | (x, y, z) |
+//! | `Blender` (AMASS) | +Z | −Y | +X | right | (x, −z, y) |
 //! | `Unity` | +Y | +Z | −X | left | (−x, y, z) |
 //!
 //! The same as matrices C = `space_from_ours`. They act on column vectors, v′ = C v, so column j of C is our axis j in
 //! the other space:
 //!
 //! ```text
-//!              x  y  z                   x  y  z     (ours)
-//!          x │ 1  0  0 │            x │ −1  0  0 │
-//! C(ZUp) = y │ 0  0 −1 │ C(Unity) = y │  0  1  0 │
-//!          z │ 0  1  0 │            z │  0  0  1 │
+//!                  x  y  z                   x  y  z     (ours)
+//!              x │ 1  0  0 │            x │ −1  0  0 │
+//! C(Blender) = y │ 0  0 −1 │ C(Unity) = y │  0  1  0 │
+//!              z │ 0  1  0 │            z │  0  0  1 │
 //!
-//!     rotation, +90° about X     reflection in the plane x = 0
+//!         rotation, +90° about X     reflection in the plane x = 0
 //! ```
 //!
 //! A transform M = `model_from_joint` becomes C M J⁻¹: C changes the axes of the model, on the left of M, and J those of
@@ -162,8 +162,8 @@ impl Axis {
     /// The right-handed space with this axis up.
     pub fn space(self) -> Space {
         match self {
-            Self::Y => Space::YUp,
-            Self::Z => Space::ZUp,
+            Self::Y => Space::Gltf,
+            Self::Z => Space::Blender,
         }
     }
 
@@ -176,7 +176,7 @@ impl Axis {
     }
 }
 
-/// −90° about X, the inverse of C(ZUp) in the [module](self): takes +Z to +Y and −Y to +Z.
+/// −90° about X, the inverse of C(Blender) in the [module](self): takes +Z to +Y and −Y to +Z.
 const Y_UP_FROM_Z_UP: Rotation = Rotation::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
 
 /// A rotation R reflected in the plane x = 0: C R C with C = diag(−1, 1, 1).
@@ -211,9 +211,9 @@ impl FromStr for Axis {
 pub enum Space {
     /// The library's own: right-handed, +Y up, characters face +Z.
     #[default]
-    YUp,
+    Gltf,
     /// Blender's and AMASS's: right-handed, +Z up, characters face −Y.
-    ZUp,
+    Blender,
     /// Unity's: left-handed, +Y up, characters face +Z with their left at −X.
     Unity,
 }
@@ -222,8 +222,8 @@ impl Space {
     /// Converts a point, direction or normal from our space to this one, exactly: C v.
     pub fn from_ours(self, v: Vec3) -> Vec3 {
         match self {
-            Self::YUp => v,
-            Self::ZUp => Vec3::new(v.x, -v.z, v.y),
+            Self::Gltf => v,
+            Self::Blender => Vec3::new(v.x, -v.z, v.y),
             Self::Unity => Vec3::new(-v.x, v.y, v.z),
         }
     }
@@ -231,8 +231,8 @@ impl Space {
     /// Converts a point, direction or normal from this space to ours, exactly: Cᵀ v.
     pub fn to_ours(self, v: Vec3) -> Vec3 {
         match self {
-            Self::YUp => v,
-            Self::ZUp => Vec3::new(v.x, v.z, -v.y),
+            Self::Gltf => v,
+            Self::Blender => Vec3::new(v.x, v.z, -v.y),
             Self::Unity => Vec3::new(-v.x, v.y, v.z),
         }
     }
@@ -241,8 +241,8 @@ impl Space {
     /// [module](self).
     pub fn model_from_joint(self, ours: RigidTransform) -> RigidTransform {
         let rotation = match self {
-            Self::YUp => ours.rotation,
-            Self::ZUp => Y_UP_FROM_Z_UP.conjugate() * ours.rotation,
+            Self::Gltf => ours.rotation,
+            Self::Blender => Y_UP_FROM_Z_UP.conjugate() * ours.rotation,
             Self::Unity => mirrored(ours.rotation),
         };
         RigidTransform { rotation, translation: self.from_ours(ours.translation) }
@@ -251,8 +251,8 @@ impl Space {
     /// The inverse of [`model_from_joint`](Self::model_from_joint): from this space to ours.
     pub fn model_from_joint_to_ours(self, theirs: RigidTransform) -> RigidTransform {
         let rotation = match self {
-            Self::YUp => theirs.rotation,
-            Self::ZUp => Y_UP_FROM_Z_UP * theirs.rotation,
+            Self::Gltf => theirs.rotation,
+            Self::Blender => Y_UP_FROM_Z_UP * theirs.rotation,
             Self::Unity => mirrored(theirs.rotation),
         };
         RigidTransform { rotation, translation: self.to_ours(theirs.translation) }
@@ -262,7 +262,7 @@ impl Space {
     /// unchanged in right-handed spaces and reflected in Unity's. Its own inverse.
     pub fn parent_from_joint(self, transform: RigidTransform) -> RigidTransform {
         match self {
-            Self::YUp | Self::ZUp => transform,
+            Self::Gltf | Self::Blender => transform,
             Self::Unity => RigidTransform {
                 rotation: mirrored(transform.rotation),
                 translation: self.from_ours(transform.translation),
@@ -324,14 +324,14 @@ impl RigidTransform {
 mod tests {
     use super::*;
 
-    const SPACES: [Space; 3] = [Space::YUp, Space::ZUp, Space::Unity];
+    const SPACES: [Space; 3] = [Space::Gltf, Space::Blender, Space::Unity];
 
     #[test]
     fn up_forward_and_left_of_every_space() {
         let (left, up, front) = (Vec3::X, Vec3::Y, Vec3::Z);
         let axes = |space: Space| [left, up, front].map(|v| space.from_ours(v));
-        assert_eq!(axes(Space::YUp), [Vec3::X, Vec3::Y, Vec3::Z]);
-        assert_eq!(axes(Space::ZUp), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
+        assert_eq!(axes(Space::Gltf), [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert_eq!(axes(Space::Blender), [Vec3::X, Vec3::Z, Vec3::NEG_Y]);
         assert_eq!(axes(Space::Unity), [Vec3::NEG_X, Vec3::Y, Vec3::Z]);
     }
 

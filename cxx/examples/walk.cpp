@@ -95,10 +95,11 @@ void run(const std::string &folder) {
   auto skinner = mesh->skinner(0);
   std::vector<anthronet::Transform> pose(walk->joint_count());
   const double seconds = 10.0 / walk->frames_per_second();
-  walk->sample(seconds, anthronet::Wrap::Loop, anthronet::Relative::ToModel, anthronet::Space::Gltf,
+  auto context = anthronet::Context::create();
+  walk->sample(*context, seconds, anthronet::Wrap::Loop, anthronet::Relative::ToModel, anthronet::Space::Gltf,
                rust::Slice<anthronet::Transform>(pose));
   std::vector<float> positions(3 * skinner->vertex_count()), normals(positions.size());
-  skinner->skin(anthronet::SkinMethod::Linear, rust::Slice<const anthronet::Transform>(pose),
+  skinner->skin(*context, anthronet::SkinMethod::Linear, rust::Slice<const anthronet::Transform>(pose),
                 rust::Slice<float>(positions), rust::Slice<float>(normals));
   write(folder + "/frame.f32", rust::Slice<const float>(positions));
   write(folder + "/bind.f32", mesh->part(0).positions());

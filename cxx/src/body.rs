@@ -1,4 +1,4 @@
-//! Bodies: what a model makes of a request, and the account of it.
+//! Bodies: what a model makes of a request, and the report of it.
 
 use anthronet::measure::Sex;
 use anthronet::skeleton::humanoid::renamed;
@@ -70,20 +70,15 @@ impl Body {
     pub(crate) fn joints(&self, space: ffi::Space) -> Result<Vec<ffi::Joint>> {
         let space = space.meaning()?;
         let skeleton = self.body.skeleton();
-        let joints = skeleton.bind().iter().enumerate().map(|(joint, model_from_joint)| {
-            let parent = skeleton.parents()[joint];
-            let local = skeleton.rest_pose().locals[joint];
-            ffi::Joint {
-                name: skeleton.names()[joint].clone(),
-                parent: parent.map_or(-1, |parent| parent as i32),
-                length: skeleton.bone_length(joint).unwrap_or_default(),
-                parent_from_joint: local.parent_from_joint_in(space, parent).into(),
-                model_from_joint: space.model_from_joint_matrix((*model_from_joint).into()).to_cols_array(),
-                joint_from_model: space
-                    .joint_from_model_matrix(model_from_joint.inverse().into())
-                    .to_cols_array(),
-            }
-        });
+        let joints =
+            skeleton.names().iter().zip(skeleton.bind_joints(space)).map(|(name, joint)| ffi::Joint {
+                name: name.clone(),
+                parent: joint.parent.map_or(-1, |parent| parent as i32),
+                length: joint.bone_length.unwrap_or_default(),
+                parent_from_joint: joint.parent_from_joint.into(),
+                model_from_joint: joint.model_from_joint.to_cols_array(),
+                joint_from_model: joint.joint_from_model.to_cols_array(),
+            });
         Ok(joints.collect())
     }
 

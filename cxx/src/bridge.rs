@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::clip::{Clip, Motion, builtin_clips};
+use crate::context::Context;
 use crate::mesh::{Mesh, MeshPart};
 use crate::model::{Model, humanoid_bones, measure_names, version};
 use crate::request::Request;
@@ -15,17 +16,17 @@ use crate::skin::{Skinner, skin_many};
 pub(crate) mod ffi {
     /// Female or male; of a request also neither.
     enum Sex {
-        /// Left to the measures.
+        /// Inferred from the measures.
         Any,
         Female,
         Male,
     }
 
-    /// How a request's open measures are filled.
+    /// How measures that a request does not give are filled.
     enum Fill {
-        /// With their likeliest values beside the given ones.
+        /// With their most likely values, given the others.
         Mean,
-        /// With a draw from what is plausible beside the given ones; the seed chooses.
+        /// By a draw from their distribution, given the others; the seed chooses.
         Sample,
     }
 
@@ -35,15 +36,15 @@ pub(crate) mod ffi {
         Gltf,
         /// Right-handed, +Z up, the character faces -Y and has its left at +X: Blender.
         Blender,
-        /// Left-handed, +Y up, the character faces +Z and has its left at -X: Unity. Faces go round the other way.
+        /// Left-handed, +Y up, the character faces +Z and has its left at -X: Unity. Faces have the opposite winding.
         Unity,
     }
 
     /// Which vertices and faces a mesh has.
     enum Layout {
-        /// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+        /// One texture coordinate per vertex (vertices at seams are doubled) and triangles only: for drawing.
         Render,
-        /// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+        /// The model's own vertices and quads, texture coordinates per corner: for editing and measuring.
         Model,
     }
 
@@ -75,10 +76,10 @@ pub(crate) mod ffi {
     enum Wrap {
         /// Holds its first or last frame.
         Once,
-        /// Starts anew; its last frame is its first.
+        /// Starts over; its last frame is its first.
         Loop,
-        /// As `Loop`, and each round goes on from where the last one ended.
-        Travel,
+        /// As `Loop` with root motion: every cycle continues where the last one ended.
+        RootMotion,
     }
 
     /// What a joint's transform is relative to.
@@ -91,9 +92,9 @@ pub(crate) mod ffi {
 
     /// What fingers do in a retargeted clip.
     enum Fingers {
-        /// As the source's where it has any, else at ease.
+        /// Those of the motion where it has any, else relaxed.
         Source,
-        /// Hands at ease.
+        /// Relaxed hands.
         Relaxed,
         /// As in the bind pose.
         Rest,
@@ -101,7 +102,7 @@ pub(crate) mod ffi {
 
     /// Which axis points up in a motion file.
     enum UpAxis {
-        /// What the file says, or its proportions.
+        /// As the file says, or else found from the proportions of its skeleton.
         Found,
         Y,
         Z,
@@ -157,11 +158,11 @@ pub(crate) mod ffi {
         name: String,
         /// The request gives it.
         given: bool,
-        /// What the request gives; 0 for an open measure.
+        /// The value in the request; 0 for a filled measure.
         asked: f64,
-        /// What the body has.
+        /// The value of the body.
         obtained: f64,
-        /// Obtained - asked; 0 for an open measure.
+        /// Obtained - asked; 0 for a filled measure.
         residual: f64,
         /// Lower end of what 90 % of people with the given measures have; the value itself for a given measure.
         low90: f64,
@@ -189,9 +190,9 @@ pub(crate) mod ffi {
         joint_count: usize,
     }
 
-    /// What tape and scales say of a mesh.
+    /// Measures, mass and volume of a mesh.
     struct Measured {
-        /// The level of detail that it was recognised as.
+        /// The level of detail of the mesh, recognised by its number of vertices.
         lod: u32,
         mass_kg: f64,
         volume_m3: f64,
@@ -201,7 +202,7 @@ pub(crate) mod ffi {
         metres: Vec<f64>,
     }
 
-    /// What of a body becomes a mesh. `MeshOptions{}` is the default.
+    /// How a mesh is made of a body. `MeshOptions{}` is the default.
     struct MeshOptions {
         /// Level of detail, 0 (finest) to 3.
         lod: u32,
@@ -215,13 +216,13 @@ pub(crate) mod ffi {
         skin_tone: u32,
     }
 
-    /// What of a body goes into a scene. `SceneOptions{}` is the default.
+    /// How a scene is made of a body. `SceneOptions{}` is the default.
     struct SceneOptions {
         /// Level of detail, 0 (finest) to 3.
         lod: u32,
         /// Influences per vertex, 4 or 8; 0 stands for 4.
         influences: u32,
-        /// What the joints are called.
+        /// Names of the joints.
         joint_names: JointNames,
         /// Leaves out eyes, teeth, tongue and lashes.
         body_only: bool,
@@ -231,8 +232,8 @@ pub(crate) mod ffi {
         compress: bool,
     }
 
-    /// What is said of a motion file beforehand; it wins over what the file says. `MotionOptions{}` leaves everything
-    /// to the file.
+    /// How a motion file is read; these values override those in the file. `MotionOptions{}` leaves everything to the
+    /// file.
     struct MotionOptions {
         up: UpAxis,
         /// Metres per unit of length, such as 0.01; 0 leaves it to the file.
@@ -241,23 +242,24 @@ pub(crate) mod ffi {
         frames_per_second: f64,
     }
 
-    /// How a motion comes onto a body. `RetargetOptions{}` is the default: within the limits of joints, feet on the floor.
+    /// How a motion is retargeted to a body. `RetargetOptions{}` is the default: joints within their limits, feet on the
+    /// floor.
     struct RetargetOptions {
         fingers: Fingers,
-        /// Leaves joints beyond what people's joints do.
+        /// Does not keep joints within the limits of human joints.
         no_limits: bool,
-        /// Leaves feet where the motion puts them, sliding or under the floor.
+        /// Does not keep feet that touch the floor from sliding and sinking in.
         no_feet: bool,
-        /// Leaves out the way over the ground.
+        /// Removes root motion.
         in_place: bool,
-        /// Makes the end meet the beginning.
+        /// Blends the end into the beginning, so that the clip loops.
         looped: bool,
-        /// Gives the way over the ground to the joint `Root` instead of the pelvis.
+        /// Puts root motion on the joint `Root` instead of the pelvis.
         root_motion: bool,
         /// Frames per second of the result; 0 keeps those of the motion.
         frames_per_second: f64,
-        /// Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail":
-        /// null}`; those that it does not name are found. Empty to find all of them.
+        /// Which joint of the motion drives which joint of the rig, or none, as JSON: `{"LeftArm": "upperarm_l", "Tail":
+        /// null}`; joints that it does not name are matched automatically. Empty matches all of them.
         mapping_json: String,
     }
 
@@ -271,7 +273,7 @@ pub(crate) mod ffi {
         double_sided: bool,
     }
 
-    /// A surface's way to another shape. A share of it is added to the bind pose, before skinning.
+    /// Displacements from a surface to another shape. Their weighted sum is added to the bind pose, before skinning.
     struct BlendShape {
         name: String,
         /// Three per vertex, metres, to be added to the positions.
@@ -309,7 +311,15 @@ pub(crate) mod ffi {
 
         /// Poses the surfaces of all jobs, on all cores. Nothing is written unless all of them are in order; buffers that
         /// overlap are not.
-        fn skin_many(jobs: &mut [SkinJob]) -> Result<()>;
+        fn skin_many(context: &mut Context, jobs: &mut [SkinJob]) -> Result<()>;
+
+        /// Memory that sampling and skinning work in, used again by the next call: it saves allocations and changes no
+        /// result. Keep one per character or per thread that calls; one call at a time may use it.
+        type Context;
+
+        /// Holds nothing yet; it grows as calls need.
+        #[Self = "Context"]
+        fn create() -> Box<Context>;
 
         /// A trained model: makes bodies. May be used by many threads at once, and freed before its bodies.
         type Model;
@@ -345,7 +355,7 @@ pub(crate) mod ffi {
         /// Makes the body that a request describes. It takes a while: `std::async` keeps it off the calling thread.
         fn generate(self: &Model, request: &Request) -> Result<Box<Body>>;
 
-        /// Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way.
+        /// Makes a body between two requests: `t` = 0 is the first, 1 the second; measures and identity are interpolated.
         fn interpolate(self: &Model, from: &Request, to: &Request, t: f64) -> Result<Box<Body>>;
 
         /// Measures a body in its bind pose at any level of detail, sculpted or not: three floats per vertex of the
@@ -358,7 +368,7 @@ pub(crate) mod ffi {
         /// A person to be made. Metres.
         type Request;
 
-        /// Asks for nothing: the likeliest person.
+        /// Without given measures: the most likely person.
         #[Self = "Request"]
         fn create() -> Box<Request>;
 
@@ -366,32 +376,32 @@ pub(crate) mod ffi {
         #[Self = "Request"]
         fn from_json(json: &str) -> Result<Box<Request>>;
 
-        /// Another request that asks for the same.
+        /// A copy of it.
         fn copy(self: &Request) -> Box<Request>;
 
         /// In the form that `from_json` reads.
         fn to_json(self: &Request) -> String;
 
-        /// Gives a measure, metres; a name without its side, such as `arm_length`, gives both sides.
+        /// Sets a measure, metres; a name without its side, such as `arm_length`, sets both sides.
         unsafe fn set<'a>(self: &'a mut Request, name: &str, metres: f64) -> Result<&'a mut Request>;
 
-        /// Leaves a measure open again.
+        /// Makes a measure not given, so that it is filled again.
         unsafe fn unset<'a>(self: &'a mut Request, name: &str) -> Result<&'a mut Request>;
 
         /// Sets the sex.
         unsafe fn set_sex<'a>(self: &'a mut Request, sex: Sex) -> Result<&'a mut Request>;
 
-        /// 0 for the likeliest of the people with these measures, any other number for one of them.
+        /// 0 for the most likely person with these measures, any other number for another one.
         fn set_seed(self: &mut Request, seed: u64) -> &mut Request;
 
-        /// Sets the latent numbers by hand, as many as `Model::latent_size` says; none leaves them to the seed.
+        /// Sets the latent numbers, as many as `Model::latent_size` says; none leaves them to the seed.
         unsafe fn set_latent<'a>(self: &'a mut Request, latent: &[f64]) -> Result<&'a mut Request>;
 
-        /// Sets how open measures are filled.
+        /// Sets how measures that are not given are filled.
         unsafe fn set_fill<'a>(self: &'a mut Request, fill: Fill) -> Result<&'a mut Request>;
 
-        /// Whether measures that no one person has are replaced by the nearest that one has, with a warning in the
-        /// report, or refused.
+        /// Whether measures that no person has together are replaced by the nearest that a person has, with a warning in
+        /// the report, or refused.
         fn set_nearest(self: &mut Request, nearest: bool) -> &mut Request;
 
         /// A person in the bind pose, with the report of how it was made. Immutable.
@@ -400,10 +410,10 @@ pub(crate) mod ffi {
         /// Sex, seed, mass and how the solve went.
         fn summary(self: &Body) -> BodySummary;
 
-        /// All measures with what was asked, in the order of `measure_names`.
+        /// All measures, in the order of `measure_names`.
         fn measures(self: &Body) -> Vec<MeasureReport>;
 
-        /// What the body has of a measure, by its name with its side, metres.
+        /// A measure of the body, by its name with its side, metres.
         fn measure(self: &Body, name: &str) -> Result<f64>;
 
         /// What is unusual about the body, as sentences.
@@ -462,20 +472,20 @@ pub(crate) mod ffi {
         fn normals(self: &MeshPart) -> &[f32];
 
         /// Two per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
-        /// upwards in the others, as their programs have it.
+        /// upwards in the others.
         fn uvs(self: &MeshPart) -> &[f32];
 
         /// Vertices, three per triangle. In the model layout these are the faces that are no quads: none at levels 0
         /// and 1.
         fn triangles(self: &MeshPart) -> &[u32];
 
-        /// Texture coordinates of the triangles' corners. Model layout alone.
+        /// Texture coordinates of the triangles' corners. Model layout only.
         fn triangle_uvs(self: &MeshPart) -> &[u32];
 
-        /// Vertices, four per quad. Model layout alone.
+        /// Vertices, four per quad. Model layout only.
         fn quads(self: &MeshPart) -> &[u32];
 
-        /// Texture coordinates of the quads' corners. Model layout alone.
+        /// Texture coordinates of the quads' corners. Model layout only.
         fn quad_uvs(self: &MeshPart) -> &[u32];
 
         /// Which vertex of the model each vertex is.
@@ -487,7 +497,7 @@ pub(crate) mod ffi {
         /// Weights, `influences` per vertex, descending, of sum 1.
         fn weights(self: &MeshPart) -> &[f32];
 
-        /// The way from this surface to that of another body, made with the same options.
+        /// The blend shape from this surface to that of another body, made with the same options.
         fn blend_shape(self: &MeshPart, name: &str, other: &MeshPart) -> Result<BlendShape>;
 
         /// A part of a mesh ready to be posed. Immutable; may be used by many threads at once.
@@ -500,6 +510,7 @@ pub(crate) mod ffi {
         /// Poses the surface: fills three floats per vertex of positions, metres, and unless it is empty of normals.
         fn skin(
             self: &Skinner,
+            context: &mut Context,
             method: SkinMethod,
             pose: &[Transform],
             positions: &mut [f32],
@@ -512,6 +523,7 @@ pub(crate) mod ffi {
         #[allow(clippy::too_many_arguments)]
         fn skin_interleaved(
             self: &Skinner,
+            context: &mut Context,
             method: SkinMethod,
             pose: &[Transform],
             offsets: &[f32],
@@ -530,7 +542,7 @@ pub(crate) mod ffi {
 
         fn name(self: &Clip) -> &str;
 
-        /// The same motion by another name.
+        /// The same clip with another name.
         fn renamed(self: &Clip, name: &str) -> Box<Clip>;
 
         fn frame_count(self: &Clip) -> usize;
@@ -542,13 +554,14 @@ pub(crate) mod ffi {
         /// From the first frame to the last, seconds.
         fn duration(self: &Clip) -> f64;
 
-        /// How a retargeted clip came onto the body, as JSON: which joint drives which, what drives nothing, how far
-        /// directions, limits and feet are off. Empty for other clips.
+        /// How a clip was retargeted, as JSON: which joint drives which, which joints drive none, errors of directions,
+        /// limits and feet. Empty for other clips.
         fn report(self: &Clip) -> &str;
 
         /// The pose at a time: fills one transform per joint.
         fn sample(
             self: &Clip,
+            context: &mut Context,
             seconds: f64,
             wrap: Wrap,
             relative: Relative,
@@ -556,33 +569,33 @@ pub(crate) mod ffi {
             joints: &mut [Transform],
         ) -> Result<()>;
 
-        /// All frames, one after the other: fills frames x joints transforms.
+        /// All frames in order: fills frames x joints transforms.
         fn bake(self: &Clip, relative: Relative, space: Space, joints: &mut [Transform]) -> Result<()>;
 
         /// The clip at another rate.
         fn resample(self: &Clip, frames_per_second: f64) -> Result<Box<Clip>>;
 
-        /// Without its way over the ground.
+        /// Without root motion.
         fn in_place(self: &Clip) -> Result<Box<Clip>>;
 
-        /// With its end going over into its beginning during the last `seconds`.
+        /// With its end blended into its beginning during the last `seconds`, so that it loops.
         fn looped(self: &Clip, seconds: f64) -> Result<Box<Clip>>;
 
-        /// This clip and another of the same body at once: `weight` 0 is this one, 1 the other.
+        /// This clip blended with another of the same body: `weight` 0 is this one, 1 the other.
         fn blend(self: &Clip, other: &Clip, weight: f32) -> Result<Box<Clip>>;
 
         /// The mask of a part of the body, one number per joint: 1 for the joint of that name in the rig and all below
         /// it, else 0. `spine_01` is the upper body.
         fn joint_mask(self: &Clip, joint: &str) -> Result<Vec<f32>>;
 
-        /// As `blend`, with a share of each joint: 0 stays with this clip, 1 takes part fully.
+        /// As `blend`, with a weight per joint: 0 is this clip, 1 is blended fully.
         fn blend_masked(self: &Clip, other: &Clip, weight: f32, mask: &[f32]) -> Result<Box<Clip>>;
 
-        /// This clip with all that `layer`, of the same body, differs from its own first frame by; `weight` 0 adds
-        /// nothing, 1 all. An empty mask is every joint. A layer shorter than this clip starts anew.
+        /// This clip plus the difference between `layer`, of the same body, and its first frame, times `weight`, 0 to 1.
+        /// An empty mask is every joint. A layer shorter than this clip starts over.
         fn additive(self: &Clip, layer: &Clip, weight: f32, mask: &[f32]) -> Result<Box<Clip>>;
 
-        /// This clip and then another of the same body, overlapping by `seconds`.
+        /// This clip and then another of the same body, blended over the `seconds` by which they overlap.
         fn crossfade(self: &Clip, next: &Clip, seconds: f64) -> Result<Box<Clip>>;
 
         /// A motion file as it was read: at least one clip of the file's own skeleton. Immutable.
@@ -592,7 +605,7 @@ pub(crate) mod ffi {
         #[Self = "Motion"]
         fn open(path: &str, options: &MotionOptions) -> Result<Box<Motion>>;
 
-        /// Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a
+        /// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a
         /// name gets it.
         #[Self = "Motion"]
         fn from_bytes(bytes: &[u8], name: &str, options: &MotionOptions) -> Result<Box<Motion>>;
@@ -602,10 +615,10 @@ pub(crate) mod ffi {
 
         unsafe fn clip_name<'a>(self: &'a Motion, clip: usize) -> Result<&'a str>;
 
-        /// How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+        /// How the file was read, as JSON: format, unit, up axis, frame rate, how each was found, warnings.
         fn report(self: &Motion) -> Result<String>;
 
-        /// Brings one of its clips onto a body.
+        /// Retargets one of its clips to a body.
         fn retarget(self: &Motion, clip: usize, body: &Body, options: &RetargetOptions) -> Result<Box<Clip>>;
 
         /// A body with its clips, ready to become a file.
@@ -615,7 +628,7 @@ pub(crate) mod ffi {
         unsafe fn add_clip<'a>(self: &'a mut Scene, clip: &Clip) -> Result<&'a mut Scene>;
 
         /// Writes a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-        /// .obj. It appears whole or not at all.
+        /// .obj. It is written completely or not at all.
         fn save(self: &Scene, path: &str) -> Result<()>;
 
         /// The bytes of a file: `glb`, `vrm`, `usda`, `usdc`, `usdz` or `obj`.

@@ -1,18 +1,22 @@
-//! Motion: files as they were read, their way onto a body, and clips of the body's own skeleton.
+//! Motion: files as they were read, retargeted to bodies, and clips of a body's skeleton.
+
+use std::path::Path;
 
 use anthronet::Error;
 use anthronet::clip;
 use anthronet::clip::{BUILTIN, JointMask, Sampler};
 use anthronet::format::{self, ReadOptions};
 use anthronet::math::RigidTransform;
-use anthronet::retarget::{self, RetargetOptions, RetargetSwitches};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, Overrides, RetargetOptions, RootMotion, TransferOptions};
 use anthronet::skeleton::Pose;
 use anthronet::space::Space;
 
 use crate::Result;
 use crate::body::Body;
 use crate::bridge::ffi;
-use crate::enums::{Meaning, at, finite};
+use crate::context::Context;
+use crate::enums::{Meaning, at, finite, given};
 
 pub(crate) struct Clip {
     clip: clip::Clip,
@@ -70,6 +74,7 @@ impl Clip {
 
     pub(crate) fn sample(
         &self,
+        context: &mut Context,
         seconds: f64,
         wrap: ffi::Wrap,
         relative: ffi::Relative,
@@ -79,7 +84,9 @@ impl Clip {
         let (wrap, to_model, space) = (wrap.meaning()?, relative.meaning()?, space.meaning()?);
         finite("seconds", seconds)?;
         room(joints, self.joint_count())?;
-        self.write(&Sampler::new(&self.clip, wrap).sample(seconds), &mut Vec::new(), to_model, space, joints);
+        let Context { pose, model, .. } = context;
+        Sampler::new(&self.clip, wrap).sample_into(seconds, pose);
+        self.write(pose, model, to_model, space, joints);
         Ok(())
     }
 
@@ -141,7 +148,7 @@ impl Clip {
         Ok(clip::crossfade(&self.clip, &next.clip, seconds)?.into())
     }
 
-    /// A pose as it was asked for; `model` is room that may be used again.
+    /// Writes a pose for the caller; `model` is room for its joints relative to the model.
     fn write(
         &self,
         pose: &Pose,
@@ -209,21 +216,36 @@ impl Motion {
 }
 
 fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
-    ReadOptions::of_numbers(asked.metres_per_unit, asked.up.meaning()?, asked.frames_per_second)
+    let options = ReadOptions {
+        unit: None,
+        up: asked.up.meaning()?,
+        frames_per_second: given(asked.frames_per_second),
+    };
+    match given(asked.metres_per_unit) {
+        None => Ok(options),
+        Some(metres) => options.with_metres_per_unit(metres),
+    }
 }
 
 fn retarget_options(asked: &ffi::RetargetOptions) -> Result<RetargetOptions> {
-    let switches = RetargetSwitches {
+    let transfer = TransferOptions {
         fingers: asked.fingers.meaning()?,
-        no_limits: asked.no_limits,
-        no_feet: asked.no_feet,
+        root: if asked.root_motion { RootMotion::Root } else { RootMotion::Pelvis },
+        ..TransferOptions::default()
+    };
+    let mapping = match asked.mapping_json.as_str() {
+        "" => Overrides::new(),
+        json => retarget::read_overrides(json, Path::new("mapping_json"))?,
+    };
+    Ok(RetargetOptions {
+        mapping,
+        transfer,
+        limits: !asked.no_limits,
+        feet: (!asked.no_feet).then(FeetOptions::default),
         in_place: asked.in_place,
         looped: asked.looped,
-        root_motion: asked.root_motion,
-        mapping_json: &asked.mapping_json,
-        frames_per_second: asked.frames_per_second,
-    };
-    switches.try_into()
+        frames_per_second: given(asked.frames_per_second),
+    })
 }
 
 fn json(what: &'static str, value: &impl serde::Serialize) -> Result<String> {

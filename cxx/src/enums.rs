@@ -42,7 +42,7 @@ macro_rules! meaning {
 
 meaning!(Sex as Option<Sex>, "sex": Any => None, Female => Some(Sex::Female), Male => Some(Sex::Male));
 meaning!(Fill as Fill, "fill": Mean => Fill::Mean, Sample => Fill::Sample);
-meaning!(Space as Space, "space": Gltf => Space::YUp, Blender => Space::ZUp, Unity => Space::Unity);
+meaning!(Space as Space, "space": Gltf => Space::Gltf, Blender => Space::Blender, Unity => Space::Unity);
 meaning!(Layout as Layout, "layout": Render => Layout::Render, Model => Layout::Model);
 meaning!(JointNames as JointNames, "joint_names":
     Native => JointNames::Native, Unity => JointNames::Unity, Mixamo => JointNames::Mixamo, Vrm => JointNames::Vrm,
@@ -50,7 +50,7 @@ meaning!(JointNames as JointNames, "joint_names":
 meaning!(SkinMethod as SkinMethod, "method":
     Linear => SkinMethod::Linear, DualQuaternion => SkinMethod::DualQuaternion,
     JointTranslation => SkinMethod::JointTranslation);
-meaning!(Wrap as Wrap, "wrap": Once => Wrap::Once, Loop => Wrap::Loop, Travel => Wrap::Travel);
+meaning!(Wrap as Wrap, "wrap": Once => Wrap::Once, Loop => Wrap::Loop, RootMotion => Wrap::RootMotion);
 meaning!(Relative as bool, "relative": ToParent => false, ToModel => true);
 meaning!(Fingers as FingerMode, "fingers":
     Source => FingerMode::Source, Relaxed => FingerMode::Relaxed, Rest => FingerMode::Rest);
@@ -68,6 +68,11 @@ pub(crate) fn lod(level: u32) -> Result<Lod> {
 pub(crate) fn at<'a, T>(all: &'a [T], index: usize, what: &str) -> Result<&'a T> {
     all.get(index)
         .ok_or_else(|| Error::request(what, format!("expected less than {}, got {index}", all.len())))
+}
+
+/// A number that 0 stands in for where the default is asked for.
+pub(crate) fn given(number: f64) -> Option<f64> {
+    (number != 0.0).then_some(number)
 }
 
 /// A number that is one.

@@ -9,6 +9,7 @@
 mod body;
 mod bridge;
 mod clip;
+mod context;
 mod enums;
 mod mesh;
 mod model;

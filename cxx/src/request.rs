@@ -1,4 +1,4 @@
-//! Requests: what is asked of a model.
+//! Requests: the input of a model.
 
 use anthronet::Error;
 use anthronet::measure::expand_name;

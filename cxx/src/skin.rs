@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use crate::Result;
 use crate::bridge::ffi;
+use crate::context::Context;
 use crate::enums::Meaning;
 
 pub(crate) struct Skinner(pub(crate) anthronet::skin::Skinner);
@@ -23,18 +24,20 @@ impl Skinner {
 
     pub(crate) fn skin(
         &self,
+        context: &mut Context,
         method: ffi::SkinMethod,
         pose: &[ffi::Transform],
         positions: &mut [f32],
         normals: &mut [f32],
     ) -> Result<()> {
         let job = Job { skinner: self, method, pose, offsets: &[] };
-        job.into_surface(surface(positions, normals))
+        job.into_surface(surface(positions, normals), context)
     }
 
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn skin_interleaved(
         &self,
+        context: &mut Context,
         method: ffi::SkinMethod,
         pose: &[ffi::Transform],
         offsets: &[f32],
@@ -45,7 +48,7 @@ impl Skinner {
     ) -> Result<()> {
         let bytes = vertices.into();
         let out = SurfaceMut::Interleaved { bytes, stride, position_offset, normal_offset };
-        Job { skinner: self, method, pose, offsets }.into_surface(out)
+        Job { skinner: self, method, pose, offsets }.into_surface(out, context)
     }
 }
 
@@ -58,19 +61,20 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn into_surface(self, out: SurfaceMut<'_>) -> Result<()> {
+    fn into_surface(self, out: SurfaceMut<'_>, context: &mut Context) -> Result<()> {
         let (pose, offsets) = (locals(self.pose), shifts(self.offsets)?);
-        anthronet::skin::skin_many(vec![SkinJob {
+        let job = SkinJob {
             skinner: &self.skinner.0,
             method: self.method.meaning()?,
             model_from_joints: &pose,
             offsets: (!offsets.is_empty()).then_some(offsets.as_slice()),
             out,
-        }])
+        };
+        anthronet::skin::skin_many(vec![job], &mut context.skin)
     }
 }
 
-pub(crate) fn skin_many(jobs: &mut [ffi::SkinJob<'_>]) -> Result<()> {
+pub(crate) fn skin_many(context: &mut Context, jobs: &mut [ffi::SkinJob<'_>]) -> Result<()> {
     apart(jobs)?;
     let mut inputs = Vec::with_capacity(jobs.len());
     for job in jobs.iter() {
@@ -83,7 +87,7 @@ pub(crate) fn skin_many(jobs: &mut [ffi::SkinJob<'_>]) -> Result<()> {
         offsets: (!offsets.is_empty()).then_some(offsets.as_slice()),
         out: surface(job.positions, job.normals),
     });
-    anthronet::skin::skin_many(work.collect())
+    anthronet::skin::skin_many(work.collect(), &mut context.skin)
 }
 
 /// Refuses buffers that overlap, which slices of C++ can.

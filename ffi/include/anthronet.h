@@ -5,7 +5,8 @@
  * Handles. A function that makes something writes a new handle to `out_…`; free it once with the `…_free` of its kind.
  * Handles made of others do not need them any longer, in whatever order they are freed. Freeing NULL does nothing.
  *
- * Threads. What is passed as `const T*` may be used by many threads at once; what is passed as `T*` by one.
+ * Threads. What is passed as `const T*` may be used by many threads at once; what is passed as `T*` by one. A context is
+ * passed as `T*`: each thread that samples or skins has its own, or passes NULL.
  *
  * Errors. Functions return ANTHRONET_OK or a code; with a code, nothing was written to any `out_…` pointer, and `error`,
  * which may be NULL, says what was wrong. Numbers that are not finite, sizes that do not fit, values that no enumeration
@@ -15,10 +16,10 @@
  * Text is a pointer and a length in bytes, UTF-8, not ended by a zero, both ways. Texts have up to 1 MiB, files in memory
  * up to 1 GiB, lists up to 1,048,576 entries.
  *
- * Structures that begin with `struct_size` are filled with zeros by the caller, who then sets `struct_size` to their
- * sizeof. Zeros ask for the defaults. NULL for one that is read is a structure of zeros.
+ * The caller fills structures that begin with `struct_size` with zeros and sets `struct_size` to their sizeof. Zeros
+ * are the defaults. NULL for a structure that is read is a structure of zeros.
  *
- * Space. Metres, radians, seconds, kilograms. Axes and handedness as the ANTHRONET_SPACE_… that is asked for.
+ * Space. Metres, radians, seconds, kilograms. Axes and handedness are those of the ANTHRONET_SPACE_… of the call.
  * Matrices are column-major and multiply column vectors; quaternions are x, y, z, w.
  */
 
@@ -33,13 +34,13 @@
 // Done.
 #define ANTHRONET_OK 0
 
-// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+// A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
 #define ANTHRONET_ERROR_POINTER 101
 
 // A size, count, stride or `struct_size` is not what it must be.
 #define ANTHRONET_ERROR_SIZE 102
 
-// A number is none of the values of its enumeration.
+// A number is not a value of its enumeration.
 #define ANTHRONET_ERROR_ENUM 103
 
 // An index is beyond the last.
@@ -57,7 +58,7 @@
 // A model file is damaged or of another version.
 #define ANTHRONET_ERROR_MODEL 301
 
-// A file is not what it should be.
+// A file is damaged or not of its format.
 #define ANTHRONET_ERROR_FILE 401
 
 // The operating system refused to read or write.
@@ -69,13 +70,13 @@
 // The job is still running.
 #define ANTHRONET_ERROR_BUSY 601
 
-// The job was cancelled before this was made.
+// The job was cancelled before the body was made.
 #define ANTHRONET_ERROR_CANCELLED 602
 
-// What was asked for was taken before.
+// The body was taken before.
 #define ANTHRONET_ERROR_TAKEN 603
 
-// An error of a kind that is younger than this header.
+// Any other error.
 #define ANTHRONET_ERROR_OTHER 900
 
 // A defect of the library, caught; the message says where. Please report it.
@@ -84,11 +85,11 @@
 // Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 #define ANTHRONET_SPACE_GLTF 0
 
-// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
+// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. The axes of joints stay the same.
 #define ANTHRONET_SPACE_BLENDER 1
 
-// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
-// and joints' own axes are mirrored at X, too.
+// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles have the opposite
+// winding, and the axes of joints are mirrored at X too.
 #define ANTHRONET_SPACE_UNITY 2
 
 // The rig's own names, such as `upperarm_l`.
@@ -115,16 +116,16 @@
 // The paper's formula: joints move vertices but do not turn them.
 #define ANTHRONET_SKIN_JOINT_TRANSLATION 2
 
-// Worth knowing.
+// Information.
 #define ANTHRONET_LOG_INFO 0
 
-// Something may not be as it was meant.
+// A warning: a result may not be as intended.
 #define ANTHRONET_LOG_WARNING 1
 
 // A defect that no call could return.
 #define ANTHRONET_LOG_ERROR 2
 
-// The sex is left to the measures.
+// Inferred from the measures.
 #define ANTHRONET_SEX_ANY 0
 
 // Female.
@@ -133,10 +134,10 @@
 // Male.
 #define ANTHRONET_SEX_MALE 2
 
-// Open measures get their likeliest values beside the given ones.
+// Measures that are not given get their most likely values, given the others.
 #define ANTHRONET_FILL_MEAN 0
 
-// Open measures are drawn from what is plausible beside the given ones; the seed chooses.
+// Measures that are not given are drawn from their distribution, given the others; the seed chooses.
 #define ANTHRONET_FILL_SAMPLE 1
 
 // Bodies are still being made.
@@ -148,10 +149,10 @@
 // Cancelled, and nothing is running any more; what was made before can be taken.
 #define ANTHRONET_JOB_CANCELLED 2
 
-// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+// One texture coordinate per vertex (vertices at seams are doubled) and triangles only: for drawing.
 #define ANTHRONET_LAYOUT_RENDER 0
 
-// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+// The model's own vertices and quads, texture coordinates per corner: for editing and measuring.
 #define ANTHRONET_LAYOUT_MODEL 1
 
 // float × 3 per vertex, metres.
@@ -161,10 +162,10 @@
 #define ANTHRONET_ATTRIBUTE_NORMALS 1
 
 // float × 2 per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
-// upwards in the others, as their programs have it.
+// upwards in the others.
 #define ANTHRONET_ATTRIBUTE_UVS 2
 
-// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
 #define ANTHRONET_ATTRIBUTE_TRIANGLES 3
 
 // uint16 × influences per vertex: joints.
@@ -176,13 +177,13 @@
 // uint32 per vertex: which vertex of the model it is.
 #define ANTHRONET_ATTRIBUTE_SOURCES 6
 
-// uint32 × 4 per quad: vertices. Model layout alone.
+// uint32 × 4 per quad: vertices. Model layout only.
 #define ANTHRONET_ATTRIBUTE_QUADS 7
 
-// uint32 × 4 per quad: texture coordinates of its corners. Model layout alone.
+// uint32 × 4 per quad: texture coordinates of its corners. Model layout only.
 #define ANTHRONET_ATTRIBUTE_QUAD_UVS 8
 
-// uint32 × 3 per triangle: texture coordinates of its corners. Model layout alone.
+// uint32 × 3 per triangle: texture coordinates of its corners. Model layout only.
 #define ANTHRONET_ATTRIBUTE_TRIANGLE_UVS 9
 
 // 32-bit floats.
@@ -194,14 +195,14 @@
 // 16-bit unsigned integers.
 #define ANTHRONET_TYPE_U16 2
 
-// Outside its duration a clip holds its first or last frame.
+// The clip holds its first or last frame outside its duration.
 #define ANTHRONET_WRAP_ONCE 0
 
-// A clip starts anew; its last frame is its first.
+// The clip starts over; its last frame is its first.
 #define ANTHRONET_WRAP_LOOP 1
 
-// As `ANTHRONET_WRAP_LOOP`, and each round goes on from where the last one ended.
-#define ANTHRONET_WRAP_TRAVEL 2
+// As `ANTHRONET_WRAP_LOOP` with root motion: every cycle continues where the last one ended.
+#define ANTHRONET_WRAP_ROOT_MOTION 2
 
 // Each joint relative to its parent: what animation tracks hold.
 #define ANTHRONET_RELATIVE_TO_PARENT 0
@@ -209,16 +210,16 @@
 // Each joint relative to the model: what skinning takes.
 #define ANTHRONET_RELATIVE_TO_MODEL 1
 
-// Fingers as the source's where it has any, else at ease.
+// Fingers of the motion where it has any, else relaxed.
 #define ANTHRONET_FINGERS_SOURCE 0
 
-// Hands at ease.
+// Relaxed hands.
 #define ANTHRONET_FINGERS_RELAXED 1
 
 // Fingers as in the bind pose.
 #define ANTHRONET_FINGERS_REST 2
 
-// What the file says, or its proportions.
+// As the file says, or else found from the proportions of its skeleton.
 #define ANTHRONET_UP_FOUND 0
 
 // +Y points up in the file.
@@ -230,11 +231,16 @@
 // A person in the bind pose, with the report of how it was made. Immutable.
 typedef struct anthronet_body anthronet_body;
 
-// Bytes of the library's: a file in memory, or JSON as UTF-8.
+// Bytes that the library made: a file in memory, or JSON as UTF-8.
 typedef struct anthronet_bytes anthronet_bytes;
 
 // A motion of a body's joints, frame by frame. Immutable.
 typedef struct anthronet_clip anthronet_clip;
+
+// Memory that sampling and skinning work in, used again by the next call: it saves allocations and changes no result. Keep
+// one per character or per thread that calls; one call at a time may use it. It grows as calls need and is freed as a
+// whole. Where a function takes one, NULL stands for memory that is made for the call.
+typedef struct anthronet_context anthronet_context;
 
 // Requests that are being made into bodies by a thread of the library. May be polled and cancelled from any thread.
 typedef struct anthronet_job anthronet_job;
@@ -257,7 +263,7 @@ typedef struct anthronet_skinner anthronet_skinner;
 // What every call that can fail returns: `ANTHRONET_OK` or one of `ANTHRONET_ERROR_…`.
 typedef int32_t anthronet_status;
 
-// Text of the library's: UTF-8, not ended by a zero, valid as long as what it was asked of.
+// A text that the library owns: UTF-8, not ended by a zero, valid as long as the object that it was read from.
 typedef struct anthronet_text {
     // The first byte.
     const char *data;
@@ -265,7 +271,7 @@ typedef struct anthronet_text {
     uint64_t length;
 } anthronet_text;
 
-// What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+// What went wrong. The caller's own; may be NULL in every call. Written only on failure.
 typedef struct anthronet_error {
     // The status that the call returned.
     int32_t code;
@@ -273,15 +279,15 @@ typedef struct anthronet_error {
     char message[512];
 } anthronet_error;
 
-// Takes a message: its level, `length` bytes of UTF-8 that are valid during the call alone, and what was passed with the
-// callback. Called from any thread, one call at a time; it must not call the library.
+// Receives a message: its level, `length` bytes of UTF-8 that are valid only during the call, and the `user` pointer of
+// the callback. Called from any thread, one call at a time; it must not call the library.
 typedef void (*anthronet_log_callback)(uint32_t level, const char *message, uint64_t length, void *user);
 
-// What the scales say of a mesh.
+// Mass and volume of a measured mesh.
 typedef struct anthronet_measured {
     // Set by the caller: `sizeof(anthronet_measured)`.
     uint32_t struct_size;
-    // The level of detail that the mesh was recognised as.
+    // The level of detail of the mesh, recognised by its number of vertices.
     uint32_t lod;
     // Mass, kg.
     double mass_kg;
@@ -293,11 +299,11 @@ typedef struct anthronet_measured {
 
 // One measure of a body. Metres.
 typedef struct anthronet_measure_report {
-    // What the request gives; 0 for an open measure.
+    // The value in the request; 0 for a filled measure.
     double asked;
-    // What the body has.
+    // The value of the body.
     double obtained;
-    // Obtained − asked; 0 for an open measure.
+    // Obtained − asked; 0 for a filled measure.
     double residual;
     // Lower end of what 90 % of people with the given measures have; the value itself for a given measure.
     double low90;
@@ -307,7 +313,7 @@ typedef struct anthronet_measure_report {
     double percentile;
     // 1 if the request gives it, else 0.
     uint32_t given;
-    // `ANTHRONET_FILL_…` of an open measure, 0 of a given one.
+    // How a measure that is not given was filled: `ANTHRONET_FILL_…`; 0 for a given one.
     uint32_t filled;
 } anthronet_measure_report;
 
@@ -337,13 +343,13 @@ typedef struct anthronet_body_summary {
     uint32_t warning_count;
 } anthronet_body_summary;
 
-// How far a job is.
+// Progress of a job.
 typedef struct anthronet_job_progress {
     // Set by the caller: `sizeof(anthronet_job_progress)`.
     uint32_t struct_size;
     // `ANTHRONET_JOB_…`.
     uint32_t state;
-    // Requests that have their body or error; what a body is made of is not counted.
+    // Requests that have their body or error.
     uint32_t done;
     // Requests altogether.
     uint32_t total;
@@ -371,7 +377,7 @@ typedef struct anthronet_joint {
     float joint_from_model[16];
 } anthronet_joint;
 
-// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
 typedef struct anthronet_humanoid_bone {
     // Set by the caller: `sizeof(anthronet_humanoid_bone)`.
     uint32_t struct_size;
@@ -391,7 +397,7 @@ typedef struct anthronet_humanoid_bone {
     struct anthronet_text blender;
 } anthronet_humanoid_bone;
 
-// What of a body becomes a mesh; all zeros ask for the defaults.
+// How a mesh is made of a body; all zeros are the defaults.
 typedef struct anthronet_mesh_options {
     // Set by the caller: `sizeof(anthronet_mesh_options)`.
     uint32_t struct_size;
@@ -435,7 +441,7 @@ typedef struct anthronet_mesh_part {
 
 // An array of a mesh.
 typedef struct anthronet_view {
-    // The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+    // The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
     const void *data;
     // Number of rows.
     uint64_t rows;
@@ -463,7 +469,7 @@ typedef struct anthronet_clip_info {
     struct anthronet_text name;
 } anthronet_clip_info;
 
-// What is said of a motion file beforehand; it wins over what the file says. Zeros leave everything to the file.
+// How a motion file is read; these values override those in the file. Zeros leave everything to the file.
 typedef struct anthronet_motion_options {
     // Set by the caller: `sizeof(anthronet_motion_options)`.
     uint32_t struct_size;
@@ -475,7 +481,7 @@ typedef struct anthronet_motion_options {
     double frames_per_second;
 } anthronet_motion_options;
 
-// A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+// A motion of a skeleton of another program, such as an action of an armature. Arrays are read only during the call.
 typedef struct anthronet_motion_source {
     // Set by the caller: `sizeof(anthronet_motion_source)`.
     uint32_t struct_size;
@@ -499,26 +505,26 @@ typedef struct anthronet_motion_source {
     const struct anthronet_transform *frames;
 } anthronet_motion_source;
 
-// How a motion comes onto a body; all zeros ask for the defaults.
+// How a motion is retargeted to a body; all zeros are the defaults.
 typedef struct anthronet_retarget_options {
     // Set by the caller: `sizeof(anthronet_retarget_options)`.
     uint32_t struct_size;
     // `ANTHRONET_FINGERS_…`.
     uint32_t fingers;
-    // 1 leaves joints beyond what people's joints do.
+    // 1 does not keep joints within the limits of human joints.
     uint32_t no_limits;
-    // 1 leaves feet where the motion puts them, sliding or under the floor.
+    // 1 does not keep feet that touch the floor from sliding and sinking in.
     uint32_t no_feet;
-    // 1 leaves out the way over the ground.
+    // 1 removes root motion.
     uint32_t in_place;
-    // 1 makes the end meet the beginning.
+    // 1 blends the end into the beginning, so that the clip loops.
     uint32_t looped;
-    // 1 gives the way over the ground to the joint `Root` instead of the pelvis.
+    // 1 puts root motion on the joint `Root` instead of the pelvis.
     uint32_t root_motion;
     // Bytes of `mapping_json`.
     uint32_t mapping_length;
-    // Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
-    // those that it does not name are found. NULL to find all of them.
+    // Which joint of the motion drives which joint of the rig, or none, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+    // joints that it does not name are matched automatically. NULL matches all of them.
     const char *mapping_json;
     // Frames per second of the result; 0 keeps those of the motion.
     double frames_per_second;
@@ -556,7 +562,7 @@ typedef struct anthronet_skin_job {
     uint64_t normal_stride;
 } anthronet_skin_job;
 
-// What of a body goes into a file; all zeros ask for the defaults.
+// How a body is written to a file; all zeros are the defaults.
 typedef struct anthronet_export_options {
     // Set by the caller: `sizeof(anthronet_export_options)`.
     uint32_t struct_size;
@@ -564,7 +570,7 @@ typedef struct anthronet_export_options {
     uint32_t lod;
     // Influences per vertex, 4 or 8; 0 stands for 4.
     uint32_t influences;
-    // What the joints are called: `ANTHRONET_NAMES_…`.
+    // Names of the joints: `ANTHRONET_NAMES_…`.
     uint32_t joint_names;
     // 1 leaves out eyes, teeth, tongue and lashes.
     uint32_t body_only;
@@ -582,16 +588,18 @@ typedef struct anthronet_export_options {
 extern "C" {
 #endif // __cplusplus
 
-// The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another must not go
-// on.
+// The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another one must
+// stop.
 uint32_t anthronet_abi_version(void);
 
-// The version of the library, such as `0.1.0`; valid for ever.
+// The version of the library, such as `0.1.0`; always valid.
 anthronet_status anthronet_version(struct anthronet_text *out_version, struct anthronet_error *error);
 
-// Sets who hears messages; NULL for nobody, which is the default. When it returns, the former callback is not running
+// Sets the callback that receives messages; NULL for none, which is the default. When it returns, the former callback is not running
 // and will not be called again. `user` is handed to every call.
-anthronet_status anthronet_set_log_callback(anthronet_log_callback callback, void *user, struct anthronet_error *error);
+anthronet_status anthronet_set_log_callback(anthronet_log_callback callback,
+                                            void *user,
+                                            struct anthronet_error *error);
 
 // Where the bytes are, and how many; valid until they are freed.
 anthronet_status anthronet_bytes_data(const struct anthronet_bytes *bytes,
@@ -650,7 +658,7 @@ anthronet_status anthronet_model_measure_range(const struct anthronet_model *mod
 // Number of measures.
 uint32_t anthronet_measure_count(void);
 
-// The name of a measure, such as `waist_circumference`; valid for ever.
+// The name of a measure, such as `waist_circumference`; always valid.
 anthronet_status anthronet_measure_name(uint32_t measure,
                                         struct anthronet_text *out_name,
                                         struct anthronet_error *error);
@@ -684,7 +692,7 @@ anthronet_status anthronet_measure_file(const struct anthronet_model *model,
                                         struct anthronet_measured *out_measured,
                                         struct anthronet_error *error);
 
-// A request that asks for nothing: the likeliest person.
+// A request without given measures: the most likely person.
 anthronet_status anthronet_request_new(struct anthronet_request **out_request, struct anthronet_error *error);
 
 // A request from JSON: `{"sex": "female", "measures": {"height": 1.7}, "seed": 7}`; metres.
@@ -693,7 +701,7 @@ anthronet_status anthronet_request_from_json(const char *json,
                                              struct anthronet_request **out_request,
                                              struct anthronet_error *error);
 
-// Another request that asks for the same.
+// A copy of a request.
 anthronet_status anthronet_request_copy(const struct anthronet_request *request,
                                         struct anthronet_request **out_request,
                                         struct anthronet_error *error);
@@ -711,52 +719,51 @@ anthronet_status anthronet_request_set_sex(struct anthronet_request *request,
                                            uint32_t sex,
                                            struct anthronet_error *error);
 
-// Gives a measure by its name, metres; a name without its side, such as `arm_length`, gives both sides.
+// Sets a measure by its name, metres; a name without its side, such as `arm_length`, sets both sides.
 anthronet_status anthronet_request_set_measure(struct anthronet_request *request,
                                                const char *name,
                                                uint64_t name_length,
                                                double metres,
                                                struct anthronet_error *error);
 
-// Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-// `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
+// Sets or unsets all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
+// `anthronet_measure_name`; `count` is their number. `metres` of a measure that is not given is ignored.
 anthronet_status anthronet_request_set_measures(struct anthronet_request *request,
                                                 const double *metres,
                                                 const uint8_t *given,
                                                 uint32_t count,
                                                 struct anthronet_error *error);
 
-// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
+// The given measures: fills `out_metres` (0 for a measure that is not given) and `out_given`, `count` entries each, one per measure.
 anthronet_status anthronet_request_measures(const struct anthronet_request *request,
                                             double *out_metres,
                                             uint8_t *out_given,
                                             uint32_t count,
                                             struct anthronet_error *error);
 
-// Leaves a measure open again, by its place in the order of `anthronet_measure_name`.
-anthronet_status anthronet_request_open_measure(struct anthronet_request *request,
-                                                uint32_t measure,
-                                                struct anthronet_error *error);
+// Makes a measure not given, so that it is filled again; by its place in the order of `anthronet_measure_name`.
+anthronet_status anthronet_request_unset_measure(struct anthronet_request *request,
+                                                 uint32_t measure,
+                                                 struct anthronet_error *error);
 
-// Sets the seed: 0 for the likeliest of the people with these measures, any other number for one of them.
+// Sets the seed: 0 for the most likely person with these measures, any other number for another one.
 anthronet_status anthronet_request_set_seed(struct anthronet_request *request,
                                             uint64_t seed,
                                             struct anthronet_error *error);
 
-// Sets the latent numbers by hand, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the
-// seed.
+// Sets the latent numbers, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the seed.
 anthronet_status anthronet_request_set_latent(struct anthronet_request *request,
                                               const double *latent,
                                               uint32_t count,
                                               struct anthronet_error *error);
 
-// Sets how open measures are filled: `ANTHRONET_FILL_…`.
+// Sets how measures that are not given are filled: `ANTHRONET_FILL_…`.
 anthronet_status anthronet_request_set_fill(struct anthronet_request *request,
                                             uint32_t fill,
                                             struct anthronet_error *error);
 
-// Whether measures that no one person has are replaced by the nearest that one has (1), with a warning in the report,
-// or refused (0).
+// Whether measures that no person has together are replaced by the nearest that a person has (1), with a warning in the
+// report, or refused (0).
 anthronet_status anthronet_request_set_nearest(struct anthronet_request *request,
                                                uint32_t nearest,
                                                struct anthronet_error *error);
@@ -767,7 +774,7 @@ anthronet_status anthronet_generate(const struct anthronet_model *model,
                                     struct anthronet_body **out_body,
                                     struct anthronet_error *error);
 
-// Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way.
+// Makes a body between two requests: `t` = 0 is the first, 1 the second; measures and identity are interpolated.
 anthronet_status anthronet_interpolate(const struct anthronet_model *model,
                                        const struct anthronet_request *from,
                                        const struct anthronet_request *to,
@@ -808,12 +815,12 @@ anthronet_status anthronet_job_start(const struct anthronet_model *model,
                                      struct anthronet_job **out_job,
                                      struct anthronet_error *error);
 
-// How far the job is. Returns at once.
+// The progress of the job. Returns at once.
 anthronet_status anthronet_job_poll(const struct anthronet_job *job,
                                     struct anthronet_job_progress *out_progress,
                                     struct anthronet_error *error);
 
-// Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
+// Asks the job to stop after the current body, which takes some hundredths of a second at most. Returns at once.
 anthronet_status anthronet_job_cancel(const struct anthronet_job *job, struct anthronet_error *error);
 
 // Takes the body of a request, once, as soon as it is there; while the job goes on, too. Fails with the error of that
@@ -855,8 +862,8 @@ anthronet_status anthronet_mesh_new(const struct anthronet_body *body,
                                     struct anthronet_mesh **out_mesh,
                                     struct anthronet_error *error);
 
-// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
-// are invalid.
+// Changes the mesh to that of another body, with the same options and without blend shapes. Earlier views become
+// invalid.
 anthronet_status anthronet_mesh_update(struct anthronet_mesh *mesh,
                                        const struct anthronet_body *body,
                                        struct anthronet_error *error);
@@ -869,7 +876,7 @@ anthronet_status anthronet_mesh_part_count(const struct anthronet_mesh *mesh,
                                            uint32_t *out_count,
                                            struct anthronet_error *error);
 
-// What a part is.
+// Describes a part.
 anthronet_status anthronet_mesh_describe_part(const struct anthronet_mesh *mesh,
                                               uint32_t part,
                                               struct anthronet_mesh_part *out_part,
@@ -892,8 +899,8 @@ anthronet_status anthronet_mesh_read(const struct anthronet_mesh *mesh,
                                      uint64_t stride,
                                      struct anthronet_error *error);
 
-// Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
-// the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+// Adds a blend shape from the mesh to the surface of another body: at weight 1 the mesh has that body's shape in the bind
+// pose. Joints stay where they are, so bodies should be of about the same stature.
 anthronet_status anthronet_mesh_add_blend_shape(struct anthronet_mesh *mesh,
                                                 const char *name,
                                                 uint64_t name_length,
@@ -911,8 +918,8 @@ anthronet_status anthronet_mesh_blend_shape_name(const struct anthronet_mesh *me
                                                  struct anthronet_text *out_name,
                                                  struct anthronet_error *error);
 
-// Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
-// floats per vertex to be added to those of the mesh.
+// Where the displacements of a part are: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+// floats per vertex, to be added to those of the mesh.
 anthronet_status anthronet_mesh_blend_shape_data(const struct anthronet_mesh *mesh,
                                                  uint32_t shape,
                                                  uint32_t part,
@@ -920,7 +927,7 @@ anthronet_status anthronet_mesh_blend_shape_data(const struct anthronet_mesh *me
                                                  struct anthronet_view *out_view,
                                                  struct anthronet_error *error);
 
-// Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+// Copies the displacements of a part to a buffer, as `anthronet_mesh_read` does.
 anthronet_status anthronet_mesh_read_blend_shape(const struct anthronet_mesh *mesh,
                                                  uint32_t shape,
                                                  uint32_t part,
@@ -930,10 +937,16 @@ anthronet_status anthronet_mesh_read_blend_shape(const struct anthronet_mesh *me
                                                  uint64_t stride,
                                                  struct anthronet_error *error);
 
+// Makes a context, which holds nothing yet.
+anthronet_status anthronet_context_new(struct anthronet_context **out_context, struct anthronet_error *error);
+
+// Frees a context; NULL is nothing.
+void anthronet_context_free(struct anthronet_context *context);
+
 // Number of built-in clips.
 uint32_t anthronet_clip_builtin_count(void);
 
-// The name of a built-in clip, such as `walk`; valid for ever.
+// The name of a built-in clip, such as `walk`; always valid.
 anthronet_status anthronet_clip_builtin_name(uint32_t index,
                                              struct anthronet_text *out_name,
                                              struct anthronet_error *error);
@@ -945,29 +958,30 @@ anthronet_status anthronet_clip_builtin(const char *name,
                                         struct anthronet_clip **out_clip,
                                         struct anthronet_error *error);
 
-// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+// Makes a clip from poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
 // relative to its parent in `in_space`; `count` = frames × joints.
-anthronet_status anthronet_clip_new(const struct anthronet_body *body,
-                                    const char *name,
-                                    uint64_t name_length,
-                                    double frames_per_second,
-                                    uint32_t in_space,
-                                    const struct anthronet_transform *frames,
-                                    uint64_t count,
-                                    struct anthronet_clip **out_clip,
-                                    struct anthronet_error *error);
+anthronet_status anthronet_clip_from_poses(const struct anthronet_body *body,
+                                           const char *name,
+                                           uint64_t name_length,
+                                           double frames_per_second,
+                                           uint32_t in_space,
+                                           const struct anthronet_transform *frames,
+                                           uint64_t count,
+                                           struct anthronet_clip **out_clip,
+                                           struct anthronet_error *error);
 
 // Frees a clip; NULL is nothing.
 void anthronet_clip_free(struct anthronet_clip *clip);
 
-// What a clip is.
+// Describes a clip.
 anthronet_status anthronet_clip_describe(const struct anthronet_clip *clip,
                                          struct anthronet_clip_info *out_info,
                                          struct anthronet_error *error);
 
-// The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
-// `ANTHRONET_RELATIVE_TO_…`.
+// The pose of a clip at a time, from −1e9 to 1e9 seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+// `ANTHRONET_RELATIVE_TO_…`; `context` may be NULL.
 anthronet_status anthronet_clip_sample(const struct anthronet_clip *clip,
+                                       struct anthronet_context *context,
                                        double seconds,
                                        uint32_t wrap,
                                        uint32_t relative,
@@ -976,7 +990,7 @@ anthronet_status anthronet_clip_sample(const struct anthronet_clip *clip,
                                        uint32_t count,
                                        struct anthronet_error *error);
 
-// All frames of a clip, one after the other: fills `count` = frames × joints transforms.
+// All frames of a clip in order: fills `count` = frames × joints transforms.
 anthronet_status anthronet_clip_bake(const struct anthronet_clip *clip,
                                      uint32_t relative,
                                      uint32_t in_space,
@@ -990,26 +1004,26 @@ anthronet_status anthronet_clip_resample(const struct anthronet_clip *clip,
                                          struct anthronet_clip **out_clip,
                                          struct anthronet_error *error);
 
-// The clip without its way over the ground.
+// The clip without root motion.
 anthronet_status anthronet_clip_in_place(const struct anthronet_clip *clip,
                                          struct anthronet_clip **out_clip,
                                          struct anthronet_error *error);
 
-// The clip with its end going over into its beginning during the last `seconds`.
+// The clip with its end blended into its beginning during the last `seconds`, so that it loops.
 anthronet_status anthronet_clip_looped(const struct anthronet_clip *clip,
                                        double seconds,
                                        struct anthronet_clip **out_clip,
                                        struct anthronet_error *error);
 
-// Two clips of one body at once: `weight` 0 is the first, 1 the second.
+// Blends two clips of one body: `weight` 0 is the first, 1 the second.
 anthronet_status anthronet_clip_blend(const struct anthronet_clip *first,
                                       const struct anthronet_clip *second,
                                       float weight,
                                       struct anthronet_clip **out_clip,
                                       struct anthronet_error *error);
 
-// As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
-// part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+// As `anthronet_clip_blend` with a weight per joint: `mask` has `count` numbers, one per joint, from 0 (the first clip) to
+// 1 (blended fully), such as `anthronet_clip_joint_mask` makes.
 anthronet_status anthronet_clip_blend_masked(const struct anthronet_clip *first,
                                              const struct anthronet_clip *second,
                                              float weight,
@@ -1018,8 +1032,8 @@ anthronet_status anthronet_clip_blend_masked(const struct anthronet_clip *first,
                                              struct anthronet_clip **out_clip,
                                              struct anthronet_error *error);
 
-// Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+// Adds a clip to another of the same body: the difference between `layer` and the pose `reference` times `weight`, 0 to 1,
+// is added to `base`. A layer shorter than the base starts over. `reference` has `count` joints,
 // each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
 // `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
 anthronet_status anthronet_clip_additive(const struct anthronet_clip *base,
@@ -1042,7 +1056,7 @@ anthronet_status anthronet_clip_joint_mask(const struct anthronet_clip *clip,
                                            uint32_t count,
                                            struct anthronet_error *error);
 
-// Two clips of one body one after the other, overlapping by `seconds`.
+// Plays two clips of one body one after the other, blended over the `seconds` by which they overlap.
 anthronet_status anthronet_clip_crossfade(const struct anthronet_clip *first,
                                           const struct anthronet_clip *second,
                                           double seconds,
@@ -1056,7 +1070,7 @@ anthronet_status anthronet_motion_open_path(const char *path,
                                             struct anthronet_motion **out_motion,
                                             struct anthronet_error *error);
 
-// Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a name gets
+// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
 // it.
 anthronet_status anthronet_motion_open_memory(const uint8_t *data,
                                               uint64_t length,
@@ -1066,10 +1080,10 @@ anthronet_status anthronet_motion_open_memory(const uint8_t *data,
                                               struct anthronet_motion **out_motion,
                                               struct anthronet_error *error);
 
-// Makes a motion of poses instead of a file, to be retargeted as one.
-anthronet_status anthronet_motion_new(const struct anthronet_motion_source *source,
-                                      struct anthronet_motion **out_motion,
-                                      struct anthronet_error *error);
+// Makes a motion from poses, to be retargeted like one that was read from a file.
+anthronet_status anthronet_motion_from_poses(const struct anthronet_motion_source *source,
+                                             struct anthronet_motion **out_motion,
+                                             struct anthronet_error *error);
 
 // Frees a motion; NULL is nothing.
 void anthronet_motion_free(struct anthronet_motion *motion);
@@ -1085,13 +1099,13 @@ anthronet_status anthronet_motion_clip_name(const struct anthronet_motion *motio
                                             struct anthronet_text *out_name,
                                             struct anthronet_error *error);
 
-// How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+// How the file was read, as JSON: format, unit, up axis, frame rate, how each was found, warnings.
 anthronet_status anthronet_motion_report(const struct anthronet_motion *motion,
                                          struct anthronet_bytes **out_json,
                                          struct anthronet_error *error);
 
-// Brings one clip of a motion onto a body. `retarget_options` may be NULL; `out_report` too, else it gets JSON: which
-// joint drives which, what drives nothing, how far directions, limits and feet are off.
+// Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
+// which joint drives which, which joints drive none, errors of directions, limits and feet.
 anthronet_status anthronet_motion_retarget(const struct anthronet_motion *motion,
                                            uint32_t clip,
                                            const struct anthronet_body *body,
@@ -1115,13 +1129,14 @@ anthronet_status anthronet_skinner_vertex_count(const struct anthronet_skinner *
                                                 struct anthronet_error *error);
 
 // Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
-// to its last, what a job writes must not overlap what another writes nor what any of them reads.
-anthronet_status anthronet_skin(const struct anthronet_skin_job *jobs,
+// to its last, what a job writes must not overlap what another writes nor what any of them reads. `context` may be NULL.
+anthronet_status anthronet_skin(struct anthronet_context *context,
+                                const struct anthronet_skin_job *jobs,
                                 uint32_t count,
                                 struct anthronet_error *error);
 
 // Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-// .obj. The file appears whole or not at all. `options` may be NULL.
+// .obj. The file is written completely or not at all. `options` may be NULL.
 anthronet_status anthronet_export_path(const struct anthronet_body *body,
                                        const struct anthronet_export_options *options,
                                        const char *path,

@@ -1,4 +1,4 @@
-//! Blend shapes of meshes: ways from a body's surface to that of others.
+//! Blend shapes of meshes, from the surface of one body to that of another.
 
 use std::ffi::{c_char, c_void};
 
@@ -13,8 +13,8 @@ use crate::options::choice;
 use crate::pointer::{Out, anthronet_text, at, change, read, text, write_rows};
 use crate::status::{ANTHRONET_ERROR_INVALID, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
-/// Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
-/// the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+/// Adds a blend shape from the mesh to the surface of another body: at weight 1 the mesh has that body's shape in the bind
+/// pose. Joints stay where they are, so bodies should be of about the same stature.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_add_blend_shape(
     mesh: *mut anthronet_mesh,
@@ -66,8 +66,8 @@ pub unsafe extern "C" fn anthronet_mesh_blend_shape_name(
     })
 }
 
-/// Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
-/// floats per vertex to be added to those of the mesh.
+/// Where the displacements of a part are: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+/// floats per vertex, to be added to those of the mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_blend_shape_data(
     mesh: *const anthronet_mesh,
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn anthronet_mesh_blend_shape_data(
     })
 }
 
-/// Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+/// Copies the displacements of a part to a buffer, as `anthronet_mesh_read` does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_read_blend_shape(
     mesh: *const anthronet_mesh,

@@ -1,4 +1,4 @@
-//! Bodies: what a model makes of a request, and the account of it.
+//! Bodies: what a model makes of a request, and the report of it.
 
 use anthronet::Body;
 use anthronet::condition::Filled;
@@ -29,11 +29,11 @@ impl anthronet_body {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_measure_report {
-    /// What the request gives; 0 for an open measure.
+    /// The value in the request; 0 for a filled measure.
     pub asked: f64,
-    /// What the body has.
+    /// The value of the body.
     pub obtained: f64,
-    /// Obtained − asked; 0 for an open measure.
+    /// Obtained − asked; 0 for a filled measure.
     pub residual: f64,
     /// Lower end of what 90 % of people with the given measures have; the value itself for a given measure.
     pub low90: f64,
@@ -43,7 +43,7 @@ pub struct anthronet_measure_report {
     pub percentile: f64,
     /// 1 if the request gives it, else 0.
     pub given: u32,
-    /// `ANTHRONET_FILL_…` of an open measure, 0 of a given one.
+    /// How a measure that is not given was filled: `ANTHRONET_FILL_…`; 0 for a given one.
     pub filled: u32,
 }
 
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn anthronet_generate(
     })
 }
 
-/// Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way.
+/// Makes a body between two requests: `t` = 0 is the first, 1 the second; measures and identity are interpolated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_interpolate(
     model: *const anthronet_model,

@@ -3,7 +3,7 @@
 use crate::pointer::{Out, free, read};
 use crate::status::{anthronet_error, anthronet_status, guard};
 
-/// Bytes of the library's: a file in memory, or JSON as UTF-8.
+/// Bytes that the library made: a file in memory, or JSON as UTF-8.
 pub struct anthronet_bytes(pub(crate) Vec<u8>);
 
 /// Where the bytes are, and how many; valid until they are freed.

@@ -1,4 +1,4 @@
-//! Clips of a body's own skeleton: built in or retargeted; sampled, changed, blended.
+//! Clips of a body's skeleton: built in or retargeted; sampled, edited, blended.
 
 use std::ffi::c_char;
 
@@ -9,19 +9,18 @@ use anthronet::skeleton::Pose;
 use anthronet::space::Space;
 
 use crate::body::anthronet_body;
+use crate::context::anthronet_context;
 use crate::options::{Descriptor, DescriptorOut, choice, space};
-use crate::pointer::{Out, OutSlice, anthronet_text, at, at_most, exactly, free, read, slice, text};
+use crate::pointer::{Out, OutSlice, anthronet_text, at, at_most, exactly, finite, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
-use crate::status::{
-    ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{Fault, Outcome, anthronet_error, anthronet_status, guard};
 
-/// Outside its duration a clip holds its first or last frame.
+/// The clip holds its first or last frame outside its duration.
 pub const ANTHRONET_WRAP_ONCE: u32 = 0;
-/// A clip starts anew; its last frame is its first.
+/// The clip starts over; its last frame is its first.
 pub const ANTHRONET_WRAP_LOOP: u32 = 1;
-/// As `ANTHRONET_WRAP_LOOP`, and each round goes on from where the last one ended.
-pub const ANTHRONET_WRAP_TRAVEL: u32 = 2;
+/// As `ANTHRONET_WRAP_LOOP` with root motion: every cycle continues where the last one ended.
+pub const ANTHRONET_WRAP_ROOT_MOTION: u32 = 2;
 
 /// Each joint relative to its parent: what animation tracks hold.
 pub const ANTHRONET_RELATIVE_TO_PARENT: u32 = 0;
@@ -72,7 +71,7 @@ pub extern "C" fn anthronet_clip_builtin_count() -> u32 {
     BUILTIN.len() as u32
 }
 
-/// The name of a built-in clip, such as `walk`; valid for ever.
+/// The name of a built-in clip, such as `walk`; always valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_builtin_name(
     index: u32,
@@ -100,10 +99,10 @@ pub unsafe extern "C" fn anthronet_clip_builtin(
     })
 }
 
-/// Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+/// Makes a clip from poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
 /// relative to its parent in `in_space`; `count` = frames × joints.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn anthronet_clip_new(
+pub unsafe extern "C" fn anthronet_clip_from_poses(
     body: *const anthronet_body,
     name: *const c_char,
     name_length: u64,
@@ -120,11 +119,10 @@ pub unsafe extern "C" fn anthronet_clip_new(
         let joints = rest.len() as u64;
         at_most("count", "transforms", (MAX_FRAMES as u64 * joints).min(MAX_ROTATIONS as u64), count)?;
         if !count.is_multiple_of(joints) {
-            let message = format!("count: expected frames x {joints} joints, got {count}");
-            return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+            return Err(Fault::size("count", format_args!("expected frames x {joints} joints, got {count}")));
         }
         let poses = crate::motion::locals(slice(frames, count, "frames")?, rest.parents(), space(in_space)?);
-        Ok(Clip::of_poses(name, rest.clone(), frames_per_second, &poses)?)
+        Ok(Clip::from_poses(name, rest.clone(), frames_per_second, &poses)?)
     })
 }
 
@@ -134,7 +132,7 @@ pub unsafe extern "C" fn anthronet_clip_free(clip: *mut anthronet_clip) {
     free(clip);
 }
 
-/// What a clip is.
+/// Describes a clip.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_describe(
     clip: *const anthronet_clip,
@@ -157,11 +155,12 @@ pub unsafe extern "C" fn anthronet_clip_describe(
     })
 }
 
-/// The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
-/// `ANTHRONET_RELATIVE_TO_…`.
+/// The pose of a clip at a time, from −1e9 to 1e9 seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+/// `ANTHRONET_RELATIVE_TO_…`; `context` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_sample(
     clip: *const anthronet_clip,
+    context: *mut anthronet_context,
     seconds: f64,
     wrap: u32,
     relative: u32,
@@ -171,21 +170,21 @@ pub unsafe extern "C" fn anthronet_clip_sample(
     error: *mut anthronet_error,
 ) -> anthronet_status {
     guard(error, || {
-        let wrap = choice(&[Wrap::Once, Wrap::Loop, Wrap::Travel], wrap, "wrap")?;
+        let wrap = choice(&[Wrap::Once, Wrap::Loop, Wrap::RootMotion], wrap, "wrap")?;
         let (to_model, space) = (to_model(relative)?, space(in_space)?);
         time(seconds)?;
         let clip = &read(clip, "clip")?.0;
         exactly("count", clip.skeleton().len(), count.into())?;
         let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
-        scratch(|pose, model| {
-            Sampler::new(clip, wrap).sample_into(seconds, pose);
-            write(clip, &pose.locals, model, to_model, space, &mut out);
-        });
+        let mut own = anthronet_context::default();
+        let anthronet_context { pose, model, .. } = anthronet_context::of(context, &mut own)?;
+        Sampler::new(clip, wrap).sample_into(seconds, pose);
+        write(clip, &pose.locals, model, to_model, space, &mut out);
         Ok(())
     })
 }
 
-/// All frames of a clip, one after the other: fills `count` = frames × joints transforms.
+/// All frames of a clip in order: fills `count` = frames × joints transforms.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_bake(
     clip: *const anthronet_clip,
@@ -200,12 +199,11 @@ pub unsafe extern "C" fn anthronet_clip_bake(
         let clip = &read(clip, "clip")?.0;
         exactly("count", clip.frame_count() * clip.skeleton().len(), count)?;
         let mut out = OutSlice::new(out_joints, count, "out_joints")?;
-        scratch(|pose, model| {
-            for frame in 0..clip.frame_count() {
-                clip.pose_into(frame, pose);
-                write(clip, &pose.locals, model, to_model, space, &mut out);
-            }
-        });
+        let (mut pose, mut model) = (Pose::default(), Vec::new());
+        for frame in 0..clip.frame_count() {
+            clip.pose_into(frame, &mut pose);
+            write(clip, &pose.locals, &mut model, to_model, space, &mut out);
+        }
         Ok(())
     })
 }
@@ -221,7 +219,7 @@ pub unsafe extern "C" fn anthronet_clip_resample(
     make(out_clip, error, || Ok(clip::resample(&read(clip, "clip")?.0, frames_per_second)?))
 }
 
-/// The clip without its way over the ground.
+/// The clip without root motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_in_place(
     clip: *const anthronet_clip,
@@ -231,7 +229,7 @@ pub unsafe extern "C" fn anthronet_clip_in_place(
     make(out_clip, error, || Ok(clip::in_place(&read(clip, "clip")?.0)?))
 }
 
-/// The clip with its end going over into its beginning during the last `seconds`.
+/// The clip with its end blended into its beginning during the last `seconds`, so that it loops.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_looped(
     clip: *const anthronet_clip,
@@ -242,7 +240,7 @@ pub unsafe extern "C" fn anthronet_clip_looped(
     make(out_clip, error, || Ok(clip::looped(&read(clip, "clip")?.0, seconds)?))
 }
 
-/// Two clips of one body at once: `weight` 0 is the first, 1 the second.
+/// Blends two clips of one body: `weight` 0 is the first, 1 the second.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_blend(
     first: *const anthronet_clip,
@@ -257,8 +255,8 @@ pub unsafe extern "C" fn anthronet_clip_blend(
     })
 }
 
-/// As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
-/// part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+/// As `anthronet_clip_blend` with a weight per joint: `mask` has `count` numbers, one per joint, from 0 (the first clip) to
+/// 1 (blended fully), such as `anthronet_clip_joint_mask` makes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_blend_masked(
     first: *const anthronet_clip,
@@ -277,8 +275,8 @@ pub unsafe extern "C" fn anthronet_clip_blend_masked(
     })
 }
 
-/// Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-/// `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+/// Adds a clip to another of the same body: the difference between `layer` and the pose `reference` times `weight`, 0 to 1,
+/// is added to `base`. A layer shorter than the base starts over. `reference` has `count` joints,
 /// each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
 /// `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
 #[unsafe(no_mangle)]
@@ -342,7 +340,7 @@ fn joint_mask(clip: &Clip, mask: *const f32, count: u32) -> Outcome<JointMask> {
     Ok(JointMask::of_weights(clip.skeleton(), slice(mask, count.into(), "mask")?)?)
 }
 
-/// Two clips of one body one after the other, overlapping by `seconds`.
+/// Plays two clips of one body one after the other, blended over the `seconds` by which they overlap.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_clip_crossfade(
     first: *const anthronet_clip,
@@ -356,7 +354,7 @@ pub unsafe extern "C" fn anthronet_clip_crossfade(
     })
 }
 
-/// Whether transforms are asked for relative to the model.
+/// Whether the caller wants transforms relative to the model.
 fn to_model(relative: u32) -> Outcome<bool> {
     choice(&[false, true], relative, "relative")
 }
@@ -367,26 +365,11 @@ fn time(seconds: f64) -> Outcome {
     if seconds.abs() <= LONGEST {
         return Ok(());
     }
-    let message = format!("seconds: expected a number from -{LONGEST} to {LONGEST}, got {seconds}");
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, message))
+    let message = format_args!("expected a number from -{LONGEST} to {LONGEST}, got {seconds}");
+    Err(Fault::request("seconds", message))
 }
 
-fn finite(what: &str, value: f64) -> Outcome {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
-}
-
-/// Room for a pose that stays from call to call, so that sampling allocates nothing.
-fn scratch(work: impl FnOnce(&mut Pose, &mut Vec<RigidTransform>)) {
-    use std::cell::RefCell;
-    thread_local! {
-        static ROOM: RefCell<(Pose, Vec<RigidTransform>)> = RefCell::default();
-    }
-    ROOM.with_borrow_mut(|(pose, model)| work(pose, model));
-}
-
+/// Writes a pose for the caller; `model` is room for its joints relative to the model.
 fn write(
     clip: &Clip,
     locals: &[RigidTransform],

@@ -14,7 +14,7 @@ use crate::options::{Descriptor, described, flag};
 use crate::pointer::{Out, list, read, text};
 use crate::status::{Outcome, anthronet_error, anthronet_status, guard};
 
-/// What of a body goes into a file; all zeros ask for the defaults.
+/// How a body is written to a file; all zeros are the defaults.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_export_options {
@@ -24,7 +24,7 @@ pub struct anthronet_export_options {
     pub lod: u32,
     /// Influences per vertex, 4 or 8; 0 stands for 4.
     pub influences: u32,
-    /// What the joints are called: `ANTHRONET_NAMES_…`.
+    /// Names of the joints: `ANTHRONET_NAMES_…`.
     pub joint_names: u32,
     /// 1 leaves out eyes, teeth, tongue and lashes.
     pub body_only: u32,
@@ -42,7 +42,7 @@ pub struct anthronet_export_options {
 unsafe impl Descriptor for anthronet_export_options {}
 
 /// Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-/// .obj. The file appears whole or not at all. `options` may be NULL.
+/// .obj. The file is written completely or not at all. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_export_path(
     body: *const anthronet_body,

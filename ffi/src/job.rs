@@ -1,4 +1,4 @@
-//! Jobs: many bodies made beside the caller's thread, with progress and a way to stop.
+//! Jobs: many bodies made on a thread of the library, with progress and cancellation.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -44,7 +44,7 @@ enum Slot {
     Taken,
 }
 
-/// How far a job is.
+/// Progress of a job.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_job_progress {
@@ -52,7 +52,7 @@ pub struct anthronet_job_progress {
     pub struct_size: u32,
     /// `ANTHRONET_JOB_…`.
     pub state: u32,
-    /// Requests that have their body or error; what a body is made of is not counted.
+    /// Requests that have their body or error.
     pub done: u32,
     /// Requests altogether.
     pub total: u32,
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn anthronet_job_start(
     })
 }
 
-/// How far the job is. Returns at once.
+/// The progress of the job. Returns at once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_job_poll(
     job: *const anthronet_job,
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn anthronet_job_poll(
     })
 }
 
-/// Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
+/// Asks the job to stop after the current body, which takes some hundredths of a second at most. Returns at once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_job_cancel(
     job: *const anthronet_job,

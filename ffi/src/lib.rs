@@ -13,6 +13,7 @@ pub mod blend_shape;
 pub mod body;
 pub mod bytes;
 pub mod clip;
+pub mod context;
 pub mod export;
 pub mod job;
 pub mod log;

@@ -1,19 +1,19 @@
-//! Messages that are no errors: what a report warns of, which joints drove nothing, defects caught while freeing.
+//! Messages beside errors: warnings of reports, joints that drive nothing, defects caught while freeing.
 
 use std::ffi::{c_char, c_void};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::status::{anthronet_error, anthronet_status, guard};
 
-/// Worth knowing.
+/// Information.
 pub const ANTHRONET_LOG_INFO: u32 = 0;
-/// Something may not be as it was meant.
+/// A warning: a result may not be as intended.
 pub const ANTHRONET_LOG_WARNING: u32 = 1;
 /// A defect that no call could return.
 pub const ANTHRONET_LOG_ERROR: u32 = 2;
 
-/// Takes a message: its level, `length` bytes of UTF-8 that are valid during the call alone, and what was passed with the
-/// callback. Called from any thread, one call at a time; it must not call the library.
+/// Receives a message: its level, `length` bytes of UTF-8 that are valid only during the call, and the `user` pointer of
+/// the callback. Called from any thread, one call at a time; it must not call the library.
 pub type anthronet_log_callback =
     Option<unsafe extern "C" fn(level: u32, message: *const c_char, length: u64, user: *mut c_void)>;
 
@@ -31,7 +31,7 @@ fn listener() -> MutexGuard<'static, Option<Listener>> {
     LISTENER.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets who hears messages; NULL for nobody, which is the default. When it returns, the former callback is not running
+/// Sets the callback that receives messages; NULL for none, which is the default. When it returns, the former callback is not running
 /// and will not be called again. `user` is handed to every call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_set_log_callback(

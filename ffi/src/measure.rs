@@ -10,17 +10,15 @@ use anthronet::model::MeasuredMesh;
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut, space};
 use crate::pointer::{Out, OutSlice, anthronet_text, beyond, exactly, read, read_vectors, text};
-use crate::status::{
-    ANTHRONET_ERROR_REQUEST, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{Fault, Outcome, anthronet_error, anthronet_status, guard};
 
-/// What the scales say of a mesh.
+/// Mass and volume of a measured mesh.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_measured {
     /// Set by the caller: `sizeof(anthronet_measured)`.
     pub struct_size: u32,
-    /// The level of detail that the mesh was recognised as.
+    /// The level of detail of the mesh, recognised by its number of vertices.
     pub lod: u32,
     /// Mass, kg.
     pub mass_kg: f64,
@@ -39,7 +37,7 @@ pub extern "C" fn anthronet_measure_count() -> u32 {
     MEASURE_COUNT as u32
 }
 
-/// The name of a measure, such as `waist_circumference`; valid for ever.
+/// The name of a measure, such as `waist_circumference`; always valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_measure_name(
     measure: u32,
@@ -65,7 +63,7 @@ pub unsafe extern "C" fn anthronet_measure_index(
     guard(error, || {
         let out = Out::new(out_measure, "out_measure")?;
         let name = text(name, name_length, "name")?;
-        let unknown = || Fault::new(ANTHRONET_ERROR_REQUEST, format!("{name}: is not a measure"));
+        let unknown = || Fault::request(name, "is not a measure");
         out.write(MeasureId::from_name(name).ok_or_else(unknown)?.index() as u32);
         Ok(())
     })
@@ -129,8 +127,8 @@ fn known(model: &anthronet_model, vertex_count: u32) -> Outcome {
         return Ok(());
     }
     let known = counts.map(|count| count.to_string()).join(", ");
-    let message = format!("positions: expected {known} vertices in the model's order, got {vertex_count}");
-    Err(Fault::new(ANTHRONET_ERROR_SIZE, message))
+    let message = format_args!("expected {known} vertices in the model's order, got {vertex_count}");
+    Err(Fault::size("positions", message))
 }
 
 /// Where a measured mesh goes.

@@ -1,4 +1,4 @@
-//! Meshes of a body, as graphics hardware or as editors want them.
+//! Meshes of a body, for drawing or for editing.
 
 use std::ffi::c_void;
 
@@ -10,9 +10,9 @@ use crate::options::{Descriptor, DescriptorOut, choice, described, flag, joint_n
 use crate::pointer::{Out, anthronet_text, at, change, free, read, write_rows};
 use crate::status::{ANTHRONET_ERROR_ENUM, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
-/// One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+/// One texture coordinate per vertex (vertices at seams are doubled) and triangles only: for drawing.
 pub const ANTHRONET_LAYOUT_RENDER: u32 = 0;
-/// The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+/// The model's own vertices and quads, texture coordinates per corner: for editing and measuring.
 pub const ANTHRONET_LAYOUT_MODEL: u32 = 1;
 
 /// float × 3 per vertex, metres.
@@ -20,9 +20,9 @@ pub const ANTHRONET_ATTRIBUTE_POSITIONS: u32 = 0;
 /// float × 3 per vertex, unit length.
 pub const ANTHRONET_ATTRIBUTE_NORMALS: u32 = 1;
 /// float × 2 per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
-/// upwards in the others, as their programs have it.
+/// upwards in the others.
 pub const ANTHRONET_ATTRIBUTE_UVS: u32 = 2;
-/// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+/// uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
 pub const ANTHRONET_ATTRIBUTE_TRIANGLES: u32 = 3;
 /// uint16 × influences per vertex: joints.
 pub const ANTHRONET_ATTRIBUTE_JOINTS: u32 = 4;
@@ -30,11 +30,11 @@ pub const ANTHRONET_ATTRIBUTE_JOINTS: u32 = 4;
 pub const ANTHRONET_ATTRIBUTE_WEIGHTS: u32 = 5;
 /// uint32 per vertex: which vertex of the model it is.
 pub const ANTHRONET_ATTRIBUTE_SOURCES: u32 = 6;
-/// uint32 × 4 per quad: vertices. Model layout alone.
+/// uint32 × 4 per quad: vertices. Model layout only.
 pub const ANTHRONET_ATTRIBUTE_QUADS: u32 = 7;
-/// uint32 × 4 per quad: texture coordinates of its corners. Model layout alone.
+/// uint32 × 4 per quad: texture coordinates of its corners. Model layout only.
 pub const ANTHRONET_ATTRIBUTE_QUAD_UVS: u32 = 8;
-/// uint32 × 3 per triangle: texture coordinates of its corners. Model layout alone.
+/// uint32 × 3 per triangle: texture coordinates of its corners. Model layout only.
 pub const ANTHRONET_ATTRIBUTE_TRIANGLE_UVS: u32 = 9;
 
 /// 32-bit floats.
@@ -44,7 +44,7 @@ pub const ANTHRONET_TYPE_U32: u32 = 1;
 /// 16-bit unsigned integers.
 pub const ANTHRONET_TYPE_U16: u32 = 2;
 
-/// What of a body becomes a mesh; all zeros ask for the defaults.
+/// How a mesh is made of a body; all zeros are the defaults.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_mesh_options {
@@ -100,7 +100,7 @@ unsafe impl Descriptor for anthronet_mesh_part {}
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_view {
-    /// The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+    /// The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
     pub data: *const c_void,
     /// Number of rows.
     pub rows: u64,
@@ -134,8 +134,8 @@ pub unsafe extern "C" fn anthronet_mesh_new(
     })
 }
 
-/// Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
-/// are invalid.
+/// Changes the mesh to that of another body, with the same options and without blend shapes. Earlier views become
+/// invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_update(
     mesh: *mut anthronet_mesh,
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn anthronet_mesh_part_count(
     })
 }
 
-/// What a part is.
+/// Describes a part.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_mesh_describe_part(
     mesh: *const anthronet_mesh,

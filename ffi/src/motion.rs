@@ -1,4 +1,4 @@
-//! Motions: files as they were read, and their way onto a body.
+//! Motions: files as they were read, retargeted to bodies.
 
 use std::ffi::c_char;
 use std::path::Path;
@@ -7,33 +7,34 @@ use std::sync::Arc;
 use anthronet::clip::{Clip, MAX_FRAMES, MAX_ROTATIONS};
 use anthronet::format::{self, Motion, ReadOptions};
 use anthronet::math::RigidTransform;
-use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetSwitches};
+use anthronet::retarget::feet::FeetOptions;
+use anthronet::retarget::{self, FingerMode, Overrides, RetargetOptions, RootMotion, TransferOptions};
 use anthronet::skeleton::{MAX_JOINTS, Skeleton};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
 use crate::bytes::anthronet_bytes;
 use crate::clip::anthronet_clip;
-use crate::options::{Descriptor, choice, described, flag, space};
+use crate::options::{Descriptor, choice, described, flag, given, space};
 use crate::pointer::{Out, anthronet_text, at, at_most, file, free, read, slice, text};
 use crate::skeleton::anthronet_transform;
 use crate::status::{ANTHRONET_ERROR_INDEX, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
-/// Fingers as the source's where it has any, else at ease.
+/// Fingers of the motion where it has any, else relaxed.
 pub const ANTHRONET_FINGERS_SOURCE: u32 = 0;
-/// Hands at ease.
+/// Relaxed hands.
 pub const ANTHRONET_FINGERS_RELAXED: u32 = 1;
 /// Fingers as in the bind pose.
 pub const ANTHRONET_FINGERS_REST: u32 = 2;
 
-/// What the file says, or its proportions.
+/// As the file says, or else found from the proportions of its skeleton.
 pub const ANTHRONET_UP_FOUND: u32 = 0;
 /// +Y points up in the file.
 pub const ANTHRONET_UP_Y: u32 = 1;
 /// +Z points up in the file.
 pub const ANTHRONET_UP_Z: u32 = 2;
 
-/// What is said of a motion file beforehand; it wins over what the file says. Zeros leave everything to the file.
+/// How a motion file is read; these values override those in the file. Zeros leave everything to the file.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_motion_options {
@@ -50,7 +51,7 @@ pub struct anthronet_motion_options {
 // SAFETY: numbers alone, the size first.
 unsafe impl Descriptor for anthronet_motion_options {}
 
-/// How a motion comes onto a body; all zeros ask for the defaults.
+/// How a motion is retargeted to a body; all zeros are the defaults.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_retarget_options {
@@ -58,20 +59,20 @@ pub struct anthronet_retarget_options {
     pub struct_size: u32,
     /// `ANTHRONET_FINGERS_…`.
     pub fingers: u32,
-    /// 1 leaves joints beyond what people's joints do.
+    /// 1 does not keep joints within the limits of human joints.
     pub no_limits: u32,
-    /// 1 leaves feet where the motion puts them, sliding or under the floor.
+    /// 1 does not keep feet that touch the floor from sliding and sinking in.
     pub no_feet: u32,
-    /// 1 leaves out the way over the ground.
+    /// 1 removes root motion.
     pub in_place: u32,
-    /// 1 makes the end meet the beginning.
+    /// 1 blends the end into the beginning, so that the clip loops.
     pub looped: u32,
-    /// 1 gives the way over the ground to the joint `Root` instead of the pelvis.
+    /// 1 puts root motion on the joint `Root` instead of the pelvis.
     pub root_motion: u32,
     /// Bytes of `mapping_json`.
     pub mapping_length: u32,
-    /// Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
-    /// those that it does not name are found. NULL to find all of them.
+    /// Which joint of the motion drives which joint of the rig, or none, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+    /// joints that it does not name are matched automatically. NULL matches all of them.
     pub mapping_json: *const c_char,
     /// Frames per second of the result; 0 keeps those of the motion.
     pub frames_per_second: f64,
@@ -85,8 +86,15 @@ pub struct anthronet_motion(Motion);
 
 fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
     let asked = described(pointer, "options")?;
-    let up = choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?;
-    Ok(ReadOptions::of_numbers(asked.metres_per_unit, up, asked.frames_per_second)?)
+    let options = ReadOptions {
+        unit: None,
+        up: choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?,
+        frames_per_second: given(asked.frames_per_second),
+    };
+    match given(asked.metres_per_unit) {
+        None => Ok(options),
+        Some(metres) => Ok(options.with_metres_per_unit(metres)?),
+    }
 }
 
 fn give(out: Out<*mut anthronet_motion>, motion: Motion) {
@@ -111,7 +119,7 @@ pub unsafe extern "C" fn anthronet_motion_open_path(
     })
 }
 
-/// Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a name gets
+/// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
 /// it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_open_memory(
@@ -132,7 +140,7 @@ pub unsafe extern "C" fn anthronet_motion_open_memory(
     })
 }
 
-/// A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+/// A motion of a skeleton of another program, such as an action of an armature. Arrays are read only during the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_motion_source {
@@ -161,9 +169,9 @@ pub struct anthronet_motion_source {
 // SAFETY: numbers, pointers that may be NULL and a text of NULL, the size first.
 unsafe impl Descriptor for anthronet_motion_source {}
 
-/// Makes a motion of poses instead of a file, to be retargeted as one.
+/// Makes a motion from poses, to be retargeted like one that was read from a file.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn anthronet_motion_new(
+pub unsafe extern "C" fn anthronet_motion_from_poses(
     source: *const anthronet_motion_source,
     out_motion: *mut *mut anthronet_motion,
     error: *mut anthronet_error,
@@ -196,7 +204,7 @@ pub unsafe extern "C" fn anthronet_motion_new(
         let poses = slice(source.frames, frames * joints, "frames")?;
         let poses = locals(poses, rest.parents(), space);
         let name = text(source.name.data, source.name.length, "name")?.to_owned();
-        let clip = Clip::of_poses(name, Arc::new(rest), source.frames_per_second, &poses)?;
+        let clip = Clip::from_poses(name, Arc::new(rest), source.frames_per_second, &poses)?;
         give(out, Motion::of_clip(clip));
         Ok(())
     })
@@ -249,7 +257,7 @@ pub unsafe extern "C" fn anthronet_motion_clip_name(
     })
 }
 
-/// How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+/// How the file was read, as JSON: format, unit, up axis, frame rate, how each was found, warnings.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_report(
     motion: *const anthronet_motion,
@@ -263,8 +271,8 @@ pub unsafe extern "C" fn anthronet_motion_report(
     })
 }
 
-/// Brings one clip of a motion onto a body. `retarget_options` may be NULL; `out_report` too, else it gets JSON: which
-/// joint drives which, what drives nothing, how far directions, limits and feet are off.
+/// Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
+/// which joint drives which, which joints drive none, errors of directions, limits and feet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_retarget(
     motion: *const anthronet_motion,
@@ -296,21 +304,26 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
 }
 
 fn options_of(asked: &anthronet_retarget_options) -> Outcome<RetargetOptions> {
-    let switches = RetargetSwitches {
-        fingers: choice(
-            &[FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest],
-            asked.fingers,
-            "fingers",
-        )?,
-        no_limits: flag(asked.no_limits, "no_limits")?,
-        no_feet: flag(asked.no_feet, "no_feet")?,
+    const FINGERS: [FingerMode; 3] = [FingerMode::Source, FingerMode::Relaxed, FingerMode::Rest];
+    const ROOTS: [RootMotion; 2] = [RootMotion::Pelvis, RootMotion::Root];
+    let transfer = TransferOptions {
+        fingers: choice(&FINGERS, asked.fingers, "fingers")?,
+        root: choice(&ROOTS, asked.root_motion, "root_motion")?,
+        ..TransferOptions::default()
+    };
+    let mapping = match text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")? {
+        "" => Overrides::new(),
+        json => retarget::read_overrides(json, Path::new("mapping_json"))?,
+    };
+    Ok(RetargetOptions {
+        mapping,
+        transfer,
+        limits: !flag(asked.no_limits, "no_limits")?,
+        feet: (!flag(asked.no_feet, "no_feet")?).then(FeetOptions::default),
         in_place: flag(asked.in_place, "in_place")?,
         looped: flag(asked.looped, "looped")?,
-        root_motion: flag(asked.root_motion, "root_motion")?,
-        mapping_json: text(asked.mapping_json, asked.mapping_length.into(), "mapping_json")?,
-        frames_per_second: asked.frames_per_second,
-    };
-    Ok(switches.try_into()?)
+        frames_per_second: given(asked.frames_per_second),
+    })
 }
 
 fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {

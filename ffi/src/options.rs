@@ -1,22 +1,22 @@
 //! Descriptors and enumerations: from numbers of the caller's to the core's types.
 //!
 //! A descriptor begins with its size as the caller compiled it. Fields beyond that are 0, and 0 stands for the default
-//! in every field, so that older callers meet newer libraries and the other way round.
+//! in every field, so that older callers work with newer libraries and newer callers with older ones.
 
 use anthronet::mesh::Lod;
 use anthronet::skeleton::humanoid::JointNames;
 use anthronet::skin::SkinMethod;
 use anthronet::space::Space;
 
-use crate::pointer::{MAX_LIST, at_most};
-use crate::status::{ANTHRONET_ERROR_ENUM, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome};
+use crate::pointer::{MAX_LIST, at_most, usable};
+use crate::status::{ANTHRONET_ERROR_ENUM, Fault, Outcome};
 
 /// Right-handed, +Y up, the character faces +Z and has its left at +X: glTF, USD, the library's own.
 pub const ANTHRONET_SPACE_GLTF: u32 = 0;
-/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
+/// Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. The axes of joints stay the same.
 pub const ANTHRONET_SPACE_BLENDER: u32 = 1;
-/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
-/// and joints' own axes are mirrored at X, too.
+/// Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles have the opposite
+/// winding, and the axes of joints are mirrored at X too.
 pub const ANTHRONET_SPACE_UNITY: u32 = 2;
 
 /// The rig's own names, such as `upperarm_l`.
@@ -44,18 +44,14 @@ pub const ANTHRONET_SKIN_JOINT_TRANSLATION: u32 = 2;
 pub(crate) unsafe trait Descriptor: Copy {}
 
 fn size_fault<T>(what: &str, got: u32) -> Fault {
-    let message =
-        format!("{what}: expected a struct_size of 4 to 4096, such as {}, got {got}", size_of::<T>());
-    Fault::new(ANTHRONET_ERROR_SIZE, message)
+    let expected = size_of::<T>();
+    Fault::size(what, format_args!("expected a struct_size of 4 to 4096, such as {expected}, got {got}"))
 }
 
 /// The size that a descriptor of the caller's says it has.
 fn said_size<T: Descriptor>(pointer: *const T, what: &str) -> Outcome<usize> {
-    if !pointer.is_aligned() {
-        let message = format!("{what}: expected a pointer aligned to {} bytes", align_of::<T>());
-        return Err(Fault::new(ANTHRONET_ERROR_POINTER, message));
-    }
-    // SAFETY: not NULL (the callers look), aligned, and begins with a u32.
+    usable(pointer, what)?;
+    // SAFETY: not NULL, aligned, and begins with a u32.
     let size = unsafe { pointer.cast::<u32>().read() };
     if !(4..=4096).contains(&size) {
         return Err(size_fault::<T>(what, size));
@@ -82,7 +78,7 @@ pub(crate) fn described_list<T: Descriptor>(pointer: *const T, count: u32, what:
         return Ok(Vec::new());
     }
     if pointer.is_null() {
-        return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
+        return Err(Fault::null(what));
     }
     at_most(what, "entries", MAX_LIST, count.into())?;
     let size = said_size(pointer, what)?;
@@ -94,8 +90,8 @@ pub(crate) fn described_list<T: Descriptor>(pointer: *const T, count: u32, what:
             // SAFETY: within the list, by the caller's word.
             let element = unsafe { pointer.byte_add(i * size) };
             if said_size(element, what)? != size {
-                let message = format!("{what} {i}: expected the struct_size of the first, {size}");
-                return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+                let message = format_args!("expected the struct_size of the first, {size}");
+                return Err(Fault::size(&format!("{what} {i}"), message));
             }
             described(element, what)
         })
@@ -110,9 +106,6 @@ pub(crate) struct DescriptorOut<T> {
 
 impl<T: Descriptor> DescriptorOut<T> {
     pub(crate) fn new(pointer: *mut T, what: &str) -> Outcome<Self> {
-        if pointer.is_null() {
-            return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
-        }
         Ok(Self { pointer, size: said_size(pointer, what)? })
     }
 
@@ -137,13 +130,18 @@ pub(crate) fn choice<T: Copy>(all: &[T], number: u32, what: &str) -> Outcome<T> 
     all.get(number as usize).copied().ok_or_else(|| unknown(what, all.len() as u32 - 1, number))
 }
 
+/// A number that 0 stands in for where the default is asked for.
+pub(crate) fn given(number: f64) -> Option<f64> {
+    (number != 0.0).then_some(number)
+}
+
 /// 0 or 1.
 pub(crate) fn flag(number: u32, what: &str) -> Outcome<bool> {
     choice(&[false, true], number, what)
 }
 
 pub(crate) fn space(number: u32) -> Outcome<Space> {
-    choice(&[Space::YUp, Space::ZUp, Space::Unity], number, "space")
+    choice(&[Space::Gltf, Space::Blender, Space::Unity], number, "space")
 }
 
 pub(crate) fn joint_names(number: u32) -> Outcome<JointNames> {

@@ -1,4 +1,4 @@
-//! Panics, which are defects of the library, told where a host can show them.
+//! Panics, which are defects of the library, reported where a host can show them.
 //!
 //! Programs that the library lives in have no terminal, or one that is not ours to write on: what the standard hook
 //! prints goes to the log callback instead, and the code of the call that failed carries the message and the place.

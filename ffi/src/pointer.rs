@@ -1,14 +1,11 @@
-//! The caller's memory: every pointer that comes in is looked at here.
+//! The caller's memory: every pointer that a caller passes is checked here.
 
 use std::ffi::{c_char, c_void};
 use std::mem::MaybeUninit;
 
-use crate::status::{
-    ANTHRONET_ERROR_INDEX, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, ANTHRONET_ERROR_TEXT, Fault,
-    Outcome,
-};
+use crate::status::{ANTHRONET_ERROR_INDEX, ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_TEXT, Fault, Outcome};
 
-/// Text of the library's: UTF-8, not ended by a zero, valid as long as what it was asked of.
+/// A text that the library owns: UTF-8, not ended by a zero, valid as long as the object that it was read from.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_text {
@@ -24,13 +21,10 @@ impl anthronet_text {
     }
 }
 
-fn null(what: &str) -> Fault {
-    Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL"))
-}
-
-fn usable<T>(pointer: *const T, what: &str) -> Outcome {
+/// Refuses a pointer that is NULL or not aligned.
+pub(crate) fn usable<T>(pointer: *const T, what: &str) -> Outcome {
     if pointer.is_null() {
-        return Err(null(what));
+        return Err(Fault::null(what));
     }
     if !pointer.is_aligned() {
         let message = format!("{what}: expected a pointer aligned to {} bytes", align_of::<T>());
@@ -82,7 +76,7 @@ impl<T> Out<*mut T> {
 
 /// Takes a handle back and drops it; NULL is nothing.
 pub(crate) fn free<T>(handle: *mut T) {
-    // A defect is logged; there is nobody to return it to.
+    // A defect is logged, as there is no status to return.
     let _ = crate::status::caught(|| {
         if !handle.is_null() {
             // SAFETY: from `Out::give`, once, by contract.
@@ -96,7 +90,7 @@ fn length<T>(count: u64, what: &str) -> Outcome<usize> {
     let bytes = usize::try_from(count).ok().and_then(|n| n.checked_mul(size_of::<T>().max(1)));
     match bytes {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(count as usize),
-        _ => Err(Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: {count} is more than memory holds"))),
+        _ => Err(Fault::beyond_memory(what, count)),
     }
 }
 
@@ -127,7 +121,7 @@ impl<T> OutSlice<T> {
         Ok(Self { next: pointer, left })
     }
 
-    /// Writes what comes, as far as there is room.
+    /// Writes values as far as there is room.
     pub(crate) fn write(&mut self, values: impl IntoIterator<Item = T>) {
         for value in values.into_iter().take(self.left) {
             // SAFETY: not NULL, aligned, and one of the `left` places that are there by contract.
@@ -185,7 +179,7 @@ pub(crate) fn at_most(what: &str, unit: &str, most: u64, got: u64) -> Outcome {
     if got <= most {
         return Ok(());
     }
-    Err(Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: expected at most {most} {unit}, got {got}")))
+    Err(Fault::size(what, format_args!("expected at most {most} {unit}, got {got}")))
 }
 
 /// Refuses an array that is not as long as it has to be.
@@ -193,7 +187,15 @@ pub(crate) fn exactly(what: &str, expected: usize, got: u64) -> Outcome {
     if got == expected as u64 {
         return Ok(());
     }
-    Err(Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: expected {expected}, got {got}")))
+    Err(Fault::size(what, format_args!("expected {expected}, got {got}")))
+}
+
+/// Refuses infinities and what is not a number.
+pub(crate) fn finite(what: &str, value: f64) -> Outcome {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::request(what, format_args!("expected a finite number, got {value}")))
 }
 
 /// The element at a place.
@@ -208,6 +210,10 @@ pub(crate) fn beyond(what: &str, index: u32, count: usize) -> Fault {
     )
 }
 
+fn short_stride(what: &str, least: u64, got: u64) -> Fault {
+    Fault::size(what, format_args!("expected a stride of at least {least} bytes, got {got}"))
+}
+
 /// Writes packed rows to a caller's buffer of `bytes` bytes, `stride` bytes from row to row; 0 stands for packed.
 pub(crate) fn write_rows(
     rows: &[u8],
@@ -220,16 +226,15 @@ pub(crate) fn write_rows(
     let stride = if stride == 0 { width } else { length::<u8>(stride, what)? };
     let count = rows.len() / width.max(1);
     if stride < width {
-        let message = format!("{what}: expected a stride of at least {width} bytes, got {stride}");
-        return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+        return Err(short_stride(what, width as u64, stride as u64));
     }
     let needed = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(width));
     if needed.is_none_or(|needed| needed as u64 > bytes) {
         let expected = needed.map_or("more bytes than memory holds".to_owned(), |n| format!("{n} bytes"));
         let message = format!(
-            "{what}: expected {expected} for {count} rows of {width} bytes with stride {stride}, got {bytes} bytes"
+            "expected {expected} for {count} rows of {width} bytes with stride {stride}, got {bytes} bytes"
         );
-        return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+        return Err(Fault::size(what, message));
     }
     let out = buffer(out, needed.unwrap_or_default() as u64, what)?;
     if stride == width {
@@ -252,8 +257,7 @@ pub(crate) fn read_vectors(
     const WIDTH: u64 = 12;
     let stride = if stride == 0 { WIDTH } else { stride };
     if stride < WIDTH {
-        let message = format!("{what}: expected a stride of at least {WIDTH} bytes, got {stride}");
-        return Err(Fault::new(ANTHRONET_ERROR_SIZE, message));
+        return Err(short_stride(what, WIDTH, stride));
     }
     let Some(last) = count.checked_sub(1) else { return Ok(Vec::new()) };
     let bytes = last.checked_mul(stride).and_then(|b| b.checked_add(WIDTH));

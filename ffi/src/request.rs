@@ -1,4 +1,4 @@
-//! Requests: what is asked of a model.
+//! Requests: the input of a model.
 
 use std::ffi::c_char;
 
@@ -8,25 +8,25 @@ use anthronet::network::config::MAX_LATENT;
 
 use crate::bytes::anthronet_bytes;
 use crate::options::{choice, flag};
-use crate::pointer::{Out, OutSlice, at_most, beyond, change, exactly, free, read, slice, text};
-use crate::status::{ANTHRONET_ERROR_REQUEST, Fault, Outcome, anthronet_error, anthronet_status, guard};
+use crate::pointer::{Out, OutSlice, at_most, beyond, change, exactly, finite, free, read, slice, text};
+use crate::status::{anthronet_error, anthronet_status, guard};
 
-/// The sex is left to the measures.
+/// Inferred from the measures.
 pub const ANTHRONET_SEX_ANY: u32 = 0;
 /// Female.
 pub const ANTHRONET_SEX_FEMALE: u32 = 1;
 /// Male.
 pub const ANTHRONET_SEX_MALE: u32 = 2;
 
-/// Open measures get their likeliest values beside the given ones.
+/// Measures that are not given get their most likely values, given the others.
 pub const ANTHRONET_FILL_MEAN: u32 = 0;
-/// Open measures are drawn from what is plausible beside the given ones; the seed chooses.
+/// Measures that are not given are drawn from their distribution, given the others; the seed chooses.
 pub const ANTHRONET_FILL_SAMPLE: u32 = 1;
 
 /// A person to be made. One thread at a time may change it.
 pub struct anthronet_request(pub(crate) Request);
 
-/// A request that asks for nothing: the likeliest person.
+/// A request without given measures: the most likely person.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_new(
     out_request: *mut *mut anthronet_request,
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn anthronet_request_from_json(
     })
 }
 
-/// Another request that asks for the same.
+/// A copy of a request.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_copy(
     request: *const anthronet_request,
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn anthronet_request_set_sex(
     })
 }
 
-/// Gives a measure by its name, metres; a name without its side, such as `arm_length`, gives both sides.
+/// Sets a measure by its name, metres; a name without its side, such as `arm_length`, sets both sides.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_measure(
     request: *mut anthronet_request,
@@ -117,8 +117,8 @@ pub unsafe extern "C" fn anthronet_request_set_measure(
     })
 }
 
-/// Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-/// `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
+/// Sets or unsets all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
+/// `anthronet_measure_name`; `count` is their number. `metres` of a measure that is not given is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_measures(
     request: *mut anthronet_request,
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn anthronet_request_set_measures(
     })
 }
 
-/// What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
+/// The given measures: fills `out_metres` (0 for a measure that is not given) and `out_given`, `count` entries each, one per measure.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_measures(
     request: *const anthronet_request,
@@ -164,9 +164,9 @@ pub unsafe extern "C" fn anthronet_request_measures(
     })
 }
 
-/// Leaves a measure open again, by its place in the order of `anthronet_measure_name`.
+/// Makes a measure not given, so that it is filled again; by its place in the order of `anthronet_measure_name`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn anthronet_request_open_measure(
+pub unsafe extern "C" fn anthronet_request_unset_measure(
     request: *mut anthronet_request,
     measure: u32,
     error: *mut anthronet_error,
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn anthronet_request_open_measure(
     })
 }
 
-/// Sets the seed: 0 for the likeliest of the people with these measures, any other number for one of them.
+/// Sets the seed: 0 for the most likely person with these measures, any other number for another one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_seed(
     request: *mut anthronet_request,
@@ -192,8 +192,7 @@ pub unsafe extern "C" fn anthronet_request_set_seed(
     })
 }
 
-/// Sets the latent numbers by hand, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the
-/// seed.
+/// Sets the latent numbers, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the seed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_latent(
     request: *mut anthronet_request,
@@ -212,7 +211,7 @@ pub unsafe extern "C" fn anthronet_request_set_latent(
     })
 }
 
-/// Sets how open measures are filled: `ANTHRONET_FILL_…`.
+/// Sets how measures that are not given are filled: `ANTHRONET_FILL_…`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_fill(
     request: *mut anthronet_request,
@@ -226,8 +225,8 @@ pub unsafe extern "C" fn anthronet_request_set_fill(
     })
 }
 
-/// Whether measures that no one person has are replaced by the nearest that one has (1), with a warning in the report,
-/// or refused (0).
+/// Whether measures that no person has together are replaced by the nearest that a person has (1), with a warning in the
+/// report, or refused (0).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_request_set_nearest(
     request: *mut anthronet_request,
@@ -239,11 +238,4 @@ pub unsafe extern "C" fn anthronet_request_set_nearest(
         change(request, "request")?.0.nearest = nearest;
         Ok(())
     })
-}
-
-fn finite(what: &str, value: f64) -> Outcome {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Fault::new(ANTHRONET_ERROR_REQUEST, format!("{what}: expected a finite number, got {value}")))
 }

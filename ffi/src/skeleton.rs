@@ -33,7 +33,7 @@ pub struct anthronet_joint {
     pub joint_from_model: [f32; 16],
 }
 
-/// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+/// A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct anthronet_humanoid_bone {
@@ -73,18 +73,12 @@ pub unsafe extern "C" fn anthronet_body_joints(
         let skeleton = read(body, "body")?.body.skeleton();
         exactly("count", skeleton.len(), count.into())?;
         let mut out = OutSlice::new(out_joints, count.into(), "out_joints")?;
-        out.write(skeleton.bind().iter().enumerate().map(|(joint, model_from_joint)| {
-            let parent = skeleton.parents()[joint];
-            let local = skeleton.rest_pose().locals[joint];
-            anthronet_joint {
-                parent: parent.map_or(-1, |parent| parent as i32),
-                length: skeleton.bone_length(joint).unwrap_or_default(),
-                parent_from_joint: local.parent_from_joint_in(space, parent).into(),
-                model_from_joint: space.model_from_joint_matrix((*model_from_joint).into()).to_cols_array(),
-                joint_from_model: space
-                    .joint_from_model_matrix(model_from_joint.inverse().into())
-                    .to_cols_array(),
-            }
+        out.write(skeleton.bind_joints(space).map(|joint| anthronet_joint {
+            parent: joint.parent.map_or(-1, |parent| parent as i32),
+            length: joint.bone_length.unwrap_or_default(),
+            parent_from_joint: joint.parent_from_joint.into(),
+            model_from_joint: joint.model_from_joint.to_cols_array(),
+            joint_from_model: joint.joint_from_model.to_cols_array(),
         }));
         Ok(())
     })

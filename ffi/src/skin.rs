@@ -1,18 +1,18 @@
 //! Skinning: the surfaces of many characters posed in one call, into the caller's buffers.
 
 use std::ffi::c_void;
+use std::ops::Range;
 
 use anthronet::math::RigidTransform;
 use anthronet::skin::{SkinJob, SkinMethod, Skinner, StridedMut, SurfaceMut, skin_many};
 use glam::Vec3;
 
+use crate::context::anthronet_context;
 use crate::mesh::anthronet_mesh;
 use crate::options::{Descriptor, described_list, skin_method};
 use crate::pointer::{Out, at, at_most, buffer, exactly, free, read, slice};
 use crate::skeleton::anthronet_transform;
-use crate::status::{
-    ANTHRONET_ERROR_POINTER, ANTHRONET_ERROR_SIZE, Fault, Outcome, anthronet_error, anthronet_status, guard,
-};
+use crate::status::{ANTHRONET_ERROR_POINTER, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// A part of a mesh ready to be posed. Immutable; may be used by many threads and jobs at once.
 pub struct anthronet_skinner(Skinner);
@@ -93,9 +93,10 @@ pub unsafe extern "C" fn anthronet_skinner_vertex_count(
 }
 
 /// Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
-/// to its last, what a job writes must not overlap what another writes nor what any of them reads.
+/// to its last, what a job writes must not overlap what another writes nor what any of them reads. `context` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_skin(
+    context: *mut anthronet_context,
     jobs: *const anthronet_skin_job,
     count: u32,
     error: *mut anthronet_error,
@@ -107,14 +108,18 @@ pub unsafe extern "C" fn anthronet_skin(
             let bytes = u64::from(count) * u64::from(first.struct_size);
             extents.push(Extent::new(0, jobs, bytes, false, "jobs")?);
         }
+        let mut own = anthronet_context::default();
+        let anthronet_context { joints, skin, .. } = anthronet_context::of(context, &mut own)?;
+        joints.clear();
         let mut work = Vec::new();
         for (i, job) in described.iter().enumerate() {
-            let prepared = Prepared::of(job)?;
+            let prepared = Prepared::of(job, joints)?;
             prepared.extents(i, &mut extents)?;
             work.push(prepared);
         }
         apart(extents)?;
-        Ok(skin_many(work.iter().map(Prepared::job).collect::<Outcome<_>>()?)?)
+        let jobs = work.iter().map(|prepared| prepared.job(joints)).collect::<Outcome<_>>()?;
+        Ok(skin_many(jobs, skin)?)
     })
 }
 
@@ -123,14 +128,16 @@ struct Prepared<'a> {
     asked: &'a anthronet_skin_job,
     skinner: &'a Skinner,
     method: SkinMethod,
-    pose: Vec<RigidTransform>,
-    offsets: Vec<Vec3>,
+    /// Its place among the joints of the call.
+    pose: Range<usize>,
+    offsets: &'a [Vec3],
     positions: Rows,
     normals: Option<Rows>,
 }
 
 impl<'a> Prepared<'a> {
-    fn of(job: &'a anthronet_skin_job) -> Outcome<Self> {
+    /// Appends the pose of the job to `poses`.
+    fn of(job: &'a anthronet_skin_job, poses: &mut Vec<RigidTransform>) -> Outcome<Self> {
         let skinner = &read(job.skinner, "skinner")?.0;
         let count = skinner.vertex_count();
         exactly("joint_count", skinner.joint_count(), job.joint_count.into())?;
@@ -138,14 +145,15 @@ impl<'a> Prepared<'a> {
             exactly("offset_count", count, job.offset_count.into())?;
         }
         let joints = slice(job.joints, job.joint_count.into(), "joints")?;
-        let offsets: &[[f32; 3]] = slice(job.offsets.cast(), job.offset_count.into(), "offsets")?;
+        let start = poses.len();
+        poses.extend(joints.iter().map(RigidTransform::from));
         let rows = |first, bytes, stride, what| Rows::new(first, bytes, stride, count, what);
         Ok(Self {
             asked: job,
             skinner,
             method: skin_method(job.method)?,
-            pose: joints.iter().map(RigidTransform::from).collect(),
-            offsets: offsets.iter().map(|offset| Vec3::from_array(*offset)).collect(),
+            pose: start..poses.len(),
+            offsets: slice(job.offsets.cast(), job.offset_count.into(), "offsets")?,
             positions: rows(job.positions, job.position_bytes, job.position_stride, "positions")?,
             normals: match job.normals.is_null() {
                 true => None,
@@ -185,7 +193,8 @@ impl<'a> Prepared<'a> {
         (near && positions.stride == normals.stride && positions.bytes > WIDTH as u64).then_some(normals)
     }
 
-    fn job(&self) -> Outcome<SkinJob<'_>> {
+    /// `poses` holds those of all jobs.
+    fn job<'b>(&'b self, poses: &'b [RigidTransform]) -> Outcome<SkinJob<'b>> {
         let strided = |rows: &Rows, what| {
             let bytes = buffer(rows.first, rows.bytes, what)?.into();
             Ok::<_, Fault>(StridedMut { bytes, offset: 0, stride: rows.stride })
@@ -210,8 +219,8 @@ impl<'a> Prepared<'a> {
         Ok(SkinJob {
             skinner: self.skinner,
             method: self.method,
-            model_from_joints: &self.pose,
-            offsets: (!self.offsets.is_empty()).then_some(&self.offsets),
+            model_from_joints: &poses[self.pose.clone()],
+            offsets: (!self.offsets.is_empty()).then_some(self.offsets),
             out,
         })
     }
@@ -231,7 +240,7 @@ struct Rows {
 impl Rows {
     fn new(first: *mut c_void, bytes: u64, stride: u64, count: usize, what: &str) -> Outcome<Self> {
         if first.is_null() {
-            return Err(Fault::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL")));
+            return Err(Fault::null(what));
         }
         at_most(what, "bytes", isize::MAX as u64, bytes)?;
         let stride = if stride == 0 { WIDTH as u64 } else { stride };
@@ -240,10 +249,9 @@ impl Rows {
         match needed.filter(|needed| *needed <= bytes && stride >= WIDTH as u64) {
             Some(needed) => Ok(Self { first, bytes: needed, stride: stride as usize }),
             None => {
-                let message = format!(
-                    "{what}: expected {count} rows of {WIDTH} bytes, {stride} bytes apart, in {bytes} bytes"
-                );
-                Err(Fault::new(ANTHRONET_ERROR_SIZE, message))
+                let message =
+                    format!("expected {count} rows of {WIDTH} bytes, {stride} bytes apart, in {bytes} bytes");
+                Err(Fault::size(what, message))
             }
         }
     }
@@ -266,9 +274,8 @@ impl Extent {
     fn new<T>(job: usize, first: *const T, bytes: u64, written: bool, what: &'static str) -> Outcome<Self> {
         let start = first.addr() as u64;
         let end = start.checked_add(bytes);
-        let beyond =
-            || Fault::new(ANTHRONET_ERROR_SIZE, format!("{what}: {bytes} is more than memory holds"));
-        Ok(Self { start, end: end.ok_or_else(beyond)?, written, job, what })
+        let end = end.ok_or_else(|| Fault::beyond_memory(what, bytes))?;
+        Ok(Self { start, end, written, job, what })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Status codes, the error that a caller may pass, and the guard around every entry.
 
 use std::ffi::c_char;
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use anthronet::Error;
@@ -10,11 +11,11 @@ pub type anthronet_status = i32;
 
 /// Done.
 pub const ANTHRONET_OK: i32 = 0;
-/// A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+/// A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
 pub const ANTHRONET_ERROR_POINTER: i32 = 101;
 /// A size, count, stride or `struct_size` is not what it must be.
 pub const ANTHRONET_ERROR_SIZE: i32 = 102;
-/// A number is none of the values of its enumeration.
+/// A number is not a value of its enumeration.
 pub const ANTHRONET_ERROR_ENUM: i32 = 103;
 /// An index is beyond the last.
 pub const ANTHRONET_ERROR_INDEX: i32 = 104;
@@ -26,7 +27,7 @@ pub const ANTHRONET_ERROR_REQUEST: i32 = 201;
 pub const ANTHRONET_ERROR_INFEASIBLE: i32 = 202;
 /// A model file is damaged or of another version.
 pub const ANTHRONET_ERROR_MODEL: i32 = 301;
-/// A file is not what it should be.
+/// A file is damaged or not of its format.
 pub const ANTHRONET_ERROR_FILE: i32 = 401;
 /// The operating system refused to read or write.
 pub const ANTHRONET_ERROR_IO: i32 = 402;
@@ -34,11 +35,11 @@ pub const ANTHRONET_ERROR_IO: i32 = 402;
 pub const ANTHRONET_ERROR_INVALID: i32 = 501;
 /// The job is still running.
 pub const ANTHRONET_ERROR_BUSY: i32 = 601;
-/// The job was cancelled before this was made.
+/// The job was cancelled before the body was made.
 pub const ANTHRONET_ERROR_CANCELLED: i32 = 602;
-/// What was asked for was taken before.
+/// The body was taken before.
 pub const ANTHRONET_ERROR_TAKEN: i32 = 603;
-/// An error of a kind that is younger than this header.
+/// Any other error.
 pub const ANTHRONET_ERROR_OTHER: i32 = 900;
 /// A defect of the library, caught; the message says where. Please report it.
 pub const ANTHRONET_ERROR_PANIC: i32 = 901;
@@ -46,7 +47,7 @@ pub const ANTHRONET_ERROR_PANIC: i32 = 901;
 /// Bytes of a message with its terminating zero.
 const MESSAGE: usize = 512;
 
-/// What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+/// What went wrong. The caller's own; may be NULL in every call. Written only on failure.
 #[repr(C)]
 pub struct anthronet_error {
     /// The status that the call returned.
@@ -68,6 +69,26 @@ pub(crate) type Outcome<T = ()> = Result<T, Fault>;
 impl Fault {
     pub(crate) fn new(code: i32, message: impl Into<String>) -> Self {
         Self { code, message: message.into() }
+    }
+
+    /// A pointer that has to be given is NULL.
+    pub(crate) fn null(what: &str) -> Self {
+        Self::new(ANTHRONET_ERROR_POINTER, format!("{what}: expected a pointer, got NULL"))
+    }
+
+    /// A size or count does not fit.
+    pub(crate) fn size(what: &str, message: impl Display) -> Self {
+        Self::new(ANTHRONET_ERROR_SIZE, format!("{what}: {message}"))
+    }
+
+    /// A size that no memory has.
+    pub(crate) fn beyond_memory(what: &str, size: u64) -> Self {
+        Self::size(what, format_args!("{size} is more than memory holds"))
+    }
+
+    /// A number or name of a request is not one that it may have.
+    pub(crate) fn request(what: &str, message: impl Display) -> Self {
+        Self::new(ANTHRONET_ERROR_REQUEST, format!("{what}: {message}"))
     }
 }
 

@@ -68,7 +68,7 @@ type SkinnerNew = unsafe extern "C" fn(Handle, u32, *mut Handle, ErrorOut) -> i3
 type JobStart = unsafe extern "C" fn(Handle, *const Handle, u32, *mut Handle, ErrorOut) -> i32;
 type JobTake = unsafe extern "C" fn(Handle, u32, *mut Handle, ErrorOut) -> i32;
 type Summarise = unsafe extern "C" fn(Handle, *mut Summary, ErrorOut) -> i32;
-type Skin = unsafe extern "C" fn(*const SkinJob, u32, ErrorOut) -> i32;
+type Skin = unsafe extern "C" fn(Handle, *const SkinJob, u32, ErrorOut) -> i32;
 type Free = unsafe extern "C" fn(Handle);
 type Handle = *mut c_void;
 
@@ -121,6 +121,7 @@ fn a_panic_of_a_worker_becomes_the_code_of_its_call() {
         let later = of!("anthronet_test_panic_later" as PanicLater);
         let free = |name: &str, handle: Handle| library.get::<Free>(name).unwrap()(handle);
         let [mut model, mut request, mut body, mut mesh, mut skinner, mut job] = [null; 6];
+        let mut context = null;
         assert_eq!(of!("anthronet_model_open_embedded" as Make)(&raw mut model, nobody), 0);
         assert_eq!(of!("anthronet_request_new" as Make)(&raw mut request, nobody), 0);
 
@@ -172,13 +173,19 @@ fn a_panic_of_a_worker_becomes_the_code_of_its_call() {
         };
         let skin = of!("anthronet_skin" as Skin);
         assert_eq!(later(1, nobody), 0);
-        assert_eq!(skin(&raw const asked, 1, &raw mut error), PANIC);
+        assert_eq!(of!("anthronet_context_new" as Make)(&raw mut context, nobody), 0);
+        assert_eq!(skin(context, &raw const asked, 1, &raw mut error), PANIC);
         let message = std::ffi::CStr::from_bytes_until_nul(&error.message).unwrap().to_str().unwrap();
         assert!(message.contains("asked for by a test of skinning"), "{message}");
-        assert_eq!(skin(&raw const asked, 1, nobody), 0);
-        for (name, handle) in
-            [("body", body), ("mesh", mesh), ("skinner", skinner), ("request", request), ("model", model)]
-        {
+        assert_eq!(skin(context, &raw const asked, 1, nobody), 0);
+        for (name, handle) in [
+            ("body", body),
+            ("mesh", mesh),
+            ("skinner", skinner),
+            ("context", context),
+            ("request", request),
+            ("model", model),
+        ] {
             free(&format!("anthronet_{name}_free"), handle);
         }
     }

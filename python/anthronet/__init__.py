@@ -4,11 +4,11 @@
     >>> body = anthronet.generate(sex="female", height=1.70)
     >>> body.save("person.glb")
 
-A `Request` says who is wanted, a `Model` makes a `Body` of it, a body has a `Mesh` and joints, a `Motion` read from a
-file comes onto it as a `Clip`, and a `Skinner` poses its surface by the clip's joints. Bodies, meshes and the like are
+A `Request` describes a person, a `Model` makes a `Body` of it, a body has a `Mesh` and joints, a `Motion` read from a
+file is retargeted to it as a `Clip`, and a `Skinner` poses its surface by the clip's joints. Bodies, meshes and the like are
 freed with their last reference, at the end of `with`, or by `close`.
 
-Metres, radians, seconds, kilograms. The space that is asked for says axes and handedness: `"gltf"` is right-handed, +Y
+Metres, radians, seconds, kilograms. The space of a call says axes and handedness: `"gltf"` is right-handed, +Y
 up, the character faces +Z; `"blender"` is right-handed, +Z up, it faces −Y; `"unity"` is left-handed, +Y up, it faces
 +Z. A joint's +Y axis runs along its bone in all of them.
 Quaternions are x, y, z, w. Matrices multiply column vectors.
@@ -38,7 +38,7 @@ from ._errors import (
 from ._humanoid import HUMANOID_BONES, HumanoidBone
 from ._job import Job, Progress
 from ._library import abi_version, lib, set_log_callback, text_of
-from ._mesh import Mesh, Part
+from ._mesh import Mesh, MeshPart
 from ._model import Measured, Model, default_model, generate
 from ._motion import Motion, open_motion
 from ._request import MEASURES, Request
@@ -70,7 +70,7 @@ __all__ = [
     "ModelError",
     "Motion",
     "PanicError",
-    "Part",
+    "MeshPart",
     "Path",
     "Progress",
     "Request",

@@ -19,14 +19,13 @@ if TYPE_CHECKING:
 #: A row of `Body.measure_reports`; metres, percentile 0 to 100.
 MEASURE_REPORT = np.dtype(_native.MeasureReport)
 
-#: A row of `Body.joints`. Rotation (x, y, z, w) and translation are relative to the parent, matrices relative to the
-#: model; they multiply column vectors.
+#: A row of `Body.joints`. `parent_from_joint` is a unit quaternion x, y, z, w and a translation, as in clips; matrices are
+#: relative to the model and multiply column vectors.
 JOINT = np.dtype(
     [
         ("parent", np.int32),
         ("length", np.float32),
-        ("rotation", np.float32, (4,)),
-        ("translation", np.float32, (3,)),
+        ("parent_from_joint", np.float32, (7,)),
         ("model_from_joint", np.float32, (4, 4)),
         ("joint_from_model", np.float32, (4, 4)),
     ]
@@ -104,7 +103,7 @@ class Body(Owner):
 
     @property
     def report(self) -> Dict[str, Any]:
-        """How the body was made, as `anthronet generate --report` writes it: per measure asked, obtained, residual,
+        """How the body was made, as `anthronet generate --report` writes it: for each measure asked, obtained, residual,
         percentile, how it was filled; warnings, conflicts; metres. A copy."""
         said: Dict[str, Any] = json_of(lib.anthronet_body_report, self._open)
         return said
@@ -119,7 +118,7 @@ class Body(Owner):
         """One row per measure, in the order of `MEASURES`, of the type `MEASURE_REPORT`.
 
         Fields: `asked`, `obtained`, `residual`, the 90 % interval `low90` to `high90` (metres), `percentile`, `given`
-        (1 or 0), `filled` (0 with the mean, 1 by a draw). `asked` and `residual` are 0 where `given` is. A copy.
+        (1 or 0), `filled` (0 with the mean, 1 by a draw). `asked` and `residual` are 0 for filled measures. A copy.
         """
         reports = np.empty(len(MEASURES), MEASURE_REPORT)
         call(lib.anthronet_body_measures, self._open, reports.ctypes.data, len(reports))
@@ -128,8 +127,8 @@ class Body(Owner):
     def joints(self, space: str = "gltf") -> Array:
         """The joints in the bind pose, parents first: (joints,) of `JOINT`, metres.
 
-        Fields: `parent` (−1 of the root), `length` (along +Y to where the bone ends), `rotation` (x, y, z, w) and
-        `translation` relative to the parent, `model_from_joint` and its inverse `joint_from_model` as 4 × 4 matrices
+        Fields: `parent` (−1 of the root), `length` (along +Y to where the bone ends), `parent_from_joint` (a quaternion
+        x, y, z, w and a translation), `model_from_joint` and its inverse `joint_from_model` as 4 × 4 matrices
         that multiply column vectors: `model_from_joint[:3, 3]` is where the joint is. A copy.
 
         Args:
@@ -196,7 +195,7 @@ class Body(Owner):
         skin_tone: int = 0,
         body_only: bool = False,
     ) -> None:
-        """Writes the body to a file, whole or not at all, in the format of its ending: .glb, .gltf (and .bin beside
+        """Writes the body to a file, completely or not at all, in the format of its ending: .glb, .gltf (and .bin beside
         it), .vrm, .usda, .usdc, .usdz or .obj.
 
         Args:

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _arguments, _native
 from ._arguments import Array, Floats
-from ._library import Handle, Owner, call, described, lib, new_handle, text, text_of
+from ._library import Handle, Owner, call, context, described, lib, new_handle, text, text_of
 
 if TYPE_CHECKING:
     from ._body import Body
@@ -19,7 +19,7 @@ BUILTIN_CLIPS: Tuple[str, ...] = tuple(
     text_of(lib.anthronet_clip_builtin_name, i) for i in range(lib.anthronet_clip_builtin_count())
 )
 
-_WRAPS = {"once": _native.WRAP_ONCE, "loop": _native.WRAP_LOOP, "travel": _native.WRAP_TRAVEL}
+_WRAPS = {"once": _native.WRAP_ONCE, "loop": _native.WRAP_LOOP, "root_motion": _native.WRAP_ROOT_MOTION}
 
 
 class Clip(Owner):
@@ -49,7 +49,7 @@ class Clip(Owner):
     def from_poses(
         cls, body: Body, name: str, frames_per_second: float, frames: Array, space: str = "gltf"
     ) -> Clip:
-        """A clip of poses that a program has, such as an action of an armature.
+        """A clip from poses of another program, such as an action of an armature.
 
         Args:
             body: whose joints move.
@@ -70,7 +70,7 @@ class Clip(Owner):
         array = _arguments.floats(frames, "frames", (None, body.joint_count, 7))
         count = len(array) * body.joint_count
         poses = (_space(space), array.ctypes.data, count)
-        return cls._make(lib.anthronet_clip_new, body._open, encoded, len(encoded), rate, *poses)
+        return cls._make(lib.anthronet_clip_from_poses, body._open, encoded, len(encoded), rate, *poses)
 
     @property
     def name(self) -> str:
@@ -99,8 +99,8 @@ class Clip(Owner):
 
     @property
     def report(self) -> Optional[Dict[str, Any]]:
-        """How the motion came onto the body: which joint drives which, what drives nothing, how far directions, limits
-        and feet are off. None of a clip that was not retargeted."""
+        """How the motion was retargeted: which joint drives which, which joints drive none, errors of directions, limits
+        and feet. None for a clip that was not retargeted."""
         return self._report
 
     def sample(
@@ -115,8 +115,8 @@ class Clip(Owner):
 
         Args:
             seconds: the time.
-            wrap: `"once"` holds the first or last frame outside the duration, `"loop"` starts anew, `"travel"` starts
-                anew from where the last round ended.
+            wrap: `"once"` holds the first or last frame outside the duration, `"loop"` starts over, `"root_motion"` loops
+                with root motion: every cycle continues where the last one ended.
             relative: `"parent"`, as animation tracks have it, or `"model"`, as skinning takes it.
             space: `"gltf"`, `"blender"` or `"unity"`.
             out: a packed float32 array of that shape, which is filled and returned instead of a new one.
@@ -129,7 +129,8 @@ class Clip(Owner):
         to, of = _arguments.choice(_arguments.RELATIVE, relative, "relative"), _space(space)
         joints = _packed(out, (self.joint_count, 7))
         seconds = _arguments.number(seconds, "seconds")
-        call(lib.anthronet_clip_sample, self._open, seconds, wrapped, to, of, joints.ctypes.data, self.joint_count)
+        asked = (seconds, wrapped, to, of, joints.ctypes.data, self.joint_count)
+        call(lib.anthronet_clip_sample, self._open, context(), *asked)
         return joints
 
     def bake(self, relative: str = "parent", space: str = "gltf", out: Optional[Array] = None) -> Floats:
@@ -146,26 +147,26 @@ class Clip(Owner):
         return self._make(lib.anthronet_clip_resample, self._open, rate)
 
     def in_place(self) -> Clip:
-        """The clip without its way over the ground."""
+        """The clip without root motion."""
         return self._make(lib.anthronet_clip_in_place, self._open)
 
     def looped(self, seconds: float) -> Clip:
-        """The clip with its end going over into its beginning during the last `seconds`."""
+        """The clip with its end blended into its beginning during the last `seconds`, so that it loops."""
         return self._make(lib.anthronet_clip_looped, self._open, _arguments.number(seconds, "seconds"))
 
     def crossfade(self, other: Clip, seconds: float) -> Clip:
-        """This clip and another of the same body one after the other, overlapping by `seconds`."""
+        """This clip and then another of the same body, blended over the `seconds` by which they overlap."""
         second = _arguments.instance(other, Clip, "other")._open
         return self._make(lib.anthronet_clip_crossfade, self._open, second, _arguments.number(seconds, "seconds"))
 
     def blend(self, other: Clip, weight: float, mask: Optional[Array] = None) -> Clip:
-        """This clip and another of the same body at once.
+        """This clip blended with another of the same body.
 
         Args:
             other: the other clip.
             weight: 0 is this clip, 1 the other.
-            mask: (joints,) float32, the share of each joint from 0 to 1, such as `joint_mask` gives; None for all of
-                every joint.
+            mask: (joints,) float32, a weight per joint from 0 (this clip) to 1 (blended fully), such as `joint_mask`
+                gives; None for 1 everywhere.
         """
         second, share = _arguments.instance(other, Clip, "other")._open, _arguments.number(weight, "weight")
         if mask is None:
@@ -183,12 +184,11 @@ class Clip(Owner):
         mask: Optional[Array] = None,
         space: str = "gltf",
     ) -> Clip:
-        """This clip with a layer on it: what the layer differs from a pose by is added. A layer shorter than this clip
-        starts anew.
+        """This clip plus the difference between a layer and a pose. A layer shorter than this clip starts over.
 
         Args:
             layer: a clip of the same body.
-            weight: 0 adds nothing, 1 all.
+            weight: factor of the difference, 0 to 1.
             reference: (joints, 7) float32, the pose that adds nothing, each joint relative to its parent, as `sample`
                 gives it; None for the layer's first frame.
             mask: as of `blend`.

@@ -59,7 +59,7 @@ class CancelledError(Error):
 
 
 class TakenError(Error):
-    """What was asked for was taken before."""
+    """The body was taken before."""
 
 
 class PanicError(Error):

@@ -68,12 +68,13 @@ lib = _load()
 
 
 class _PerThread(threading.local):
-    """Where the library writes what went wrong: one per thread, as calls run side by side."""
+    """What the library writes in, one per thread, as calls run side by side: errors, and memory to work in."""
 
     def __init__(self) -> None:
         self.error = _native.Error()
         self.where = ctypes.byref(self.error)
         self.hears = False
+        self.context: Optional[Handle] = None
 
 
 _per_thread = _PerThread()
@@ -98,6 +99,14 @@ class Handle(ctypes.c_void_p):
         # When the process ends, its memory goes as a whole; only what still runs has to be stopped.
         weakref.finalize(self, free, self.value).atexit = at_exit
         return self
+
+
+def context() -> Handle:
+    """The memory that this thread samples and skins in; the library must not use it for two calls at once."""
+    mine = _per_thread
+    if mine.context is None:
+        mine.context = new_handle(lib.anthronet_context_new, lib.anthronet_context_free)
+    return mine.context
 
 
 def new_handle(make: Any, free: Any, *arguments: Any) -> Handle:

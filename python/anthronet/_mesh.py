@@ -46,7 +46,7 @@ class Mesh(Owner):
 
     _options: Any
     _lock: threading.Lock
-    _parts: Tuple[Part, ...]
+    _parts: Tuple[MeshPart, ...]
 
     @classmethod
     def _new(
@@ -65,17 +65,17 @@ class Mesh(Owner):
         self._lock = threading.Lock()
         self._handle = self._surfaces(body)
         count = number_of(lib.anthronet_mesh_part_count, self._handle)
-        self._parts = tuple(Part(self, i) for i in range(count))
+        self._parts = tuple(MeshPart(self, i) for i in range(count))
         return self
 
     def _surfaces(self, body: Body) -> Handle:
         return new_handle(lib.anthronet_mesh_new, lib.anthronet_mesh_free, body._open, ctypes.byref(self._options))
 
     def update(self, body: Body) -> None:
-        """Makes the mesh that of another body, with the options that it was made with and without blend shapes.
+        """Changes the mesh to that of another body, with the same options and without blend shapes.
 
         Arrays got before keep the surface of before and stay valid: the new surface has memory of its own, so that
-        threads which are reading the old one are not in its way. Get the arrays again to see it.
+        threads may go on reading the old one. Get the arrays again to see the new one.
         """
         from ._body import Body
 
@@ -85,8 +85,8 @@ class Mesh(Owner):
         self._handle = self._surfaces(body)
 
     def add_blend_shape(self, name: str, body: Body) -> None:
-        """Adds a blend shape that leads to the surface of another body: at weight 1 the mesh has that body's shape in
-        the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+        """Adds a blend shape from the mesh to the surface of another body: at weight 1 the mesh has that body's shape in
+        the bind pose. Joints stay where they are, so bodies should be of about the same stature.
 
         Args:
             name: its name, not taken by another.
@@ -103,24 +103,24 @@ class Mesh(Owner):
 
     @property
     def blend_shapes(self) -> Tuple[str, ...]:
-        """The names of its blend shapes, in their order; `Part.blend_shape` has the arrays."""
+        """The names of its blend shapes, in their order; `MeshPart.blend_shape` has the arrays."""
         with self._lock:
             handle = self._open
             count = number_of(lib.anthronet_mesh_blend_shape_count, handle)
             return tuple(text_of(lib.anthronet_mesh_blend_shape_name, handle, i) for i in range(count))
 
     @property
-    def parts(self) -> Tuple[Part, ...]:
+    def parts(self) -> Tuple[MeshPart, ...]:
         """The surfaces, the body first."""
         return self._parts
 
     def __len__(self) -> int:
         return len(self._parts)
 
-    def __getitem__(self, index: int) -> Part:
+    def __getitem__(self, index: int) -> MeshPart:
         return self._parts[index]
 
-    def __iter__(self) -> Iterator[Part]:
+    def __iter__(self) -> Iterator[MeshPart]:
         return iter(self._parts)
 
     def skinner(self, part: int = 0) -> Skinner:
@@ -139,7 +139,7 @@ class Mesh(Owner):
         return f"<Mesh of {', '.join(part.name for part in self._parts)}>"
 
 
-class Part:
+class MeshPart:
     """One surface with one material: a part of a mesh.
 
     Its arrays are read-only views of the library's memory. They keep that memory alive by themselves, after the mesh
@@ -201,17 +201,17 @@ class Part:
 
     @property
     def quads(self) -> Indices:
-        """(quads, 4) uint32: vertices. Model layout alone."""
+        """(quads, 4) uint32: vertices. Model layout only."""
         return self._view("quads")
 
     @property
     def quad_uvs(self) -> Indices:
-        """(quads, 4) uint32: texture coordinates of the corners. Model layout alone."""
+        """(quads, 4) uint32: texture coordinates of the corners. Model layout only."""
         return self._view("quad_uvs")
 
     @property
     def triangle_uvs(self) -> Indices:
-        """(triangles, 3) uint32: texture coordinates of the corners. Model layout alone."""
+        """(triangles, 3) uint32: texture coordinates of the corners. Model layout only."""
         return self._view("triangle_uvs")
 
     @property
@@ -230,7 +230,7 @@ class Part:
         return self._view("sources")
 
     def blend_shape(self, shape: Union[str, int], attribute: str = "positions") -> Floats:
-        """The way of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view.
+        """The displacements of a blend shape: (vertices, 3) float32, to be added to the positions or normals. A view.
 
         Args:
             shape: its name or place in `Mesh.blend_shapes`.
@@ -254,7 +254,7 @@ class Part:
     def read_blend_shape(
         self, shape: Union[str, int], attribute: str = "positions", out: Optional[Array] = None
     ) -> Array:
-        """Copies the way of a blend shape. Arguments and errors as of `blend_shape` and `read`."""
+        """Copies the displacements of a blend shape. Arguments and errors as of `blend_shape` and `read`."""
         return self._read(attribute, self._shape(shape), out)
 
     def _shape(self, shape: Union[str, int]) -> int:
@@ -298,11 +298,11 @@ class Part:
         return _Source(place, read, view.data, _TYPES[view.number_type], rows)
 
     def __repr__(self) -> str:
-        return f"<Part {self.name!r}, {self.vertex_count} vertices>"
+        return f"<MeshPart {self.name!r}, {self.vertex_count} vertices>"
 
 
 class _Memory:
-    """Memory of the library's, in the words of numpy; arrays over it hold this, and this holds the handle."""
+    """Memory of the library's as numpy's array interface; arrays over it hold this, and this holds the handle."""
 
     __slots__ = ("__array_interface__", "handle")
 

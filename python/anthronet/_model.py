@@ -120,7 +120,7 @@ class Model(Owner):
         return self._body(lib.anthronet_generate, request._handle)
 
     def interpolate(self, a: Request, b: Request, t: float) -> Body:
-        """Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way."""
+        """Makes a body between two requests: `t` = 0 is the first, 1 the second."""
         a, b = _arguments.instance(a, Request, "a"), _arguments.instance(b, Request, "b")
         return self._body(lib.anthronet_interpolate, a._handle, b._handle, _arguments.number(t, "t"))
 
@@ -140,7 +140,7 @@ class Model(Owner):
             space: `"gltf"`, `"blender"` or `"unity"`.
 
         Raises:
-            ArgumentError: it is no body of ours: another number of vertices.
+            ArgumentError: its number of vertices is not that of a body.
             InvalidError: numbers that are not finite.
         """
         number = _arguments.choice(_arguments.SPACES, space, "space")

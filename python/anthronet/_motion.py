@@ -1,4 +1,4 @@
-"""Motions: files of animation as they were read, before they come onto a body."""
+"""Motions: motion files as they were read, before they are retargeted."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Motion(Owner):
 
         Args:
             data: bytes, or anything that has some.
-            name: the file's: its ending tells the format, and a clip without a name gets it.
+            name: the file's: its ending says the format, and a clip without a name gets it.
             metres_per_unit, up, frames_per_second: as of `open_motion`.
         """
         options = _options(metres_per_unit, up, frames_per_second)
@@ -74,7 +74,7 @@ class Motion(Owner):
         frames_per_second: float,
         space: str = "gltf",
     ) -> Motion:
-        """A motion of a skeleton that a program has, such as an action of an armature, to be retargeted as a file's.
+        """A motion from poses of a skeleton of another program, such as an action of an armature.
 
         Args:
             name: of its clip.
@@ -113,7 +113,7 @@ class Motion(Owner):
             rest=resting.ctypes.data,
             frames=poses.ctypes.data,
         )
-        return cls._make(lib.anthronet_motion_new, ctypes.byref(source))
+        return cls._make(lib.anthronet_motion_from_poses, ctypes.byref(source))
 
     @property
     def clip_names(self) -> Tuple[str, ...]:
@@ -124,7 +124,7 @@ class Motion(Owner):
 
     @property
     def report(self) -> Dict[str, Any]:
-        """How the file was understood: format, unit, axis, rate, how each was found, warnings. A copy."""
+        """How the file was read: format, unit, up axis, frame rate, how each was found, warnings. A copy."""
         said: Dict[str, Any] = json_of(lib.anthronet_motion_report, self._open)
         return said
 
@@ -141,24 +141,24 @@ class Motion(Owner):
         mapping: Optional[Mapping[str, Optional[str]]] = None,
         frames_per_second: Optional[float] = None,
     ) -> Clip:
-        """Brings one clip onto a body.
+        """Retargets one clip to a body.
 
         Args:
             body: whose joints move.
             clip: its place in `clip_names`.
-            fingers: `"source"` for the file's where it has any, `"relaxed"` for hands at ease, `"rest"` for those of the
-                bind pose.
-            limits: keeps joints within what people's joints do.
-            feet: keeps feet on the floor, without sliding.
-            in_place: leaves out the way over the ground.
-            looped: makes the end meet the beginning.
-            root_motion: gives the way over the ground to the joint `Root` instead of the pelvis.
-            mapping: which joint of the source drives which of ours, or nothing: `{"LeftArm": "upperarm_l", "Jaw":
-                None}`; the rest is found.
+            fingers: `"source"` for those of the motion where it has any, `"relaxed"` for relaxed hands, `"rest"` for those
+                of the bind pose.
+            limits: keeps joints within the limits of human joints.
+            feet: keeps feet that touch the floor from sliding and sinking in.
+            in_place: removes root motion.
+            looped: blends the end into the beginning, so that the clip loops.
+            root_motion: puts root motion on the joint `Root` instead of the pelvis.
+            mapping: which joint of the motion drives which joint of the rig, or none: `{"LeftArm": "upperarm_l", "Jaw":
+                None}`; other joints are matched automatically.
             frames_per_second: rate of the result; None for the motion's.
 
         Returns:
-            A clip whose `report` says how it went.
+            A clip with a `report`.
 
         Raises:
             ArgumentError: there is no such clip.

@@ -74,7 +74,7 @@ TYPE_U32 = 1
 TYPE_U16 = 2
 WRAP_ONCE = 0
 WRAP_LOOP = 1
-WRAP_TRAVEL = 2
+WRAP_ROOT_MOTION = 2
 RELATIVE_TO_PARENT = 0
 RELATIVE_TO_MODEL = 1
 FINGERS_SOURCE = 0
@@ -328,7 +328,7 @@ FUNCTIONS = {
     "anthronet_request_set_measure": (c_int32, [c_void_p, c_char_p, c_uint64, c_double, POINTER(Error)]),
     "anthronet_request_set_measures": (c_int32, [c_void_p, c_void_p, c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_request_measures": (c_int32, [c_void_p, c_void_p, c_void_p, c_uint32, POINTER(Error)]),
-    "anthronet_request_open_measure": (c_int32, [c_void_p, c_uint32, POINTER(Error)]),
+    "anthronet_request_unset_measure": (c_int32, [c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_request_set_seed": (c_int32, [c_void_p, c_uint64, POINTER(Error)]),
     "anthronet_request_set_latent": (c_int32, [c_void_p, c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_request_set_fill": (c_int32, [c_void_p, c_uint32, POINTER(Error)]),
@@ -361,13 +361,15 @@ FUNCTIONS = {
     "anthronet_mesh_blend_shape_name": (c_int32, [c_void_p, c_uint32, POINTER(Text), POINTER(Error)]),
     "anthronet_mesh_blend_shape_data": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, POINTER(View), POINTER(Error)]),
     "anthronet_mesh_read_blend_shape": (c_int32, [c_void_p, c_uint32, c_uint32, c_uint32, c_void_p, c_uint64, c_uint64, POINTER(Error)]),
+    "anthronet_context_new": (c_int32, [c_void_p, POINTER(Error)]),
+    "anthronet_context_free": (None, [c_void_p]),
     "anthronet_clip_builtin_count": (c_uint32, []),
     "anthronet_clip_builtin_name": (c_int32, [c_uint32, POINTER(Text), POINTER(Error)]),
     "anthronet_clip_builtin": (c_int32, [c_char_p, c_uint64, c_void_p, c_void_p, POINTER(Error)]),
-    "anthronet_clip_new": (c_int32, [c_void_p, c_char_p, c_uint64, c_double, c_uint32, c_void_p, c_uint64, c_void_p, POINTER(Error)]),
+    "anthronet_clip_from_poses": (c_int32, [c_void_p, c_char_p, c_uint64, c_double, c_uint32, c_void_p, c_uint64, c_void_p, POINTER(Error)]),
     "anthronet_clip_free": (None, [c_void_p]),
     "anthronet_clip_describe": (c_int32, [c_void_p, POINTER(ClipInfo), POINTER(Error)]),
-    "anthronet_clip_sample": (c_int32, [c_void_p, c_double, c_uint32, c_uint32, c_uint32, c_void_p, c_uint32, POINTER(Error)]),
+    "anthronet_clip_sample": (c_int32, [c_void_p, c_void_p, c_double, c_uint32, c_uint32, c_uint32, c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_clip_bake": (c_int32, [c_void_p, c_uint32, c_uint32, c_void_p, c_uint64, POINTER(Error)]),
     "anthronet_clip_resample": (c_int32, [c_void_p, c_double, c_void_p, POINTER(Error)]),
     "anthronet_clip_in_place": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),
@@ -379,7 +381,7 @@ FUNCTIONS = {
     "anthronet_clip_crossfade": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, POINTER(Error)]),
     "anthronet_motion_open_path": (c_int32, [c_char_p, c_uint64, POINTER(MotionOptions), c_void_p, POINTER(Error)]),
     "anthronet_motion_open_memory": (c_int32, [c_void_p, c_uint64, c_char_p, c_uint64, POINTER(MotionOptions), c_void_p, POINTER(Error)]),
-    "anthronet_motion_new": (c_int32, [POINTER(MotionSource), c_void_p, POINTER(Error)]),
+    "anthronet_motion_from_poses": (c_int32, [POINTER(MotionSource), c_void_p, POINTER(Error)]),
     "anthronet_motion_free": (None, [c_void_p]),
     "anthronet_motion_clip_count": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),
     "anthronet_motion_clip_name": (c_int32, [c_void_p, c_uint32, POINTER(Text), POINTER(Error)]),
@@ -388,7 +390,7 @@ FUNCTIONS = {
     "anthronet_skinner_new": (c_int32, [c_void_p, c_uint32, c_void_p, POINTER(Error)]),
     "anthronet_skinner_free": (None, [c_void_p]),
     "anthronet_skinner_vertex_count": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),
-    "anthronet_skin": (c_int32, [c_void_p, c_uint32, POINTER(Error)]),
+    "anthronet_skin": (c_int32, [c_void_p, c_void_p, c_uint32, POINTER(Error)]),
     "anthronet_export_path": (c_int32, [c_void_p, POINTER(ExportOptions), c_char_p, c_uint64, POINTER(Error)]),
     "anthronet_export_memory": (c_int32, [c_void_p, POINTER(ExportOptions), c_char_p, c_uint64, c_void_p, POINTER(Error)]),
 }

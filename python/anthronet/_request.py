@@ -19,19 +19,19 @@ _FILLS = {"mean": _native.FILL_MEAN, "sample": _native.FILL_SAMPLE}
 class Request:
     """A person to be made: any subset of the measures, a sex, a seed.
 
-    The same request gives the same person, to the last bit. Measures are given, read and opened as those of a
-    dictionary; a name without its side, such as `arm_length`, speaks of both. May be used by many threads.
+    The same request gives the same person, to the last bit. Measures are set, read and unset as in a
+    dictionary; a name without its side, such as `arm_length`, stands for both. May be used by many threads.
 
     Args:
         sex: `"female"`, `"male"`, or None to leave it to the measures.
         seed: 0 for the likeliest person with these measures; any other number below 2**64 for another one.
         latent: the latent numbers by hand, `Model.latent_size` of them, each normally distributed with variance 1; None
             to leave them to the seed.
-        fill: how open measures are filled: `"mean"` for the likeliest values beside the given ones, `"sample"` for ones
+        fill: how measures that are not given are filled: `"mean"` for the likeliest values, `"sample"` for ones
             drawn by the seed.
-        nearest: whether measures that nobody has are replaced by the nearest that somebody has, with a warning in the
+        nearest: whether measures that no person has are replaced by the nearest that a person has, with a warning in the
             report, instead of refused.
-        **measures: values by name, metres; None leaves one open.
+        **measures: values by name, metres; None for one that is not given.
 
     Raises:
         RequestError: a name is no measure, or a value is not finite. Ranges are checked when a body is made.
@@ -83,7 +83,7 @@ class Request:
         return bytes_of(lib.anthronet_request_to_json, self._handle).decode()
 
     def copy(self) -> Request:
-        """Another request that asks for the same."""
+        """A copy of the request."""
         return self._of(_new(lib.anthronet_request_copy, self._handle))
 
     __copy__ = copy
@@ -143,7 +143,7 @@ class Request:
 
     @property
     def nearest(self) -> bool:
-        """Whether the nearest person is taken where nobody has these measures."""
+        """Whether the nearest person is made if no person has these measures."""
         return bool(self._fields()["nearest"])
 
     @nearest.setter
@@ -162,15 +162,15 @@ class Request:
         self._change(_set_measures, value)
 
     def __setitem__(self, name: str, metres: Optional[float]) -> None:
-        """Gives a measure, or opens it with None. RequestError where there is no such measure."""
+        """Sets a measure, or unsets it with None. RequestError where there is no such measure."""
         self._change(_set_measure, name, metres)
 
     def __delitem__(self, name: str) -> None:
-        """Opens a measure, open or not. RequestError where there is no such measure."""
+        """Unsets a measure, given or not. RequestError where there is no such measure."""
         self._change(_set_measure, name, None)
 
     def __getitem__(self, name: str) -> float:
-        """A given measure, metres. KeyError where it is open, is none, or where two sides differ."""
+        """A given measure, metres. KeyError where it is not given, is none, or where two sides differ."""
         measures = self.measures
         sides = _sides(name)
         values = {measures[side] for side in sides if side in measures}
@@ -247,7 +247,7 @@ def _set_measure(handle: Handle, name: str, metres: Optional[float]) -> None:
     for side in _sides(name) or [name]:
         encoded = side.encode()
         measure = number_of(lib.anthronet_measure_index, encoded, len(encoded))
-        call(lib.anthronet_request_open_measure, handle, measure)
+        call(lib.anthronet_request_unset_measure, handle, measure)
 
 
 def _set_measures(handle: Handle, measures: Dict[str, Optional[float]]) -> None:

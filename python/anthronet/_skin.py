@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _arguments, _native
 from ._arguments import Array, Floats
-from ._library import Handle, Owner, call, lib, new_handle, number_of
+from ._library import Handle, Owner, call, context, lib, new_handle, number_of
 
 _METHODS = {
     "linear": _native.SKIN_LINEAR,
@@ -92,7 +92,7 @@ def skin(jobs: Iterable[SkinJob]) -> List[Posed]:
     prepared = [_Prepared(job) for job in jobs]
     count = len(prepared)
     described = (_native.SkinJob * count)(*[one.described for one in prepared])
-    call(lib.anthronet_skin, described, count)
+    call(lib.anthronet_skin, context(), described, count)
     return [(one.positions, one.normals) for one in prepared]
 
 

@@ -314,7 +314,7 @@ def together():
         "Randomize All gives each character its own seed", first.anthronet.seed == 6 and second.anthronet.seed == 7 and
         not first.anthronet.identity_by_hand
     )
-    bpy.ops.anthronet.open_measures()
+    bpy.ops.anthronet.unset_measures()
     check("Clear All Measures", not any(one.anthronet.is_given(name) for one in (first, second) for name in names))
 
 

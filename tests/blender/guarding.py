@@ -31,7 +31,7 @@ def _check_rejected(name, character, expected):
     error = settings.error
     check(f"{name}: the error of a slider has the reason", expected in error, error)
     poll = regeneration.reason_not_editable(character, bpy.context) or ""
-    check(f"{name}: so do operators' polls", expected in poll and not bpy.ops.anthronet.open_measures.poll(), poll)
+    check(f"{name}: so do operators' polls", expected in poll and not bpy.ops.anthronet.unset_measures.poll(), poll)
     settings.height = before
 
 
@@ -160,7 +160,7 @@ def failing_whole():
     for name, work in (
         ("mirror", bpy.ops.anthronet.mirror),
         ("both sides alike", bpy.ops.anthronet.symmetrise),
-        ("open all", bpy.ops.anthronet.open_measures),
+        ("open all", bpy.ops.anthronet.unset_measures),
         ("copy", bpy.ops.anthronet.copy_request),
         ("randomise", bpy.ops.anthronet.randomise),
         ("measures from mesh", bpy.ops.anthronet.fit_selected),

@@ -28,8 +28,8 @@ void test_skin_jobs(const fixture *f) {
     good.joint_count = f->joints;
     good.positions = buffer;
     good.position_bytes = 12 * (uint64_t)count;
-#define BAD(code, change) (bad = good, change, REFUSED(code, anthronet_skin(&bad, 1, &fault)))
-#define WRONG(change) (bad = good, (void)(change), FAILS(anthronet_skin(&bad, 1, &fault)))
+#define BAD(code, change) (bad = good, change, REFUSED(code, anthronet_skin(NULL, &bad, 1, &fault)))
+#define WRONG(change) (bad = good, (void)(change), FAILS(anthronet_skin(NULL, &bad, 1, &fault)))
     BAD(POINTER, bad.skinner = NULL);
     BAD(POINTER, bad.joints = NULL);
     BAD(POINTER, bad.positions = NULL);
@@ -73,12 +73,12 @@ void test_skin_jobs(const fixture *f) {
     /* The second of two is wrong: the first is not done either. */
     two[0] = two[1] = good;
     two[1].joint_count = 1;
-    FAILS(anthronet_skin(two, 2, &fault));
+    FAILS(anthronet_skin(NULL, two, 2, &fault));
     two[1] = good;
     two[1].struct_size -= 8;
-    FAILS(anthronet_skin(two, 2, &fault));
+    FAILS(anthronet_skin(NULL, two, 2, &fault));
     CHECK(is_filled(buffer, (size_t)bytes), "a refused buffer is written to");
-    OK(anthronet_skin(&good, 1, &fault));
+    OK(anthronet_skin(NULL, &good, 1, &fault));
     free(buffer);
     free(offsets);
     free(pose);
@@ -106,7 +106,7 @@ void test_skin_overlaps(const fixture *f) {
         good[i].position_bytes = 2 * packed;
     }
 #define OVERLAPS(change) \
-    (memcpy(jobs, good, sizeof jobs), (void)(change), REFUSED(POINTER, anthronet_skin(jobs, 3, &fault)))
+    (memcpy(jobs, good, sizeof jobs), (void)(change), REFUSED(POINTER, anthronet_skin(NULL, jobs, 3, &fault)))
     OVERLAPS(jobs[2].positions = memory);
     OVERLAPS(jobs[0].positions = memory + 2 * packed);
     OVERLAPS(jobs[1].positions = memory + packed - 1);
@@ -127,7 +127,7 @@ void test_skin_overlaps(const fixture *f) {
     memset(behind, 0, (size_t)packed);
     jobs[0].offsets = jobs[1].offsets = (const float *)(const void *)behind;
     jobs[0].offset_count = jobs[1].offset_count = count;
-    OK(anthronet_skin(jobs, 3, &fault));
+    OK(anthronet_skin(NULL, jobs, 3, &fault));
     CHECK(memcmp(memory, memory + packed, (size_t)packed) == 0 && memcmp(memory, memory + 2 * packed, (size_t)packed) == 0,
           "three alike differ");
     CHECK(is_filled(memory + 4 * packed, (size_t)(2 * packed)), "something beyond is written");
@@ -165,10 +165,10 @@ void test_sources(const fixture *f) {
     good.parents = parents;
     good.rest = rest;
     good.frames = frames;
-    OK(anthronet_motion_new(&good, &motion, &fault));
+    OK(anthronet_motion_from_poses(&good, &motion, &fault));
     anthronet_motion_free(motion);
 #undef WRONG
-#define WRONG(change) (bad = good, (void)(change), FAILS_OUT(motion, anthronet_motion_new(&bad, &motion, &fault)))
+#define WRONG(change) (bad = good, (void)(change), FAILS_OUT(motion, anthronet_motion_from_poses(&bad, &motion, &fault)))
     WRONG(bad.joint_names = NULL);
     WRONG(bad.parents = NULL);
     WRONG(bad.rest = NULL);

@@ -70,10 +70,10 @@ void test_struct_sizes(const fixture *f) {
         REFUSED(SIZE, anthronet_mesh_describe_part(f->mesh, 0, &part, &fault));
         ZERO(source);
         source.struct_size = size;
-        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&source, &motion, &fault));
+        REFUSED_OUT(SIZE, motion, anthronet_motion_from_poses(&source, &motion, &fault));
         ZERO(job);
         job.struct_size = size;
-        REFUSED(SIZE, anthronet_skin(&job, 1, &fault));
+        REFUSED(SIZE, anthronet_skin(NULL, &job, 1, &fault));
         progress.struct_size = size;
         REFUSED(SIZE, anthronet_job_poll(running, &progress, &fault));
     }
@@ -123,12 +123,12 @@ void test_enumerations(const fixture *f) {
         REFUSED_OUT(ENUM, text, anthronet_body_joint_name(f->body, 0, wrong, &text, &fault));
         REFUSED_OUT(ENUM, view, anthronet_mesh_data(f->mesh, 0, wrong, &view, &fault));
         REFUSED(ENUM, anthronet_mesh_read(f->mesh, 0, wrong, pose, 28, 0, &fault));
-        REFUSED(ENUM, anthronet_clip_sample(f->walk, 0, wrong, 0, 0, pose, f->joints, &fault));
-        REFUSED(ENUM, anthronet_clip_sample(f->walk, 0, 0, wrong, 0, pose, f->joints, &fault));
-        REFUSED(ENUM, anthronet_clip_sample(f->walk, 0, 0, 0, wrong, pose, f->joints, &fault));
+        REFUSED(ENUM, anthronet_clip_sample(f->walk, NULL, 0, wrong, 0, 0, pose, f->joints, &fault));
+        REFUSED(ENUM, anthronet_clip_sample(f->walk, NULL, 0, 0, wrong, 0, pose, f->joints, &fault));
+        REFUSED(ENUM, anthronet_clip_sample(f->walk, NULL, 0, 0, 0, wrong, pose, f->joints, &fault));
         REFUSED(ENUM, anthronet_clip_bake(f->walk, wrong, 0, pose, 1, &fault));
         REFUSED(ENUM, anthronet_clip_bake(f->walk, 0, wrong, pose, 1, &fault));
-        REFUSED_OUT(ENUM, clip, anthronet_clip_new(f->body, TEXT("a"), 30, wrong, pose, f->joints, &clip, &fault));
+        REFUSED_OUT(ENUM, clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, wrong, pose, f->joints, &clip, &fault));
         REFUSED_OUT(ENUM, clip, anthronet_clip_additive(f->walk, f->walk, 1, NULL, 0, wrong, NULL, 0, &clip, &fault));
         for (k = 1; k < 7; k++) {
             anthronet_mesh_options options;
@@ -158,10 +158,10 @@ void test_enumerations(const fixture *f) {
             REFUSED_OUT(ENUM, motion, anthronet_motion_open_memory((const uint8_t *)BVH, strlen(BVH), TEXT("a.bvh"), &options, &motion, &fault));
             SIZED(source);
             source.space = wrong;
-            REFUSED_OUT(ENUM, motion, anthronet_motion_new(&source, &motion, &fault));
+            REFUSED_OUT(ENUM, motion, anthronet_motion_from_poses(&source, &motion, &fault));
         }
         REFUSED_OUT(INDEX, text, anthronet_measure_name(wrong, &text, &fault));
-        REFUSED(INDEX, anthronet_request_open_measure(request, wrong, &fault));
+        REFUSED(INDEX, anthronet_request_unset_measure(request, wrong, &fault));
         REFUSED_OUT(INDEX, metres[0], anthronet_model_measure_range(f->model, wrong, &metres[0], &metres[1], &fault));
         REFUSED_OUT(INDEX, text, anthronet_body_joint_name(f->body, wrong, 0, &text, &fault));
         REFUSED_OUT(INDEX, text, anthronet_clip_builtin_name(wrong, &text, &fault));
@@ -211,7 +211,7 @@ void test_numbers(const fixture *f) {
         given[7] = 1;
         REFUSED(REQUEST, anthronet_request_set_measures(request, metres, given, 36, &fault));
         FAILS_OUT(body, anthronet_interpolate(f->model, f->request, f->request, bad, &body, &fault));
-        REFUSED(REQUEST, anthronet_clip_sample(f->walk, bad, 0, 0, 0, pose, f->joints, &fault));
+        REFUSED(REQUEST, anthronet_clip_sample(f->walk, NULL, bad, 0, 0, 0, pose, f->joints, &fault));
         FAILS_OUT(clip, anthronet_clip_looped(f->walk, bad, &clip, &fault));
         FAILS_OUT(clip, anthronet_clip_crossfade(f->walk, f->walk, bad, &clip, &fault));
         FAILS_OUT(clip, anthronet_clip_blend(f->walk, f->walk, (float)bad, &clip, &fault));
@@ -249,7 +249,7 @@ void test_numbers(const fixture *f) {
         read.frames_per_second = retarget.frames_per_second = NO_RATES[i];
         FAILS_OUT(clip, anthronet_clip_resample(f->walk, NO_RATES[i], &clip, &fault));
         /* 1e9 frames per second are possible for so few frames. */
-        if (NO_RATES[i] != 1e9) FAILS_OUT(clip, anthronet_clip_new(f->body, TEXT("a"), NO_RATES[i], 0, pose, f->joints, &clip, &fault));
+        if (NO_RATES[i] != 1e9) FAILS_OUT(clip, anthronet_clip_from_poses(f->body, TEXT("a"), NO_RATES[i], 0, pose, f->joints, &clip, &fault));
         if (NO_RATES[i] == 0) continue;
         FAILS_OUT(clip, anthronet_motion_retarget(f->motion, 0, f->body, &retarget, &clip, NULL, &fault));
         if (NO_RATES[i] != 1e9) {
@@ -263,9 +263,9 @@ void test_numbers(const fixture *f) {
     FAILS_OUT(clip, anthronet_clip_looped(f->walk, 1e6, &clip, &fault));
     FAILS_OUT(clip, anthronet_clip_crossfade(f->walk, f->walk, -1, &clip, &fault));
     FAILS_OUT(clip, anthronet_clip_crossfade(f->walk, f->walk, 1e6, &clip, &fault));
-    REFUSED(REQUEST, anthronet_clip_sample(f->walk, 1e300, 2, 0, 0, pose, f->joints, &fault));
-    OK(anthronet_clip_sample(f->walk, -1e9, 1, 0, 0, pose, f->joints, &fault));
-    OK(anthronet_clip_sample(f->walk, 1e9, 2, 0, 0, pose, f->joints, &fault));
+    REFUSED(REQUEST, anthronet_clip_sample(f->walk, NULL, 1e300, 2, 0, 0, pose, f->joints, &fault));
+    OK(anthronet_clip_sample(f->walk, NULL, -1e9, 1, 0, 0, pose, f->joints, &fault));
+    OK(anthronet_clip_sample(f->walk, NULL, 1e9, 2, 0, 0, pose, f->joints, &fault));
     for (i = 0; i < f->joints; i++) CHECK(isfinite(pose[i].rotation[3]) && isfinite(pose[i].translation[2]), "joint %u", (unsigned)i);
     /* A mesh that is not one. */
     OK(anthronet_model_vertex_count(f->model, 1, &vertices, &fault));
@@ -309,7 +309,7 @@ void test_counts(const fixture *f) {
         REFUSED_OUT(SIZE, metres, anthronet_measure_file(f->model, TEXT("a.glb"), metres, count, NULL, &fault));
         REFUSED_OUT(SIZE, joint, anthronet_body_joints(f->body, 0, &joint, count, &fault));
         REFUSED_OUT(SIZE, latent, anthronet_body_latent(f->body, &latent, count, &fault));
-        REFUSED_OUT(SIZE, pose, anthronet_clip_sample(f->walk, 0, 0, 0, 0, &pose, count, &fault));
+        REFUSED_OUT(SIZE, pose, anthronet_clip_sample(f->walk, NULL, 0, 0, 0, 0, &pose, count, &fault));
         REFUSED_OUT(SIZE, pose, anthronet_clip_bake(f->walk, 0, 0, &pose, count, &fault));
     }
     REFUSED_OUT(SIZE, pose, anthronet_clip_bake(f->walk, 0, 0, &pose, UINT64_MAX, &fault));
@@ -321,17 +321,17 @@ void test_counts(const fixture *f) {
     REFUSED_OUT(SIZE, motion, anthronet_motion_open_memory((const uint8_t *)"a", UINT64_MAX, TEXT("a.bvh"), NULL, &motion, &fault));
     REFUSED_OUT(SIZE, motion, anthronet_motion_open_memory((const uint8_t *)"a", 1, "a", UINT64_MAX, NULL, &motion, &fault));
     REFUSED_OUT(SIZE, clip, anthronet_clip_builtin("walk", UINT64_MAX / 2 + 1, f->body, &clip, &fault));
-    REFUSED_OUT(SIZE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, &pose, UINT64_MAX / 16, &clip, &fault));
-    FAILS_OUT(clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, &pose, 1, &clip, &fault));
-    FAILS_OUT(clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, &pose, 0, &clip, &fault));
+    REFUSED_OUT(SIZE, clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, &pose, UINT64_MAX / 16, &clip, &fault));
+    FAILS_OUT(clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, &pose, 1, &clip, &fault));
+    FAILS_OUT(clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, &pose, 0, &clip, &fault));
     REFUSED_OUT(SIZE, request, anthronet_request_from_json("{}", UINT64_MAX, &request, &fault));
     REFUSED_OUT(SIZE, number, anthronet_measure_index("height", UINT64_MAX, &number, &fault));
     REFUSED_OUT(ANTHRONET_ERROR_POINTER, job, anthronet_job_start(f->model, NULL, 1, &job, &fault));
-    REFUSED(ANTHRONET_ERROR_POINTER, anthronet_skin(NULL, UINT32_MAX, &fault));
+    REFUSED(ANTHRONET_ERROR_POINTER, anthronet_skin(NULL, NULL, UINT32_MAX, &fault));
     SIZED(source);
     source.joint_count = source.frame_count = UINT32_MAX;
     source.frames_per_second = 30;
-    FAILS_OUT(motion, anthronet_motion_new(&source, &motion, &fault));
+    FAILS_OUT(motion, anthronet_motion_from_poses(&source, &motion, &fault));
 }
 
 /* Counts that say more than the small buffers beside them hold, by one or by far: refused before anything is read. */
@@ -376,7 +376,7 @@ void test_counts_too_large(const fixture *f) {
     source.joint_names = &name;
     source.parents = &parent;
     source.rest = source.frames = exact;
-    OK(anthronet_motion_new(&source, &motion, &fault));
+    OK(anthronet_motion_from_poses(&source, &motion, &fault));
     anthronet_motion_free(motion);
     for (i = 0; i < LENGTH(BY); i++) {
         uint32_t by = BY[i];
@@ -387,25 +387,25 @@ void test_counts_too_large(const fixture *f) {
         job.joint_count = LARGER(f->joints);
         job.positions = floats;
         job.position_bytes = 12 * (uint64_t)count;
-        REFUSED(SIZE, anthronet_skin(&job, 1, &fault));
+        REFUSED(SIZE, anthronet_skin(NULL, &job, 1, &fault));
         job.joint_count = f->joints;
         job.offsets = floats + 3 * (size_t)count;
         job.offset_count = LARGER(count);
-        REFUSED(SIZE, anthronet_skin(&job, 1, &fault));
-        if (LARGER(1 << 20) > 1 << 20) REFUSED(SIZE, anthronet_skin(&job, LARGER(1 << 20), &fault));
+        REFUSED(SIZE, anthronet_skin(NULL, &job, 1, &fault));
+        if (LARGER(1 << 20) > 1 << 20) REFUSED(SIZE, anthronet_skin(NULL, &job, LARGER(1 << 20), &fault));
         REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, floats, LARGER(vertices), 0, 0, metres, 36, NULL, &fault));
         REFUSED(SIZE, anthronet_request_set_latent(mine, latent, LARGER(256), &fault));
         wrong = source;
         wrong.joint_count = LARGER(4096);
-        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
+        REFUSED_OUT(SIZE, motion, anthronet_motion_from_poses(&wrong, &motion, &fault));
         wrong = source;
         wrong.frame_count = LARGER(1 << 20);
-        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
+        REFUSED_OUT(SIZE, motion, anthronet_motion_from_poses(&wrong, &motion, &fault));
         wrong.joint_count = 4096;
         wrong.frame_count = LARGER(1 << 16);
-        REFUSED_OUT(SIZE, motion, anthronet_motion_new(&wrong, &motion, &fault));
-        REFUSED_OUT(SIZE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, exact, joints + by, &clip, &fault));
-        REFUSED_OUT(SIZE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, exact, joints * ((1 << 20) + (uint64_t)by), &clip, &fault));
+        REFUSED_OUT(SIZE, motion, anthronet_motion_from_poses(&wrong, &motion, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, exact, joints + by, &clip, &fault));
+        REFUSED_OUT(SIZE, clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, exact, joints * ((1 << 20) + (uint64_t)by), &clip, &fault));
         REFUSED_OUT(SIZE, clip, anthronet_clip_blend_masked(f->walk, f->walk, 1, &mask, LARGER(f->joints), &clip, &fault));
         REFUSED_OUT(SIZE, clip, anthronet_clip_additive(f->walk, f->walk, 1, exact, LARGER(f->joints), 0, NULL, 0, &clip, &fault));
         REFUSED_OUT(SIZE, clip, anthronet_clip_additive(f->walk, f->walk, 1, exact, f->joints, 0, &mask, LARGER(f->joints), &clip, &fault));

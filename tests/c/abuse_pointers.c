@@ -56,6 +56,7 @@ void test_null_in_makers(const fixture *f) {
     anthronet_job_free(NULL);
     anthronet_mesh_free(NULL);
     anthronet_skinner_free(NULL);
+    anthronet_context_free(NULL);
     anthronet_clip_free(NULL);
     anthronet_motion_free(NULL);
 }
@@ -85,7 +86,7 @@ void test_null_in_requests(const fixture *f) {
     REFUSED_OUT(NONE, metres, anthronet_request_measures(NULL, metres, given, 36, &fault));
     REFUSED_OUT(NONE, given, anthronet_request_measures(request, NULL, given, 36, &fault));
     REFUSED_OUT(NONE, metres, anthronet_request_measures(request, metres, NULL, 36, &fault));
-    REFUSED(NONE, anthronet_request_open_measure(NULL, 0, &fault));
+    REFUSED(NONE, anthronet_request_unset_measure(NULL, 0, &fault));
     REFUSED(NONE, anthronet_request_set_seed(NULL, 0, &fault));
     REFUSED(NONE, anthronet_request_set_latent(NULL, latent, 1, &fault));
     REFUSED(NONE, anthronet_request_set_latent(request, NULL, 1, &fault));
@@ -170,7 +171,8 @@ void test_null_in_meshes(const fixture *f) {
     REFUSED(NONE, anthronet_skinner_new(f->mesh, 0, NULL, &fault));
     REFUSED_OUT(NONE, number, anthronet_skinner_vertex_count(NULL, &number, &fault));
     REFUSED(NONE, anthronet_skinner_vertex_count(f->skinner, NULL, &fault));
-    REFUSED(NONE, anthronet_skin(NULL, 1, &fault));
+    REFUSED(NONE, anthronet_skin(NULL, NULL, 1, &fault));
+    REFUSED(NONE, anthronet_context_new(NULL, &fault));
     REFUSED(NONE, anthronet_export_path(NULL, NULL, TEXT("a.glb"), &fault));
     REFUSED(NONE, anthronet_export_path(f->body, NULL, NULL, 5, &fault));
     REFUSED_OUT(NONE, bytes, anthronet_export_memory(NULL, NULL, TEXT("glb"), &bytes, &fault));
@@ -231,14 +233,14 @@ void test_null_in_clips(const fixture *f) {
     REFUSED_OUT(NONE, clip, anthronet_clip_builtin(TEXT("walk"), NULL, &clip, &fault));
     REFUSED(NONE, anthronet_clip_builtin(TEXT("walk"), f->body, NULL, &fault));
     ZERO(pose);
-    REFUSED_OUT(NONE, clip, anthronet_clip_new(NULL, TEXT("a"), 30, 0, pose, 1, &clip, &fault));
-    REFUSED_OUT(NONE, clip, anthronet_clip_new(f->body, NULL, 1, 30, 0, pose, 1, &clip, &fault));
-    REFUSED_OUT(NONE, clip, anthronet_clip_new(f->body, TEXT("a"), 30, 0, NULL, f->joints, &clip, &fault));
-    REFUSED(NONE, anthronet_clip_new(f->body, TEXT("a"), 30, 0, pose, 1, NULL, &fault));
+    REFUSED_OUT(NONE, clip, anthronet_clip_from_poses(NULL, TEXT("a"), 30, 0, pose, 1, &clip, &fault));
+    REFUSED_OUT(NONE, clip, anthronet_clip_from_poses(f->body, NULL, 1, 30, 0, pose, 1, &clip, &fault));
+    REFUSED_OUT(NONE, clip, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, NULL, f->joints, &clip, &fault));
+    REFUSED(NONE, anthronet_clip_from_poses(f->body, TEXT("a"), 30, 0, pose, 1, NULL, &fault));
     REFUSED(NONE, anthronet_clip_describe(NULL, &info, &fault));
     REFUSED(NONE, anthronet_clip_describe(f->walk, NULL, &fault));
-    REFUSED_OUT(NONE, pose, anthronet_clip_sample(NULL, 0, 0, 0, 0, pose, 1, &fault));
-    REFUSED(NONE, anthronet_clip_sample(f->walk, 0, 0, 0, 0, NULL, f->joints, &fault));
+    REFUSED_OUT(NONE, pose, anthronet_clip_sample(NULL, NULL, 0, 0, 0, 0, pose, 1, &fault));
+    REFUSED(NONE, anthronet_clip_sample(f->walk, NULL, 0, 0, 0, 0, NULL, f->joints, &fault));
     REFUSED_OUT(NONE, pose, anthronet_clip_bake(NULL, 0, 0, pose, 1, &fault));
     OK(anthronet_clip_describe(f->walk, &info, &fault));
     REFUSED(NONE, anthronet_clip_bake(f->walk, 0, 0, NULL, (uint64_t)info.frame_count * f->joints, &fault));
@@ -289,11 +291,11 @@ void test_null_in_motions(const fixture *f) {
     REFUSED_OUT(NONE, motion, anthronet_motion_open_memory(bvh, 9, NULL, 5, NULL, &motion, &fault));
     REFUSED(NONE, anthronet_motion_open_memory(bvh, strlen(BVH), TEXT("a.bvh"), NULL, NULL, &fault));
     SIZED(source);
-    REFUSED_OUT(NONE, motion, anthronet_motion_new(NULL, &motion, &fault));
-    REFUSED(NONE, anthronet_motion_new(&source, NULL, &fault));
+    REFUSED_OUT(NONE, motion, anthronet_motion_from_poses(NULL, &motion, &fault));
+    REFUSED(NONE, anthronet_motion_from_poses(&source, NULL, &fault));
     source.joint_count = source.frame_count = 1;
     source.frames_per_second = 30;
-    REFUSED_OUT(NONE, motion, anthronet_motion_new(&source, &motion, &fault));
+    REFUSED_OUT(NONE, motion, anthronet_motion_from_poses(&source, &motion, &fault));
     REFUSED_OUT(NONE, number, anthronet_motion_clip_count(NULL, &number, &fault));
     REFUSED(NONE, anthronet_motion_clip_count(f->motion, NULL, &fault));
     REFUSED_OUT(NONE, text, anthronet_motion_clip_name(NULL, 0, &text, &fault));
@@ -327,7 +329,7 @@ void test_crooked_pointers(const fixture *f) {
     REFUSED_OUT(NONE, mesh, anthronet_mesh_new(f->body, CROOKED(anthronet_mesh_options *, &options), &mesh, &fault));
     REFUSED(NONE, anthronet_body_measures(f->body, CROOKED(anthronet_measure_report *, report), 36, &fault));
     REFUSED(NONE, anthronet_request_set_latent(f->request, CROOKED(double *, metres), 36, &fault));
-    REFUSED(NONE, anthronet_clip_sample(f->walk, 0, 0, 0, 0, CROOKED(anthronet_transform *, pose), f->joints, &fault));
+    REFUSED(NONE, anthronet_clip_sample(f->walk, NULL, 0, 0, 0, 0, CROOKED(anthronet_transform *, pose), f->joints, &fault));
     /* The error itself may lie anywhere. */
     fill(storage, sizeof storage);
     CHECK(anthronet_generate(NULL, f->request, &body, CROOKED(anthronet_error *, storage)) == NONE, "another code");

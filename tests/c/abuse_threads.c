@@ -30,11 +30,13 @@ static void *work(void *argument) {
     anthronet_transform *pose = (anthronet_transform *)room(f->joints * sizeof *pose);
     anthronet_skin_job skin;
     anthronet_error mine;
+    anthronet_context *context = NULL;
     uint32_t vertices = 0, i;
     float *positions;
     int round;
     expect(w, anthronet_skinner_vertex_count(f->skinner, &vertices, &mine) == ANTHRONET_OK);
     positions = (float *)room(12 * (size_t)vertices);
+    expect(w, anthronet_context_new(&context, &mine) == ANTHRONET_OK);
     for (round = 0; round < (f->few ? 1 : 10); round++) {
         anthronet_body *body = NULL, *taken = NULL, *warned = NULL;
         anthronet_mesh *mesh = NULL;
@@ -48,14 +50,14 @@ static void *work(void *argument) {
         anthronet_body_free(warned);
         expect(w, anthronet_body_measures(body, w->report, MEASURES, &mine) == ANTHRONET_OK);
         expect(w, anthronet_mesh_new(f->body, &options, &mesh, &mine) == ANTHRONET_OK);
-        expect(w, anthronet_clip_sample(f->walk, 0.1 * w->number, 1, 1, 0, pose, f->joints, &mine) == ANTHRONET_OK);
+        expect(w, anthronet_clip_sample(f->walk, context, 0.1 * w->number, 1, 1, 0, pose, f->joints, &mine) == ANTHRONET_OK);
         SIZED(skin);
         skin.skinner = f->skinner;
         skin.joints = pose;
         skin.joint_count = f->joints;
         skin.positions = positions;
         skin.position_bytes = 12 * (uint64_t)vertices;
-        expect(w, anthronet_skin(&skin, 1, &mine) == ANTHRONET_OK);
+        expect(w, anthronet_skin(context, &skin, 1, &mine) == ANTHRONET_OK);
         expect(w, anthronet_motion_retarget(f->motion, 0, body, NULL, &clip, NULL, &mine) == ANTHRONET_OK);
         expect(w, anthronet_generate(f->model, NULL, &body, &mine) == ANTHRONET_ERROR_POINTER);
         /* The job's bodies: each goes to one of the threads. */
@@ -72,6 +74,7 @@ static void *work(void *argument) {
         anthronet_clip_free(clip);
         anthronet_body_free(body);
     }
+    anthronet_context_free(context);
     free(positions);
     free(pose);
     return NULL;
@@ -148,8 +151,8 @@ static void permute(const fixture *f, int *order, int at, int *stride) {
             if (model != NULL) OK(anthronet_model_latent_size(model, &count, &fault));
             if (mesh != NULL) OK(anthronet_mesh_part_count(mesh, &count, &fault));
             if (skinner != NULL) OK(anthronet_skinner_vertex_count(skinner, &count, &fault));
-            if (clip != NULL) OK(anthronet_clip_sample(clip, 0.2, 0, 1, 0, pose, f->joints, &fault));
-            if (made != NULL) OK(anthronet_clip_sample(made, 0.2, 0, 1, 0, pose, f->joints, &fault));
+            if (clip != NULL) OK(anthronet_clip_sample(clip, NULL, 0.2, 0, 1, 0, pose, f->joints, &fault));
+            if (made != NULL) OK(anthronet_clip_sample(made, NULL, 0.2, 0, 1, 0, pose, f->joints, &fault));
         }
         free(pose);
         return;

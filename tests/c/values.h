@@ -25,6 +25,7 @@ void test_humanoid(const fixture *f);
 
 void test_skin_at_rest(const fixture *f);
 void test_skin_posed(const fixture *f);
+void test_context(const fixture *f);
 void test_skin_buffers(const fixture *f);
 
 void test_builtin_clips(const fixture *f);

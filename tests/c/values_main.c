@@ -22,6 +22,7 @@ int main(int argc, char **argv) {
         {"humanoid bones", test_humanoid},
         {"skinned at rest nothing moves", test_skin_at_rest},
         {"skinned as the formula says", test_skin_posed},
+        {"a context changes no number", test_context},
         {"skinned into every kind of buffer", test_skin_buffers},
         {"built-in clips", test_builtin_clips},
         {"samples and baked frames", test_sample},

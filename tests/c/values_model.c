@@ -104,7 +104,7 @@ void test_request(const fixture *f) {
     OK(anthronet_request_set_measure(request, TEXT("arm_length"), 0.33, &fault));
     OK(anthronet_request_measures(request, metres, given, MEASURES, &fault));
     CHECK(metres[measure("arm_length_left")] == 0.33 && metres[measure("arm_length_right")] == 0.33, "arms");
-    OK(anthronet_request_open_measure(request, measure("arm_length_left"), &fault));
+    OK(anthronet_request_unset_measure(request, measure("arm_length_left"), &fault));
     OK(anthronet_request_measures(request, metres, given, MEASURES, &fault));
     CHECK(!given[measure("arm_length_left")] && given[measure("arm_length_right")], "an arm is opened");
     /* All at once, an open one being anything. */

@@ -41,7 +41,7 @@ static double all_apart(const anthronet_transform *a, const anthronet_transform 
 
 static void sample(const fixture *f, const anthronet_clip *clip, double seconds, uint32_t wrap, uint32_t relative,
                    uint32_t space, anthronet_transform *pose) {
-    OK(anthronet_clip_sample(clip, seconds, wrap, relative, space, pose, f->joints, &fault));
+    OK(anthronet_clip_sample(clip, NULL, seconds, wrap, relative, space, pose, f->joints, &fault));
 }
 
 static anthronet_transform *pose_room(const fixture *f) {
@@ -82,8 +82,8 @@ void test_sample(const fixture *f) {
     CHECK(all_apart(pose, frames + count - f->joints, f->joints) < 1e-6, "long after the end");
     sample(f, f->walk, at + 3 * info.duration, ANTHRONET_WRAP_LOOP, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_GLTF, pose);
     CHECK(all_apart(pose, frames + (size_t)frame * f->joints, f->joints) < 1e-4, "the fourth round");
-    sample(f, f->walk, at + info.duration, ANTHRONET_WRAP_TRAVEL, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, pose);
-    sample(f, f->walk, at, ANTHRONET_WRAP_TRAVEL, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, model);
+    sample(f, f->walk, at + info.duration, ANTHRONET_WRAP_ROOT_MOTION, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, pose);
+    sample(f, f->walk, at, ANTHRONET_WRAP_ROOT_MOTION, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, model);
     CHECK(pose[5].translation[2] - model[5].translation[2] > 0.5f, "a round of walking goes %f m",
           (double)(pose[5].translation[2] - model[5].translation[2]));
     /* Unity's and Blender's space hold the same points. */
@@ -183,7 +183,7 @@ void test_clip_of_poses(const fixture *f) {
     anthronet_transform *there = (anthronet_transform *)room((size_t)count * sizeof *there), *again, *expected;
     anthronet_clip *clip = NULL;
     OK(anthronet_clip_bake(f->walk, ANTHRONET_RELATIVE_TO_PARENT, ANTHRONET_SPACE_UNITY, there, count, &fault));
-    OK(anthronet_clip_new(f->body, TEXT("mine"), info.frames_per_second, ANTHRONET_SPACE_UNITY, there, count, &clip, &fault));
+    OK(anthronet_clip_from_poses(f->body, TEXT("mine"), info.frames_per_second, ANTHRONET_SPACE_UNITY, there, count, &clip, &fault));
     CHECK(is_text(info_of(clip).name, "mine") && info_of(clip).frame_count == info.frame_count, "name or frames");
     again = baked(f, clip, ANTHRONET_RELATIVE_TO_PARENT, NULL);
     expected = baked(f, f->walk, ANTHRONET_RELATIVE_TO_PARENT, NULL);
@@ -264,7 +264,7 @@ void test_motion_of_poses(const fixture *f) {
     source.parents = parents;
     source.rest = rest;
     source.frames = frames;
-    OK(anthronet_motion_new(&source, &motion, &fault));
+    OK(anthronet_motion_from_poses(&source, &motion, &fault));
     SIZED(options);
     options.no_limits = options.no_feet = 1;
     OK(anthronet_motion_retarget(motion, 0, f->body, &options, &clip, NULL, &fault));

@@ -44,7 +44,7 @@ void test_skin_at_rest(const fixture *f) {
         anthronet_skin_job job = job_of(f, pose, posed, 12 * (uint64_t)count);
         job.method = method;
         memset(posed, 0xFF, 12 * (size_t)count);
-        OK(anthronet_skin(&job, 1, &fault));
+        OK(anthronet_skin(NULL, &job, 1, &fault));
         CHECK(largest_difference(posed, bind, 3 * (uint64_t)count) < 2e-6, "method %u moves by %g m", method,
               largest_difference(posed, bind, 3 * (uint64_t)count));
     }
@@ -76,7 +76,7 @@ void test_skin_posed(const fixture *f) {
     anthronet_view slots, weights;
     double worst = 0, far = 0;
     int i, k;
-    OK(anthronet_clip_sample(f->walk, 0.3, ANTHRONET_WRAP_LOOP, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, pose,
+    OK(anthronet_clip_sample(f->walk, NULL, 0.3, ANTHRONET_WRAP_LOOP, ANTHRONET_RELATIVE_TO_MODEL, ANTHRONET_SPACE_GLTF, pose,
                              f->joints, &fault));
     OK(anthronet_body_joints(f->body, ANTHRONET_SPACE_GLTF, joints, f->joints, &fault));
     OK(anthronet_mesh_data(f->mesh, 0, ANTHRONET_ATTRIBUTE_JOINTS, &slots, &fault));
@@ -85,7 +85,7 @@ void test_skin_posed(const fixture *f) {
     jobs[0] = job_of(f, pose, linear, 12 * (uint64_t)count);
     jobs[1] = job_of(f, pose, dual, 12 * (uint64_t)count);
     jobs[1].method = ANTHRONET_SKIN_DUAL_QUATERNION;
-    OK(anthronet_skin(jobs, 2, &fault));
+    OK(anthronet_skin(NULL, jobs, 2, &fault));
     for (v = 0; v < count; v++) {
         double sum[3] = {0, 0, 0};
         for (i = 0; i < 4; i++) {
@@ -111,6 +111,43 @@ void test_skin_posed(const fixture *f) {
     free(dual);
 }
 
+/* A context keeps memory from call to call, whatever it was used for before, and changes no number. */
+void test_context(const fixture *f) {
+    uint32_t count = 0, round;
+    const size_t bytes = f->joints * sizeof(anthronet_transform);
+    anthronet_transform *plain = (anthronet_transform *)room(bytes), *pose = (anthronet_transform *)room(bytes);
+    anthronet_context *context = NULL;
+    float *expected, *posed;
+    (void)bind_positions(f, &count);
+    expected = (float *)room(12 * (size_t)count);
+    posed = (float *)room(24 * (size_t)count);
+    OK(anthronet_context_new(&context, &fault));
+    for (round = 0; round < 6; round++) {
+        anthronet_skin_job jobs[2];
+        const double seconds = 0.1 * round;
+        OK(anthronet_clip_sample(f->walk, NULL, seconds, 1, 1, 0, plain, f->joints, &fault));
+        OK(anthronet_clip_sample(f->walk, context, seconds, 1, 1, 0, pose, f->joints, &fault));
+        CHECK(memcmp(plain, pose, bytes) == 0, "another pose in round %u", round);
+        jobs[0] = job_of(f, plain, expected, 12 * (uint64_t)count);
+        jobs[0].method = round % 3;
+        OK(anthronet_skin(NULL, jobs, 1, &fault));
+        jobs[0].positions = posed;
+        jobs[1] = jobs[0];
+        jobs[1].positions = posed + 3 * (size_t)count;
+        OK(anthronet_skin(context, jobs, 1 + round % 2, &fault));
+        CHECK(memcmp(expected, posed, 12 * (size_t)count) == 0, "another surface in round %u", round);
+        if (round % 2 == 1) CHECK(memcmp(posed, jobs[1].positions, 12 * (size_t)count) == 0, "another second surface");
+        /* What is refused leaves it fit for use. */
+        jobs[0].joint_count = 1;
+        CHECK(anthronet_skin(context, jobs, 1, &fault) == ANTHRONET_ERROR_SIZE, "a pose of one joint");
+    }
+    anthronet_context_free(context);
+    free(plain);
+    free(pose);
+    free(expected);
+    free(posed);
+}
+
 /* Offsets, normals, strides, and one buffer for both as vertex buffers are laid out. */
 void test_skin_buffers(const fixture *f) {
     anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
@@ -129,7 +166,7 @@ void test_skin_buffers(const fixture *f) {
     job.normal_bytes = 32 * (uint64_t)count - 12;
     job.normal_stride = 32;
     fill(both, 32 * (size_t)count);
-    OK(anthronet_skin(&job, 1, &fault));
+    OK(anthronet_skin(NULL, &job, 1, &fault));
     for (v = 0; v < count; v++) {
         const float *row = both + 8 * (size_t)v, *n = (const float *)normals.data + 3 * (size_t)v;
         for (k = 0; k < 3; k++) {
@@ -145,10 +182,10 @@ void test_skin_buffers(const fixture *f) {
     job.positions = both + 3;
     job.normals = both;
     job.position_bytes = job.normal_bytes;
-    OK(anthronet_skin(&job, 1, &fault));
+    OK(anthronet_skin(NULL, &job, 1, &fault));
     CHECK(fabsf(both[3] - bind[0]) < 1e-5f && fabsf(both[0] - ((const float *)normals.data)[0]) < 1e-4f, "normals first");
     /* None at all. */
-    OK(anthronet_skin(NULL, 0, &fault));
+    OK(anthronet_skin(NULL, NULL, 0, &fault));
     free(pose);
     free(offsets);
     free(both);

@@ -28,6 +28,9 @@ namespace {
 
 using namespace anthronet;
 
+// One for all checks that are not about threads.
+auto context = Context::create();
+
 bool all_passed = true;
 
 void check(bool holds, const std::string &why) {
@@ -155,17 +158,17 @@ void buffers(const Model &model) {
     auto clip = Clip::builtin("idle", *body);
     std::vector<Transform> pose(clip->joint_count() - 1);
     const rust::Slice<Transform> few(pose);
-    throws({"transforms"}, [&] { clip->sample(0.0, Wrap::Once, Relative::ToModel, Space::Gltf, few); });
+    throws({"transforms"}, [&] { clip->sample(*context, 0.0, Wrap::Once, Relative::ToModel, Space::Gltf, few); });
     throws({"transforms"}, [&] { clip->bake(Relative::ToModel, Space::Gltf, few); });
     pose.resize(clip->joint_count());
     throws({"seconds"}, [&] {
-      clip->sample(std::nan(""), Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+      clip->sample(*context, std::nan(""), Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
     });
-    clip->sample(0.0, Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+    clip->sample(*context, 0.0, Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
     auto skinner = body->mesh({})->skinner(0);
     std::vector<float> small(3 * skinner->vertex_count() - 1, 7.0F);
     throws({"buffer"}, [&] {
-      skinner->skin(SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(small), {});
+      skinner->skin(*context, SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(small), {});
     });
     check(std::all_of(small.begin(), small.end(), [](float v) { return v == 7.0F; }), "something was written");
     throws({"three numbers"}, [&] { model.measure_mesh(rust::Slice<const float>(small), Space::Gltf); });
@@ -219,7 +222,7 @@ void buffers(const Model &model) {
     std::vector<rust::Box<Skinner>> skinners;
     std::vector<std::vector<float>> together(mesh->part_count()), normals(mesh->part_count());
     std::vector<Transform> pose(clip->joint_count());
-    clip->sample(0.7, Wrap::Loop, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+    clip->sample(*context, 0.7, Wrap::Loop, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
     std::vector<SkinJob> jobs;
     for (std::size_t part = 0; part < mesh->part_count(); ++part) {
       skinners.push_back(mesh->skinner(part));
@@ -229,18 +232,18 @@ void buffers(const Model &model) {
     for (std::size_t part = 0; part < skinners.size(); ++part)
       jobs.push_back({*skinners[part], SkinMethod::DualQuaternion, rust::Slice<const Transform>(pose), {},
                       rust::Slice<float>(together[part]), rust::Slice<float>(normals[part])});
-    skin_many(rust::Slice<SkinJob>(jobs));
+    skin_many(*context, rust::Slice<SkinJob>(jobs));
     for (std::size_t part = 0; part < skinners.size(); ++part) {
       std::vector<float> alone(together[part].size());
-      skinners[part]->skin(SkinMethod::DualQuaternion, rust::Slice<const Transform>(pose), rust::Slice<float>(alone), {});
+      skinners[part]->skin(*context, SkinMethod::DualQuaternion, rust::Slice<const Transform>(pose), rust::Slice<float>(alone), {});
       check(alone == together[part], "part " + std::to_string(part));
     }
     const std::vector<float> lift(together[0].size(), 0.25F);
     SkinJob lifted{*skinners[0], SkinMethod::JointTranslation, rust::Slice<const Transform>(pose),
                    rust::Slice<const float>(lift), rust::Slice<float>(together[0]), {}};
     std::vector<float> plain(lift.size());
-    skinners[0]->skin(SkinMethod::JointTranslation, rust::Slice<const Transform>(pose), rust::Slice<float>(plain), {});
-    skin_many(rust::Slice<SkinJob>(&lifted, 1));
+    skinners[0]->skin(*context, SkinMethod::JointTranslation, rust::Slice<const Transform>(pose), rust::Slice<float>(plain), {});
+    skin_many(*context, rust::Slice<SkinJob>(&lifted, 1));
     for (std::size_t i = 0; i < plain.size(); ++i)
       check(std::abs(together[0][i] - plain[i] - 0.25F) < 1e-5F, "offset of " + std::to_string(i));
   });
@@ -252,11 +255,11 @@ void interleaved(const Model &model) {
   auto skinner = mesh->skinner(0);
   auto walk = Clip::builtin("walk", *body);
   std::vector<Transform> pose(walk->joint_count());
-  walk->sample(0.4, Wrap::Loop, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+  walk->sample(*context, 0.4, Wrap::Loop, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
   const rust::Slice<const Transform> posed(pose);
   const std::size_t count = skinner->vertex_count();
   std::vector<float> positions(3 * count), normals(3 * count);
-  skinner->skin(SkinMethod::Linear, posed, rust::Slice<float>(positions), rust::Slice<float>(normals));
+  skinner->skin(*context, SkinMethod::Linear, posed, rust::Slice<float>(positions), rust::Slice<float>(normals));
 
   test("a vertex buffer is skinned in place of two arrays", [&] {
     struct Vertex {
@@ -264,7 +267,7 @@ void interleaved(const Model &model) {
     };
     std::vector<Vertex> vertices(count, Vertex{{7.0F, 8.0F}, {}, {}});
     const rust::Slice<std::uint8_t> bytes(reinterpret_cast<std::uint8_t *>(vertices.data()), count * sizeof(Vertex));
-    skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, sizeof(Vertex), offsetof(Vertex, position),
+    skinner->skin_interleaved(*context, SkinMethod::Linear, posed, {}, bytes, sizeof(Vertex), offsetof(Vertex, position),
                               offsetof(Vertex, normal));
     for (std::size_t v = 0; v < count; ++v) {
       check(std::equal(vertices[v].position, vertices[v].position + 3, positions.data() + 3 * v), "position");
@@ -272,15 +275,15 @@ void interleaved(const Model &model) {
       check(vertices[v].uv[0] == 7.0F && vertices[v].uv[1] == 8.0F, "what is between");
     }
     const std::vector<float> lift(3 * count, 0.25F);
-    skinner->skin_interleaved(SkinMethod::JointTranslation, posed, rust::Slice<const float>(lift), bytes, sizeof(Vertex),
+    skinner->skin_interleaved(*context, SkinMethod::JointTranslation, posed, rust::Slice<const float>(lift), bytes, sizeof(Vertex),
                               offsetof(Vertex, position), offsetof(Vertex, normal));
     std::vector<float> plain(3 * count);
-    skinner->skin(SkinMethod::JointTranslation, posed, rust::Slice<float>(plain), {});
+    skinner->skin(*context, SkinMethod::JointTranslation, posed, rust::Slice<float>(plain), {});
     check(std::abs(vertices[9].position[1] - plain[28] - 0.25F) < 1e-5F, "offset");
-    throws({"stride"}, [&] { skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, 20, 0, 12); });
-    throws({"vertex buffer"}, [&] { skinner->skin_interleaved(SkinMethod::Linear, posed, {}, bytes, 33, 0, 12); });
+    throws({"stride"}, [&] { skinner->skin_interleaved(*context, SkinMethod::Linear, posed, {}, bytes, 20, 0, 12); });
+    throws({"vertex buffer"}, [&] { skinner->skin_interleaved(*context, SkinMethod::Linear, posed, {}, bytes, 33, 0, 12); });
     throws({"offsets"}, [&] {
-      skinner->skin_interleaved(SkinMethod::Linear, posed, rust::Slice<const float>(lift.data(), 3), bytes, 32, 0, 12);
+      skinner->skin_interleaved(*context, SkinMethod::Linear, posed, rust::Slice<const float>(lift.data(), 3), bytes, 32, 0, 12);
     });
   });
   test("buffers that overlap throw", [&] {
@@ -288,10 +291,10 @@ void interleaved(const Model &model) {
     std::vector<SkinJob> jobs;
     for (const std::size_t first : {std::size_t{0}, 3 * count - 1})
       jobs.push_back({*skinner, SkinMethod::Linear, posed, {}, rust::Slice<float>(both.data() + first, 3 * count), {}});
-    throws({"of its own", "positions of job 0", "positions of 1"}, [&] { skin_many(rust::Slice<SkinJob>(jobs)); });
+    throws({"of its own", "positions of job 0", "positions of 1"}, [&] { skin_many(*context, rust::Slice<SkinJob>(jobs)); });
     check(std::all_of(both.begin(), both.end(), [](float v) { return v == 7.0F; }), "something was written");
     jobs[1].positions = rust::Slice<float>(both.data() + 3 * count, 3 * count);
-    skin_many(rust::Slice<SkinJob>(jobs));
+    skin_many(*context, rust::Slice<SkinJob>(jobs));
     check(std::equal(positions.begin(), positions.end(), both.begin() + static_cast<std::ptrdiff_t>(3 * count)), "side by side");
   });
 }
@@ -305,7 +308,7 @@ void layers(const Model &model) {
     check(mask.size() == joints, "number of joints");
     const auto frame = [&](const Clip &clip) {
       std::vector<Transform> pose(joints);
-      clip.sample(0.3, Wrap::Once, Relative::ToParent, Space::Gltf, rust::Slice<Transform>(pose));
+      clip.sample(*context, 0.3, Wrap::Once, Relative::ToParent, Space::Gltf, rust::Slice<Transform>(pose));
       return pose;
     };
     const auto apart = [](const Transform &a, const Transform &b) {
@@ -365,7 +368,7 @@ void motion(const Model &model) {
     check(joints == body->summary().joint_count, "number of joints");
     std::vector<Transform> all(walk->frame_count() * joints), one(joints);
     walk->bake(Relative::ToParent, Space::Unity, rust::Slice<Transform>(all));
-    walk->sample(3 / walk->frames_per_second(), Wrap::Once, Relative::ToParent, Space::Unity,
+    walk->sample(*context, 3 / walk->frames_per_second(), Wrap::Once, Relative::ToParent, Space::Unity,
                  rust::Slice<Transform>(one));
     for (std::size_t j = 0; j < joints; ++j) check(one[j].rotation == all[3 * joints + j].rotation, "frame 3");
     check(walk->resample(60.0)->frames_per_second() == 60.0, "rate");
@@ -391,9 +394,9 @@ void motion(const Model &model) {
       options.lod = 1;
       options.space = space;
       auto skinner = body->mesh(options)->skinner(0);
-      walk->sample(0.4, Wrap::Loop, Relative::ToModel, space, rust::Slice<Transform>(pose));
+      walk->sample(*context, 0.4, Wrap::Loop, Relative::ToModel, space, rust::Slice<Transform>(pose));
       skinned.emplace_back(3 * skinner->vertex_count());
-      skinner->skin(SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(skinned.back()), {});
+      skinner->skin(*context, SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(skinned.back()), {});
     }
     for (std::size_t i = 0; i < skinned[0].size(); i += 3) {
       const float *ours = &skinned[0][i], *blender = &skinned[1][i], *unity = &skinned[2][i];
@@ -436,9 +439,9 @@ void lifetimes(const Model &shared) {
     check(std::equal(view.begin(), view.end(), bind.begin()), "the mesh changed with its body");
     { auto gone = std::move(mesh); }
     std::vector<Transform> pose(clip->joint_count());
-    clip->sample(0.5, Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
+    clip->sample(*context, 0.5, Wrap::Once, Relative::ToModel, Space::Gltf, rust::Slice<Transform>(pose));
     std::vector<float> positions(bind.size());
-    skinner->skin(SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(positions), {});
+    skinner->skin(*context, SkinMethod::Linear, rust::Slice<const Transform>(pose), rust::Slice<float>(positions), {});
     check(positions != bind, "nothing moved");
   });
   test("slices alias: asked twice, the same memory", [&] {

@@ -135,7 +135,7 @@ def test_joint_spaces(uneven, space):
     product = joints["model_from_joint"].astype(float) @ joints["joint_from_model"]
     assert np.allclose(product, np.eye(4), atol=1e-6)
     assert np.allclose(np.linalg.det(joints["model_from_joint"][:, :3, :3].astype(float)), 1, atol=1e-5)
-    local = matrices(np.concatenate([joints["rotation"], joints["translation"]], axis=1))
+    local = matrices(joints["parent_from_joint"])
     for i, parent in enumerate(joints["parent"]):
         chained = local[i] if parent < 0 else joints["model_from_joint"][parent].astype(float) @ local[i]
         assert np.allclose(chained, joints["model_from_joint"][i], atol=1e-5), (space, names[i])

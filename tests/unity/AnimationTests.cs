@@ -65,7 +65,7 @@ namespace Anthronet.Tests
                     }
                     var place = moves ? new Vector3(made.Curves[path + position[0]].keys[frame].value,
                         made.Curves[path + position[1]].keys[frame].value, made.Curves[path + position[2]].keys[frame].value)
-                        : rig.Joints[joint].local.translation;
+                        : rig.Joints[joint].parentFromJoint.translation;
                     Expect.That((place - pose[joint].translation).magnitude < 2e-6, path + " frame " + frame + " has another position");
                 }
                 // Half way between two frames: linear interpolation, which is close to the quaternion on the arc.

@@ -26,11 +26,11 @@ namespace Anthronet.Tests
             Expect.Equal(0L, Allocated() - before, what + ": bytes in " + times + " frames");
         }
 
-        static unsafe void Skin(AnthroSkinJob[] jobs)
+        static unsafe void Skin(AnthroContext context, AnthroSkinJob[] jobs)
         {
             fixed (AnthroSkinJob* first = jobs)
             {
-                AnthroSkin.Run(first, jobs.Length);
+                AnthroSkin.Run(context.Pointer, first, jobs.Length);
             }
         }
 
@@ -45,7 +45,9 @@ namespace Anthronet.Tests
             animator.Play("walk");
             var clip = animator.Clip;
             var pose = new AnthroTransform[clip.JointCount];
+            var context = new AnthroContext();
             Nothing("sampling", 2000, () => clip.Sample(0.2, AnthroWrap.Loop, pose));
+            Nothing("sampling in a context", 2000, () => clip.Sample(0.2, AnthroWrap.Loop, pose, false, context));
             Nothing("animator", 2000, () => animator.Advance(1f / 60));
             using (var other = AnthroModel.Default.Generate(new AnthroRequest { Seed = 2 }))
             {
@@ -56,7 +58,7 @@ namespace Anthronet.Tests
             Nothing("pose-driven shapes", 1000, poseDriven.Apply);
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];
             Nothing("reports", 1000, () => character.Body.Measures(reports));
-            using (var surface = new AnthroSurface(character.Body, 3))
+            using (var surface = new AnthroMesh(character.Body, 3))
             using (var skinner = new AnthroSkinner(surface))
             using (var crowd = new AnthroCrowdSkin(Enumerable.Repeat(skinner, 8).ToArray(), clip.JointCount))
             {
@@ -64,13 +66,14 @@ namespace Anthronet.Tests
                 {
                     for (var i = 0; i < 8; i++)
                     {
-                        crowd.Pose(i, clip, 0.1 * i, AnthroWrap.Travel);
+                        crowd.Pose(i, clip, 0.1 * i, AnthroWrap.RootMotion);
                     }
                     crowd.Run();
                 });
                 var jobs = crowd.Jobs;
-                Nothing("skinning as Burst calls it", 300, () => Skin(jobs));
+                Nothing("skinning as Burst calls it", 300, () => Skin(context, jobs));
             }
+            context.Dispose();
             using (var job = AnthroModel.Default.StartJob(new[] { new AnthroRequest() }))
             {
                 int done;

@@ -81,11 +81,11 @@ namespace Anthronet.Tests
         public static void Public()
         {
             Same(typeof(AnthroTransform), typeof(anthronet_transform), "rotation", "translation");
-            Same(typeof(AnthroJoint), typeof(anthronet_joint), "parent", "length", "local", "modelFromJoint",
+            Same(typeof(AnthroJoint), typeof(anthronet_joint), "parent", "length", "parentFromJoint", "modelFromJoint",
                 "jointFromModel");
             Same(typeof(AnthroMeasureReport), typeof(anthronet_measure_report), "asked", "obtained", "residual", "low90",
                 "high90", "percentile", "given", "filled");
-            Same(typeof(AnthroSkinJob), typeof(anthronet_skin_job), "size", "method", "skinner", "joints", "jointCount",
+            Same(typeof(AnthroSkinJob), typeof(anthronet_skin_job), "structSize", "method", "skinner", "joints", "jointCount",
                 "offsetCount", "offsets", "positions", "positionBytes", "positionStride", "normals", "normalBytes",
                 "normalStride");
         }

@@ -18,7 +18,7 @@ namespace Anthronet.Tests
         [Test(Description = "materials match the active render pipeline and are shared")]
         public static void Materials()
         {
-            var part = new AnthroPart { name = "Lashes", roughness = 0.8f, doubleSided = true, baseColor = new Color(0.5f, 0, 0, 1) };
+            var part = new AnthroMeshPart { name = "Lashes", roughness = 0.8f, doubleSided = true, baseColor = new Color(0.5f, 0, 0, 1) };
             string[] known = null, standard = null;
             try
             {

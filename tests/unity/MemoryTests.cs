@@ -43,7 +43,7 @@ namespace Anthronet.Tests
                     var lod = int.Parse(row.Groups[1].Value);
                     var documented = row.Groups[2].Value.Split('|')
                         .Select(cell => double.Parse(cell.Trim().Replace(",", ""), CultureInfo.InvariantCulture)).ToArray();
-                    using (var surface = new AnthroSurface(body, lod))
+                    using (var surface = new AnthroMesh(body, lod))
                     {
                         var mesh = AnthroMeshes.Create(surface, body.Joints(), "counted");
                         var found = Of(mesh);

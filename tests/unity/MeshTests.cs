@@ -66,7 +66,7 @@ namespace Anthronet.Tests
             foreach (var lod in new[] { 0, 1, 2, 3 })
             {
                 using (var body = AnthroModel.Default.Generate(Scene.Request()))
-                using (var surface = new AnthroSurface(body, lod))
+                using (var surface = new AnthroMesh(body, lod))
                 {
                     var mesh = AnthroMeshes.Create(surface, body.Joints(), "winding");
                     for (var part = 0; part < mesh.subMeshCount; part++)
@@ -94,7 +94,7 @@ namespace Anthronet.Tests
             var character = Scene.Character();
             var mesh = character.GetMesh(1);
             var names = new List<string>();
-            using (var surface = new AnthroSurface(character.Body, 1))
+            using (var surface = new AnthroMesh(character.Body, 1))
             {
                 for (var part = 0; part < surface.PartCount; part++)
                 {
@@ -163,7 +163,7 @@ namespace Anthronet.Tests
         public static void Parts()
         {
             using (var body = NativeTests.Body())
-            using (var surface = new AnthroSurface(body, 1))
+            using (var surface = new AnthroMesh(body, 1))
             {
                 var mesh = AnthroMeshes.Create(surface, body.Joints(), "test");
                 Expect.Equal(surface.PartCount, mesh.subMeshCount, "parts");
@@ -198,7 +198,7 @@ namespace Anthronet.Tests
             {
                 foreach (var lod in new[] { 0, 1, 2, 3 })
                 {
-                    using (var surface = new AnthroSurface(body, lod))
+                    using (var surface = new AnthroMesh(body, lod))
                     {
                         var mesh = AnthroMeshes.Create(surface, body.Joints(), "narrow");
                         var largest = Enumerable.Range(0, surface.PartCount).Max(i => surface.Part(i).vertexCount);

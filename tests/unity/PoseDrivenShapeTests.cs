@@ -22,7 +22,7 @@ namespace Anthronet.Tests
             var place = Scene.Joint(character, joint);
             var half = degrees * Math.PI / 360.0;
             var by = new Quaternion((float)Math.Sin(half), 0f, 0f, (float)Math.Cos(half));
-            character.Rig.Bones[place].localRotation = character.Rig.Joints[place].local.rotation * by;
+            character.Rig.Bones[place].localRotation = character.Rig.Joints[place].parentFromJoint.rotation * by;
         }
 
         [Test(Description = "pose-driven shapes: weights follow the elbow of their side, on all levels of detail, every frame")]

@@ -44,7 +44,7 @@ namespace Anthronet.Tests
                 try
                 {
                     using (var body = AnthroModel.Default.Generate(AnthroRequest.FromJson(requests[i])))
-                    using (var surface = new AnthroSurface(body, i % 4))
+                    using (var surface = new AnthroMesh(body, i % 4))
                     using (var walk = i % 10 == 3 ? AnthroClip.Builtin("walk", body) : null)
                     {
                         var clips = walk == null ? new AnthroClip[0] : new[] { walk };
@@ -112,7 +112,7 @@ namespace Anthronet.Tests
                     {
                         numbers[k] = m[k % 4, k / 4];
                     }
-                    var local = joints[joint].local;
+                    var local = joints[joint].parentFromJoint;
                     Array.Copy(new[] { local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w,
                         local.translation.x, local.translation.y, local.translation.z }, 0, numbers, 16, 7);
                     Add(sha, numbers);

@@ -18,7 +18,7 @@ namespace Anthronet.Tests
             {
                 var character = Scene.Character();
                 character.AddBlendShape("heavy", heavy);
-                using (var surface = new AnthroSurface(heavy, 1))
+                using (var surface = new AnthroMesh(heavy, 1))
                 {
                     var other = AnthroMeshes.Create(surface, heavy.Joints(), "heavy");
                     var mesh = character.GetMesh(1);

@@ -43,7 +43,7 @@ namespace Anthronet.Tests
             var character = Scene.Character(1, 1);
             var mesh = character.GetMesh(1);
             using (var clip = AnthroClip.Builtin("walk", character.Body))
-            using (var surface = new AnthroSurface(character.Body, 1))
+            using (var surface = new AnthroMesh(character.Body, 1))
             {
                 var skinners = Enumerable.Range(0, surface.PartCount).Select(part => new AnthroSkinner(surface, part)).ToArray();
                 using (var crowd = new AnthroCrowdSkin(skinners, clip.JointCount))
@@ -82,9 +82,10 @@ namespace Anthronet.Tests
         {
             using (var body = AnthroModel.Default.Generate(Scene.Request()))
             using (var clip = AnthroClip.Builtin("walk", body))
-            using (var surface = new AnthroSurface(body, 2))
+            using (var surface = new AnthroMesh(body, 2))
             using (var skinner = new AnthroSkinner(surface))
             using (var crowd = new AnthroCrowdSkin(new[] { skinner, skinner }, clip.JointCount))
+            using (var context = new AnthroContext())
             {
                 crowd.Pose(0, clip, 0.1, AnthroWrap.Loop);
                 crowd.Pose(1, clip, Seconds, AnthroWrap.Loop);
@@ -100,7 +101,7 @@ namespace Anthronet.Tests
                 {
                     jobs[i] = those[i];
                 }
-                new AnthroSkinBurst { jobs = jobs, status = status }.Schedule().Complete();
+                new AnthroSkinBurst { context = context.Pointer, jobs = jobs, status = status }.Schedule().Complete();
                 Expect.Equal(0, status[0], "status");
                 Expect.That(expected.SequenceEqual(Enumerable.Range(0, expected.Length).Select(i => crowd.Positions[i])), "positions");
                 Expect.That(turned.SequenceEqual(Enumerable.Range(0, turned.Length).Select(i => crowd.Normals[i])), "normals");
@@ -115,11 +116,11 @@ namespace Anthronet.Tests
                     job.positionBytes = (ulong)rows.Length * 12;
                     job.normalBytes = job.positionBytes - 12;
                     job.positionStride = job.normalStride = 24;
-                    Expect.Equal(0, AnthroSkin.Run(&job, 1), "interleaved");
+                    Expect.Equal(0, AnthroSkin.Run(context.Pointer, &job, 1), "interleaved");
                     job.joints = null;
-                    Expect.Equal((int)AnthroError.Pointer, AnthroSkin.Run(&job, 1), "no joints");
-                    job.size = 1;
-                    Expect.Equal((int)AnthroError.Size, AnthroSkin.Run(&job, 1), "no size");
+                    Expect.Equal((int)AnthroError.Pointer, AnthroSkin.Run(context.Pointer, &job, 1), "no joints");
+                    job.structSize = 1;
+                    Expect.Equal((int)AnthroError.Size, AnthroSkin.Run(IntPtr.Zero, &job, 1), "no size");
                 }
                 for (var v = 0; v < skinner.VertexCount; v++)
                 {
@@ -149,9 +150,10 @@ namespace Anthronet.Tests
             Expect.Equal(IntPtr.Zero, AnthroRenderEvent.Interfaces, "interfaces after it was unloaded");
             using (var body = AnthroModel.Default.Generate(Scene.Request()))
             using (var clip = AnthroClip.Builtin("walk", body))
-            using (var surface = new AnthroSurface(body, 3))
+            using (var surface = new AnthroMesh(body, 3))
             using (var skinner = new AnthroSkinner(surface))
             using (var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount))
+            using (var context = new AnthroContext())
             {
                 crowd.Pose(0, clip, Seconds, AnthroWrap.Loop);
                 crowd.Run();
@@ -160,7 +162,7 @@ namespace Anthronet.Tests
                 var call = (Event)Marshal.GetDelegateForFunctionPointer(AnthroRenderEvent.Callback, typeof(Event));
                 fixed (AnthroSkinJob* first = crowd.Jobs)
                 {
-                    var batch = new AnthroSkinBatch { jobs = first, count = 1, status = -1 };
+                    var batch = new AnthroSkinBatch { context = context.Pointer, jobs = first, count = 1, status = -1 };
                     var data = (IntPtr)(&batch);
                     call(AnthroRenderEvent.Skin + 1, data);
                     call(AnthroRenderEvent.Skin, IntPtr.Zero);
@@ -218,7 +220,7 @@ namespace Anthronet.Tests
 
         static void Forget(AnthroBody body)
         {
-            using (var surface = new AnthroSurface(body, 3))
+            using (var surface = new AnthroMesh(body, 3))
             using (var skinner = new AnthroSkinner(surface))
             {
                 for (var i = 0; i < 3; i++)

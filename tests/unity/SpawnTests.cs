@@ -204,7 +204,7 @@ namespace Anthronet.Tests
         {
             var body = AnthroModel.Default.Generate(new AnthroRequest());
             var clip = AnthroClip.Builtin("walk", body);
-            var surface = new AnthroSurface(body, 3);
+            var surface = new AnthroMesh(body, 3);
             var skinner = new AnthroSkinner(surface);
             var crowd = new AnthroCrowdSkin(new[] { skinner }, clip.JointCount);
             var spawn = AnthroFactory.CreateAsync(Enumerable.Repeat(new AnthroRequest(), 50).ToArray());

@@ -31,7 +31,7 @@ namespace Anthronet.Tests
 
             using (var body = AnthroModel.Default.Generate(new AnthroRequest()))
             using (var clip = AnthroClip.Builtin("walk", body))
-            using (var surface = new AnthroSurface(body, 1))
+            using (var surface = new AnthroMesh(body, 1))
             using (var skinner = new AnthroSkinner(surface))
             using (var crowd = new AnthroCrowdSkin(Enumerable.Repeat(skinner, 20).ToArray(), clip.JointCount))
             {
@@ -109,10 +109,10 @@ namespace Anthronet.Tests
         {
             var made = new AnthroRequest { Seed = 3 }.Set("height", 1.7);
             AnthroBody body = null;
-            AnthroSurface surface = null;
+            AnthroMesh surface = null;
             Console.WriteLine("   of which: request to body {0:0.0} ms, to native surface {1:0.0} ms, to mesh {2:0.0} ms",
                 Milliseconds(() => body = AnthroModel.Default.Generate(made)),
-                Milliseconds(() => surface = new AnthroSurface(body, 1)),
+                Milliseconds(() => surface = new AnthroMesh(body, 1)),
                 Milliseconds(() => UnityEngine.Object.Destroy(AnthroMeshes.Create(surface, body.Joints(), "x"))));
             surface.Dispose();
             body.Dispose();
@@ -121,7 +121,7 @@ namespace Anthronet.Tests
         static void Fill(ulong seed)
         {
             using (var body = AnthroModel.Default.Generate(new AnthroRequest { Seed = seed }.Set("height", 1.7)))
-            using (var surface = new AnthroSurface(body, 1))
+            using (var surface = new AnthroMesh(body, 1))
             {
                 UnityEngine.Object.Destroy(AnthroMeshes.Create(surface, body.Joints(), "filled"));
             }

@@ -21,6 +21,7 @@
 
 /* The event's data: `AnthroSkinBatch`. Everything must stay valid until the event has run. */
 typedef struct anthronet_unity_batch {
+    anthronet_context *context;
     const anthronet_skin_job *jobs;
     uint32_t count;
     /* Receives the result of anthronet_skin. */
@@ -48,7 +49,7 @@ UNITY_EXPORT void *anthronet_unity_interfaces(void) {
 static void UNITY_API on_render_thread(int event, void *data) {
     anthronet_unity_batch *batch = data;
     if (event == ANTHRONET_UNITY_SKIN && batch != NULL) {
-        batch->status = anthronet_skin(batch->jobs, batch->count, NULL);
+        batch->status = anthronet_skin(batch->context, batch->jobs, batch->count, NULL);
     }
 }
 

@@ -24,6 +24,7 @@ namespace Anthronet
         AnthroBody madeFor;
         bool own;
         AnthroTransform[] pose;
+        AnthroContext context;
 
         /// <summary>The playing clip; null if none.</summary>
         public AnthroClip Clip
@@ -87,6 +88,10 @@ namespace Anthronet
             {
                 pose = new AnthroTransform[clip.JointCount];
             }
+            if (clip != null && context == null)
+            {
+                context = new AnthroContext();
+            }
         }
 
         /// <summary>Remakes a built-in clip for the character's new body; playback continues at the same time.</summary>
@@ -116,7 +121,7 @@ namespace Anthronet
                 return;
             }
             time += (double)speed * seconds;
-            clip.Sample(time, wrap, pose);
+            clip.Sample(time, wrap, pose, false, context);
             Character.Rig.ApplyPose(pose);
         }
 
@@ -124,6 +129,11 @@ namespace Anthronet
         {
             Release();
             clip = null;
+            if (context != null)
+            {
+                context.Dispose();
+                context = null;
+            }
         }
 
         void Release()

@@ -229,7 +229,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Frees the native memory. Surfaces, clips and exports made from the body stay valid.</summary>
+        /// <summary>Frees the native memory. Meshes, clips and exports made from the body stay valid.</summary>
         public void Dispose()
         {
             handle.Dispose();

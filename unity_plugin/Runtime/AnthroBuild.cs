@@ -39,9 +39,9 @@ namespace Anthronet
             {
                 return false;
             }
-            using (var surface = new AnthroSurface(Body, lod, skinTone, BodyOnly))
+            using (var mesh = new AnthroMesh(Body, lod, skinTone, BodyOnly))
             {
-                levels[lod] = new AnthroPacked(surface, complete);
+                levels[lod] = new AnthroPacked(mesh, complete);
             }
             if (there != null)
             {

@@ -336,10 +336,10 @@ namespace Anthronet
             }
             foreach (var level in figure.Levels)
             {
-                using (var surface = new AnthroSurface(body, level.lod, skinTone, figure.BodyOnly))
+                using (var mesh = new AnthroMesh(body, level.lod, skinTone, figure.BodyOnly))
                 {
-                    surface.AddBlendShape(name, target);
-                    AnthroMeshes.AddBlendShapes(level.mesh, surface);
+                    mesh.AddBlendShape(name, target);
+                    AnthroMeshes.AddBlendShapes(level.mesh, mesh);
                 }
             }
         }

@@ -121,7 +121,7 @@ namespace Anthronet
             {
                 anthronet_clip* made;
                 anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_new((anthronet_body*)held.Pointer, data, length,
+                Library.Check(NativeMethods.anthronet_clip_from_poses((anthronet_body*)held.Pointer, data, length,
                     framesPerSecond, NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_transform*)first,
                     (ulong)frames.LongLength, &made, &error), &error);
                 return new AnthroClip(made);
@@ -141,20 +141,25 @@ namespace Anthronet
         /// <param name="results">Receives the transforms: relative to the parents, or to the character if
         /// `toModel`.</param>
         /// <param name="toModel">Transforms relative to the character, as `AnthroSkinner` needs them.</param>
-        public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] results, bool toModel = false)
+        /// <param name="context">Saves native allocations if clips are sampled often; null for none.</param>
+        public void Sample(double seconds, AnthroWrap wrap, AnthroTransform[] results, bool toModel = false,
+            AnthroContext context = null)
         {
             fixed (AnthroTransform* first = Library.NotNull(results, "results"))
             {
-                Sample(seconds, wrap, first, results.Length, toModel);
+                Sample(seconds, wrap, first, results.Length, toModel, context);
             }
         }
 
-        internal void Sample(double seconds, AnthroWrap wrap, AnthroTransform* results, int count, bool toModel)
+        internal void Sample(double seconds, AnthroWrap wrap, AnthroTransform* results, int count, bool toModel,
+            AnthroContext context)
         {
             using (var held = new Held(handle))
+            using (var work = AnthroContext.Hold(context))
             {
                 anthronet_error error;
-                Library.Check(NativeMethods.anthronet_clip_sample((anthronet_clip*)held.Pointer, seconds, (uint)wrap,
+                Library.Check(NativeMethods.anthronet_clip_sample((anthronet_clip*)held.Pointer,
+                    (anthronet_context*)work.Pointer, seconds, (uint)wrap,
                     toModel ? NativeMethods.ANTHRONET_RELATIVE_TO_MODEL : NativeMethods.ANTHRONET_RELATIVE_TO_PARENT,
                     NativeMethods.ANTHRONET_SPACE_UNITY, (anthronet_transform*)results, (uint)count, &error), &error);
             }

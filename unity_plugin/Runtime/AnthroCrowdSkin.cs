@@ -18,6 +18,7 @@ namespace Anthronet
         NativeArray<AnthroTransform> poses;
         NativeArray<Vector3> positions;
         NativeArray<Vector3> normals;
+        readonly AnthroContext context;
         readonly int[] offsets;
         readonly int jointCount;
 
@@ -27,7 +28,7 @@ namespace Anthronet
         /// <param name="jointCount">Joints per pose: `AnthroClip.JointCount`.</param>
         /// <param name="method">The skinning method.</param>
         public AnthroCrowdSkin(
-            AnthroSkinner[] skinners, int jointCount, AnthroSkinning method = AnthroSkinning.Linear)
+            AnthroSkinner[] skinners, int jointCount, AnthroSkinMethod method = AnthroSkinMethod.Linear)
         {
             this.skinners = (AnthroSkinner[])Library.NotNull(skinners, "skinners").Clone();
             this.jointCount = jointCount;
@@ -41,6 +42,7 @@ namespace Anthronet
             jobs = new AnthroSkinJob[skinners.Length];
             try
             {
+                context = new AnthroContext();
                 for (var i = 0; i < skinners.Length; i++)
                 {
                     held[i] = new Held(skinners[i].Handle);
@@ -58,7 +60,7 @@ namespace Anthronet
             AnthroAlive.Add(this);
         }
 
-        void FillJobs(AnthroSkinning method)
+        void FillJobs(AnthroSkinMethod method)
         {
             var firstPose = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses);
             var firstPosition = (Vector3*)NativeArrayUnsafeUtility.GetUnsafePtr(positions);
@@ -105,18 +107,19 @@ namespace Anthronet
                 throw new ArgumentOutOfRangeException("character");
             }
             var first = (AnthroTransform*)NativeArrayUnsafeUtility.GetUnsafePtr(poses) + character * jointCount;
-            Library.NotNull(clip, "clip").Sample(seconds, wrap, first, jointCount, true);
+            Library.NotNull(clip, "clip").Sample(seconds, wrap, first, jointCount, true, context);
         }
 
         /// <summary>Skins all surfaces. Allocates no managed memory.</summary>
         public void Run()
         {
             ThrowIfDisposed();
+            using (var work = AnthroContext.Hold(context))
             fixed (AnthroSkinJob* first = jobs)
             {
                 anthronet_error error;
-                Library.Check(
-                    NativeMethods.anthronet_skin((anthronet_skin_job*)first, (uint)jobs.Length, &error), &error);
+                Library.Check(NativeMethods.anthronet_skin((anthronet_context*)work.Pointer, (anthronet_skin_job*)first,
+                    (uint)jobs.Length, &error), &error);
             }
         }
 
@@ -157,6 +160,10 @@ namespace Anthronet
             for (var i = 0; held != null && i < held.Length; i++)
             {
                 held[i].Dispose();
+            }
+            if (context != null)
+            {
+                context.Dispose();
             }
             Free(ref poses);
             Free(ref positions);

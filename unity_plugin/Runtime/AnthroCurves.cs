@@ -59,7 +59,7 @@ namespace Anthronet
                 var path = rig.Path(joint);
                 Rotations(frames, joint, count, numbers);
                 Add(curves, path, rotation, numbers, clip);
-                var moves = Positions(frames, joint, count, rig.Joints[joint].local.translation, numbers);
+                var moves = Positions(frames, joint, count, rig.Joints[joint].parentFromJoint.translation, numbers);
                 if (moves || joint < Movers)
                 {
                     Add(curves, path, position, numbers, clip);

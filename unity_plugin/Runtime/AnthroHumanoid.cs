@@ -58,8 +58,8 @@ namespace Anthronet
             for (var i = 0; i < rig.Bones.Length; i++)
             {
                 skeleton[i + 1].name = rig.Bones[i].name;
-                skeleton[i + 1].position = rig.Joints[i].local.translation;
-                skeleton[i + 1].rotation = rig.Joints[i].local.rotation;
+                skeleton[i + 1].position = rig.Joints[i].parentFromJoint.translation;
+                skeleton[i + 1].rotation = rig.Joints[i].parentFromJoint.rotation;
                 skeleton[i + 1].scale = Vector3.one;
             }
             var human = new HumanBone[Bones.Count];

@@ -52,7 +52,7 @@ namespace Anthronet
 
         /// <summary>The default material of a mesh part; null, with an error in the console, if this build has no usable
         /// shader.</summary>
-        public static Material Get(AnthroPart part)
+        public static Material Get(AnthroMeshPart part)
         {
             var pipeline = Pipeline;
             var key = pipeline + " " + part.name + " " + part.baseColor + " " + part.roughness + " " + part.doubleSided;
@@ -67,7 +67,7 @@ namespace Anthronet
             return material;
         }
 
-        static Material Make(AnthroPart part, AnthroPipeline pipeline)
+        static Material Make(AnthroMeshPart part, AnthroPipeline pipeline)
         {
             var shader = Find(ShaderName(pipeline));
             if (shader == null)

@@ -7,7 +7,7 @@ using UnityEngine.Rendering;
 namespace Anthronet
 {
     /// <summary>
-    /// Converts surfaces to Unity meshes, one sub-mesh per part, by copying straight into mesh memory. Main thread only.
+    /// Converts native meshes to Unity meshes, one sub-mesh per part, by copying straight into mesh memory. Main thread only.
     /// </summary>
     public static unsafe class AnthroMeshes
     {
@@ -26,17 +26,17 @@ namespace Anthronet
         static readonly System.Collections.Generic.Dictionary<int, Vector3[][]> pool =
             new System.Collections.Generic.Dictionary<int, Vector3[][]>();
 
-        /// <summary>Makes a mesh of a surface, with bone weights and bind poses.</summary>
-        /// <param name="surface">The surface; may be disposed afterwards.</param>
+        /// <summary>Makes a Unity mesh with bone weights and bind poses.</summary>
+        /// <param name="source">The native mesh; may be disposed afterwards.</param>
         /// <param name="joints">The joints of its body, which have the bind poses.</param>
         /// <param name="name">Name of the mesh.</param>
-        public static Mesh Create(AnthroSurface surface, AnthroJoint[] joints, string name)
+        public static Mesh Create(AnthroMesh source, AnthroJoint[] joints, string name)
         {
             Native.Library.NotNull(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), true))
+            using (var packed = new AnthroPacked(Native.Library.NotNull(source, "source"), true))
             {
                 var mesh = Create(packed, joints, name);
-                AddBlendShapes(mesh, surface);
+                AddBlendShapes(mesh, source);
                 return mesh;
             }
         }
@@ -65,17 +65,17 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// Updates a mesh that `Create` made to another body's surface of the same level of detail. Triangles, texture
+        /// Updates a mesh that `Create` made to another body's shape at the same level of detail. Triangles, texture
         /// coordinates and bone weights are the same for every body and are kept; blend shapes are removed.
         /// </summary>
-        public static void Update(Mesh mesh, AnthroSurface surface, AnthroJoint[] joints)
+        public static void Update(Mesh mesh, AnthroMesh source, AnthroJoint[] joints)
         {
             Native.Library.NotNull(mesh, "mesh");
             Native.Library.NotNull(joints, "joints");
-            using (var packed = new AnthroPacked(Native.Library.NotNull(surface, "surface"), false))
+            using (var packed = new AnthroPacked(Native.Library.NotNull(source, "source"), false))
             {
                 Update(mesh, packed, joints);
-                AddBlendShapes(mesh, surface);
+                AddBlendShapes(mesh, source);
             }
         }
 
@@ -83,7 +83,7 @@ namespace Anthronet
         {
             if (mesh.vertexCount != packed.VertexCount)
             {
-                throw new ArgumentException("the mesh has " + mesh.vertexCount + " vertices, the surface "
+                throw new ArgumentException("the mesh has " + mesh.vertexCount + " vertices, the native one "
                     + packed.VertexCount + ": of another level of detail");
             }
             var count = AnthroPacked.FloatsPerVertex * packed.VertexCount;
@@ -108,19 +108,19 @@ namespace Anthronet
             mesh.ClearBlendShapes();
         }
 
-        /// <summary>Adds the blend shapes of a surface to its mesh, with full weight at 100.</summary>
-        public static void AddBlendShapes(Mesh mesh, AnthroSurface surface)
+        /// <summary>Adds the blend shapes of a native mesh to its Unity mesh, with full weight at 100.</summary>
+        public static void AddBlendShapes(Mesh mesh, AnthroMesh source)
         {
-            var shapes = surface.BlendShapeCount;
+            var shapes = source.BlendShapeCount;
             if (shapes == 0)
             {
                 return;
             }
             Vector3[][] pair;
-            if (!pool.TryGetValue(surface.VertexCount, out pair))
+            if (!pool.TryGetValue(source.VertexCount, out pair))
             {
-                pair = new[] { new Vector3[surface.VertexCount], new Vector3[surface.VertexCount] };
-                pool[surface.VertexCount] = pair;
+                pair = new[] { new Vector3[source.VertexCount], new Vector3[source.VertexCount] };
+                pool[source.VertexCount] = pair;
             }
             for (var shape = 0; shape < shapes; shape++)
             {
@@ -128,18 +128,18 @@ namespace Anthronet
                 fixed (Vector3* normals = pair[1])
                 {
                     var first = 0;
-                    for (var part = 0; part < surface.PartCount; part++)
+                    for (var part = 0; part < source.PartCount; part++)
                     {
-                        var count = surface.Part(part).vertexCount;
+                        var count = source.Part(part).vertexCount;
                         var bytes = (long)count * sizeof(Vector3);
-                        surface.ReadBlendShape(
+                        source.ReadBlendShape(
                             shape, part, AnthroAttribute.Positions, positions + first, bytes, sizeof(Vector3));
-                        surface.ReadBlendShape(
+                        source.ReadBlendShape(
                             shape, part, AnthroAttribute.Normals, normals + first, bytes, sizeof(Vector3));
                         first += count;
                     }
                 }
-                mesh.AddBlendShapeFrame(surface.BlendShapeName(shape), 100f, pair[0], pair[1], null);
+                mesh.AddBlendShapeFrame(source.BlendShapeName(shape), 100f, pair[0], pair[1], null);
             }
         }
 

@@ -5,7 +5,7 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// A surface in the memory layout of Unity's meshes, in native memory: any thread may pack it, and the main thread
+    /// A mesh in the memory layout of Unity's meshes, in native memory: any thread may pack it, and the main thread
     /// only copies. Vertex stream 0 has what differs between bodies.
     /// </summary>
     internal sealed unsafe class AnthroPacked : IDisposable
@@ -21,20 +21,20 @@ namespace Anthronet
 
         readonly MemoryHandle memory;
 
-        /// <summary>Packs a surface.</summary>
-        /// <param name="surface">The surface; may be disposed afterwards.</param>
+        /// <summary>Packs a mesh.</summary>
+        /// <param name="source">The mesh; may be disposed afterwards.</param>
         /// <param name="complete">False packs only stream 0 and bounds, which updating a mesh needs.</param>
-        public AnthroPacked(AnthroSurface surface, bool complete)
+        public AnthroPacked(AnthroMesh source, bool complete)
         {
-            const int Each = AnthroSurface.Influences;
-            Parts = new AnthroPart[surface.PartCount];
+            const int Each = AnthroMesh.Influences;
+            Parts = new AnthroMeshPart[source.PartCount];
             Bounds = new Bounds[Parts.Length];
-            VertexCount = surface.VertexCount;
-            IndexCount = 3 * surface.TriangleCount;
+            VertexCount = source.VertexCount;
+            IndexCount = 3 * source.TriangleCount;
             Complete = complete;
             for (var part = 0; part < Parts.Length; part++)
             {
-                Parts[part] = surface.Part(part);
+                Parts[part] = source.Part(part);
                 Use32BitIndices |= Parts[part].vertexCount > Max16BitVertices;
             }
             var bytes = (long)VertexCount * Stride;
@@ -53,11 +53,11 @@ namespace Anthronet
                     Weights = (BoneWeight1*)(memory.Pointer + weights);
                     BonesPerVertex = memory.Pointer + numbers;
                 }
-                PackVertices(surface);
+                PackVertices(source);
                 if (complete)
                 {
-                    PackUvsAndTriangles(surface);
-                    PackWeights(surface);
+                    PackUvsAndTriangles(source);
+                    PackWeights(source);
                 }
             }
             catch
@@ -67,7 +67,7 @@ namespace Anthronet
             }
         }
 
-        public readonly AnthroPart[] Parts;
+        public readonly AnthroMeshPart[] Parts;
         /// <summary>Bounds of each part.</summary>
         public readonly Bounds[] Bounds;
         /// <summary>Bounds of all parts.</summary>
@@ -89,15 +89,15 @@ namespace Anthronet
         /// <summary>Total number of bone weights.</summary>
         public int WeightCount { get; private set; }
 
-        void PackVertices(AnthroSurface surface)
+        void PackVertices(AnthroMesh source)
         {
             var first = Vertices;
             for (var part = 0; part < Parts.Length; part++)
             {
                 var count = Parts[part].vertexCount;
                 var bytes = (long)count * Stride;
-                surface.Read(part, AnthroAttribute.Positions, first, bytes, Stride);
-                surface.Read(part, AnthroAttribute.Normals, first + 3, bytes - Stride / 2, Stride);
+                source.Read(part, AnthroAttribute.Positions, first, bytes, Stride);
+                source.Read(part, AnthroAttribute.Normals, first + 3, bytes - Stride / 2, Stride);
                 Bounds[part] = Box(first, count);
                 if (part == 0)
                 {
@@ -108,22 +108,22 @@ namespace Anthronet
             }
         }
 
-        void PackUvsAndTriangles(AnthroSurface surface)
+        void PackUvsAndTriangles(AnthroMesh source)
         {
             byte* uvs = Uvs, indices = Indices;
             for (var part = 0; part < Parts.Length; part++)
             {
                 var bytes = (long)Parts[part].vertexCount * UvStride;
-                surface.Read(part, AnthroAttribute.Uvs, uvs, bytes, 0);
+                source.Read(part, AnthroAttribute.Uvs, uvs, bytes, 0);
                 uvs += bytes;
                 var count = 3L * Parts[part].triangleCount;
                 if (Use32BitIndices)
                 {
-                    surface.Read(part, AnthroAttribute.Triangles, indices, count * sizeof(uint), 0);
+                    source.Read(part, AnthroAttribute.Triangles, indices, count * sizeof(uint), 0);
                     indices += count * sizeof(uint);
                     continue;
                 }
-                var from = (uint*)surface.View(part, AnthroAttribute.Triangles);
+                var from = (uint*)source.View(part, AnthroAttribute.Triangles);
                 var to = (ushort*)indices;
                 for (var last = from + count; from < last;)
                 {
@@ -133,16 +133,16 @@ namespace Anthronet
             }
         }
 
-        void PackWeights(AnthroSurface surface)
+        void PackWeights(AnthroMesh source)
         {
-            const int Each = AnthroSurface.Influences;
+            const int Each = AnthroMesh.Influences;
             var row = Weights;
             var number = BonesPerVertex;
             var influence = new BoneWeight1();
             for (var part = 0; part < Parts.Length; part++)
             {
-                var joints = (ushort*)surface.View(part, AnthroAttribute.Joints);
-                var weights = (float*)surface.View(part, AnthroAttribute.Weights);
+                var joints = (ushort*)source.View(part, AnthroAttribute.Joints);
+                var weights = (float*)source.View(part, AnthroAttribute.Weights);
                 for (var end = joints + Each * Parts[part].vertexCount; joints < end; joints += Each, weights += Each)
                 {
                     // Sorted by weight: the first zero ends the list, and the first weight is never zero.

@@ -145,7 +145,7 @@ namespace Anthronet
                 shape = shape,
                 blendShape = "pose-driven " + index + ": " + shape.measure,
                 bone = rig.Bones[joint],
-                bindRotation = rig.Joints[joint].local.rotation,
+                bindRotation = rig.Joints[joint].parentFromJoint.rotation,
             };
         }
 

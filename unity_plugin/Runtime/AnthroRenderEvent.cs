@@ -8,6 +8,9 @@ namespace Anthronet
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct AnthroSkinBatch
     {
+        /// <summary>`AnthroContext.Pointer` of a context that nothing else uses until the event is done, or
+        /// zero.</summary>
+        public IntPtr context;
         /// <summary>The first job.</summary>
         public AnthroSkinJob* jobs;
         /// <summary>Number of jobs.</summary>

@@ -88,8 +88,8 @@ namespace Anthronet
         {
             for (var i = 0; i < bones.Length; i++)
             {
-                bones[i].localPosition = joints[i].local.translation;
-                bones[i].localRotation = joints[i].local.rotation;
+                bones[i].localPosition = joints[i].parentFromJoint.translation;
+                bones[i].localRotation = joints[i].parentFromJoint.rotation;
             }
         }
 

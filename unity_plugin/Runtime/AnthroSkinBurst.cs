@@ -1,4 +1,5 @@
 #if ANTHRONET_BURST
+using System;
 using Unity.Burst;
 using Unity.Collections;
 using Unity.Collections.LowLevel.Unsafe;
@@ -13,6 +14,8 @@ namespace Anthronet
     [BurstCompile]
     public unsafe struct AnthroSkinBurst : IJob
     {
+        /// <summary>`AnthroContext.Pointer`, or zero. Jobs that may run at the same time must not share one.</summary>
+        [NativeDisableUnsafePtrRestriction] public IntPtr context;
         /// <summary>The surfaces to skin.</summary>
         [ReadOnly] public NativeArray<AnthroSkinJob> jobs;
         /// <summary>One element, which receives the result of `AnthroSkin.Run`.</summary>
@@ -22,7 +25,7 @@ namespace Anthronet
         public void Execute()
         {
             status[0] = AnthroSkin.Run(
-                (AnthroSkinJob*)NativeArrayUnsafeUtility.GetUnsafeReadOnlyPtr(jobs), jobs.Length);
+                context, (AnthroSkinJob*)NativeArrayUnsafeUtility.GetUnsafeReadOnlyPtr(jobs), jobs.Length);
         }
     }
 }

@@ -13,9 +13,9 @@ namespace Anthronet
     public unsafe struct AnthroSkinJob
     {
         /// <summary>Size of this structure in bytes.</summary>
-        public uint size;
+        public uint structSize;
         /// <summary>The skinning method.</summary>
-        public AnthroSkinning method;
+        public AnthroSkinMethod method;
         /// <summary>`AnthroSkinner.Pointer`.</summary>
         public IntPtr skinner;
         /// <summary>The pose, every joint relative to the character: `AnthroClip.Sample` with `toModel`.</summary>
@@ -40,11 +40,11 @@ namespace Anthronet
         public ulong normalStride;
 
         /// <summary>A job that writes tightly packed arrays.</summary>
-        public AnthroSkinJob(IntPtr skinner, AnthroSkinning method, AnthroTransform* joints, int jointCount,
+        public AnthroSkinJob(IntPtr skinner, AnthroSkinMethod method, AnthroTransform* joints, int jointCount,
             Vector3* positions, Vector3* normals, int vertexCount)
         {
             this = default(AnthroSkinJob);
-            size = (uint)sizeof(AnthroSkinJob);
+            structSize = (uint)sizeof(AnthroSkinJob);
             this.skinner = skinner;
             this.method = method;
             this.joints = joints;
@@ -61,12 +61,14 @@ namespace Anthronet
     {
         /// <summary>Skins the surfaces of jobs on all cores; callable from any thread. Allocates no managed memory, never
         /// throws.</summary>
+        /// <param name="context">`AnthroContext.Pointer`, or zero. Only one call at a time may use a context.</param>
         /// <param name="jobs">The first job. Buffers of different jobs must not overlap.</param>
         /// <param name="count">Number of jobs.</param>
         /// <returns>0 on success; otherwise an `AnthroError`, and nothing is written.</returns>
-        public static int Run(AnthroSkinJob* jobs, int count)
+        public static int Run(IntPtr context, AnthroSkinJob* jobs, int count)
         {
-            return NativeMethods.anthronet_skin((anthronet_skin_job*)jobs, (uint)count, null);
+            return NativeMethods.anthronet_skin(
+                (anthronet_context*)context, (anthronet_skin_job*)jobs, (uint)count, null);
         }
     }
 }

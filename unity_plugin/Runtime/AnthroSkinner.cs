@@ -3,16 +3,16 @@ using Anthronet.Native;
 
 namespace Anthronet
 {
-    /// <summary>A part of a surface prepared for skinning on the CPU. Immutable; any number of threads may use
+    /// <summary>A part of a mesh prepared for skinning on the CPU. Immutable; any number of threads may use
     /// it.</summary>
     public sealed unsafe class AnthroSkinner : IDisposable
     {
         readonly SkinnerHandle handle;
 
-        /// <summary>Prepares a part of a surface, which may be disposed afterwards.</summary>
-        public AnthroSkinner(AnthroSurface surface, int part = 0)
+        /// <summary>Prepares a part of a mesh, which may be disposed afterwards.</summary>
+        public AnthroSkinner(AnthroMesh mesh, int part = 0)
         {
-            using (var held = new Held(Library.NotNull(surface, "surface").Handle))
+            using (var held = new Held(Library.NotNull(mesh, "mesh").Handle))
             {
                 anthronet_skinner* made;
                 anthronet_error error;

@@ -29,10 +29,10 @@ namespace Anthronet
     {
         /// <summary>Plays once: holds the first or last frame.</summary>
         Once = 0,
-        /// <summary>Loops; root motion starts over with every cycle.</summary>
+        /// <summary>Loops; every cycle starts where the first one did.</summary>
         Loop = 1,
         /// <summary>Loops; root motion accumulates from cycle to cycle.</summary>
-        Travel = 2,
+        RootMotion = 2,
     }
 
     /// <summary>Finger motion of a retargeted clip.</summary>
@@ -47,7 +47,7 @@ namespace Anthronet
     }
 
     /// <summary>Methods of skinning on the CPU.</summary>
-    public enum AnthroSkinning
+    public enum AnthroSkinMethod
     {
         /// <summary>Linear blend skinning, Unity's method.</summary>
         Linear = 0,
@@ -78,7 +78,7 @@ namespace Anthronet
         /// <summary>Length of the bone, from the joint along its +Y axis, metres.</summary>
         public float length;
         /// <summary>Transform relative to the parent.</summary>
-        public AnthroTransform local;
+        public AnthroTransform parentFromJoint;
         /// <summary>Matrix from the joint's space to the character's.</summary>
         public Matrix4x4 modelFromJoint;
         /// <summary>Unity's bind pose: matrix from the character's space to the joint's.</summary>

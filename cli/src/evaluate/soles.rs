@@ -7,7 +7,7 @@ use anthronet::mesh::Lod;
 use anthronet::retarget::feet::{Contact, Contacts, FootPoint};
 use anthronet::scene::{Scene, SceneOptions};
 use anthronet::skeleton::{Influences, Pose, SidedJoint, Skeleton};
-use anthronet::skin::{SkinMethod, Skinner, SurfaceMut};
+use anthronet::skin::{SkinContext, SkinMethod, Skinner, SurfaceMut};
 use anthronet::{Body, Side};
 use glam::Vec3;
 
@@ -83,12 +83,13 @@ impl Soles {
         let [mut now, mut before, mut normals] = [(); 3].map(|()| vec![[0.0; 3]; count]);
         let mut steps = contacts.feet.each_ref().map(|of_foot| vec![Vec::new(); of_foot.len()]);
         let mut out = SkinMeasure::default();
-        let mut pose = Pose::default();
+        let (mut pose, mut context) = (Pose::default(), SkinContext::default());
         for frame in 0..clip.frame_count() {
             std::mem::swap(&mut now, &mut before);
             clip.pose_into(frame, &mut pose);
             let model = pose.model_from_joints(clip.skeleton().parents());
-            self.skinner.skin(SkinMethod::Linear, &model, SurfaceMut::packed(&mut now, &mut normals))?;
+            let surface = SurfaceMut::packed(&mut now, &mut normals);
+            self.skinner.skin(SkinMethod::Linear, &model, surface, &mut context)?;
             out.not_finite += now.iter().filter(|p| !p.iter().all(|x| x.is_finite())).count();
             let lowest = now.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);
             out.deepest = out.deepest.max(contacts.floor - lowest);

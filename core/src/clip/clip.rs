@@ -94,7 +94,7 @@ impl Clip {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn of_poses(
+    pub fn from_poses(
         name: String,
         rest: Arc<Skeleton>,
         frames_per_second: f64,
@@ -212,10 +212,10 @@ mod tests {
             [hips, RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::NEG_Y }]
         };
         let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();
-        let clip = Clip::of_poses("step".into(), rest(), 30.0, &poses).unwrap();
+        let clip = Clip::from_poses("step".into(), rest(), 30.0, &poses).unwrap();
         assert_eq!(clip.translations().iter().map(|t| t.joint).collect::<Vec<_>>(), [0]);
         assert_eq!([clip.pose(0).locals, clip.pose(1).locals].concat(), poses);
-        assert!(Clip::of_poses("step".into(), rest(), 30.0, &poses[..3]).is_err());
+        assert!(Clip::from_poses("step".into(), rest(), 30.0, &poses[..3]).is_err());
     }
 
     #[test]

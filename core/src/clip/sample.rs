@@ -13,9 +13,9 @@ pub enum Wrap {
     /// Starts anew. The last frame is the first frame of the next round, as in clips from [`looped`](super::looped),
     /// so the period is the clip's duration.
     Loop,
-    /// Starts anew where it ended: as [`Wrap::Loop`], and each round the joints with translations that have no such
-    /// parent go on by what they moved in one round along the floor. For clips that walk straight ahead.
-    Travel,
+    /// As [`Wrap::Loop`] with root motion: each round the joints with translations that have no such parent go on by what
+    /// they moved in one round along the floor. For clips that walk straight ahead.
+    RootMotion,
 }
 
 /// Reads poses of a clip between its frames. Cheap to make and to copy; sampling allocates nothing once the pose has
@@ -74,7 +74,7 @@ impl<'a> Sampler<'a> {
         if self.wrap != Wrap::Once && duration > 0.0 {
             let round = libm::floor(seconds / duration);
             at = seconds - round * duration;
-            rounds = if self.wrap == Wrap::Travel { round as f32 } else { 0.0 };
+            rounds = if self.wrap == Wrap::RootMotion { round as f32 } else { 0.0 };
         }
         let place = (at * self.clip.frames_per_second()).clamp(0.0, last as f64);
         // Frames whose time is not exact in binary are still hit.
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(at(Wrap::Once, f64::NAN), Vec3::ZERO);
         assert!(at(Wrap::Loop, 0.45).distance(Vec3::new(0.0, 0.25, 0.25)) < 1e-5);
         assert!(at(Wrap::Loop, -0.15).distance(Vec3::new(0.0, 0.25, 0.25)) < 1e-5);
-        assert!(at(Wrap::Travel, 0.45).distance(Vec3::new(0.0, 0.25, 2.25)) < 1e-5);
+        assert!(at(Wrap::RootMotion, 0.45).distance(Vec3::new(0.0, 0.25, 2.25)) < 1e-5);
     }
 
     #[test]

@@ -7,8 +7,7 @@ mod solve;
 
 pub use joint_map::{JointMap, JointMapReport, JointMatch, MatchedBy, Overrides, read_overrides};
 pub use pipeline::{
-    ClipReport, RetargetOptions, RetargetReport, RetargetSwitches, retarget, retarget_clip,
-    worst_limit_excess,
+    ClipReport, RetargetOptions, RetargetReport, retarget, retarget_clip, worst_limit_excess,
 };
 pub use solve::{
     BoneError, DirectionError, FingerMode, Floor, FootMode, Jump, Retargeter, RootMotion, TransferOptions,

@@ -152,7 +152,7 @@ impl MeshBuffers {
 
     /// Converts from the library's own space.
     fn convert_to(&mut self, space: Space) {
-        if space == Space::YUp {
+        if space == Space::Gltf {
             return;
         }
         let offsets =
@@ -183,11 +183,11 @@ mod tests {
     #[test]
     fn every_space_and_layout_is_the_same_surface() {
         let first = |layout, space| arm(4).into_buffers(layout, space).unwrap().swap_remove(0);
-        let ours = first(Layout::Model, Space::YUp);
+        let ours = first(Layout::Model, Space::Gltf);
         let volume = signed_volume(&ours);
         assert!(volume.abs() > 0.0);
         for layout in [Layout::Render, Layout::Model] {
-            for space in [Space::YUp, Space::ZUp, Space::Unity] {
+            for space in [Space::Gltf, Space::Blender, Space::Unity] {
                 let there = first(layout, space);
                 // The reflection changes the sign of the volume, reversed faces change it back.
                 assert!((signed_volume(&there) - volume).abs() < 1e-4 * volume.abs(), "{layout:?} {space:?}");
@@ -206,10 +206,10 @@ mod tests {
 
     #[test]
     fn a_blend_shape_is_the_difference_to_the_other_body() {
-        let one = arm(4).into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let one = arm(4).into_buffers(Layout::Render, Space::Blender).unwrap().swap_remove(0);
         let mut scene = arm(4);
         scene.meshes[0].positions[1][0] += 0.5;
-        let other = scene.into_buffers(Layout::Render, Space::ZUp).unwrap().swap_remove(0);
+        let other = scene.into_buffers(Layout::Render, Space::Blender).unwrap().swap_remove(0);
         let shape = one.blend_shape("wide", &other).unwrap();
         for (vertex, source) in one.sources.iter().enumerate() {
             let expected = if *source == 1 { [0.5, 0.0, 0.0] } else { [0.0; 3] };
@@ -223,13 +223,13 @@ mod tests {
     #[test]
     fn morph_targets_follow_layout_and_space() {
         for layout in [Layout::Render, Layout::Model] {
-            let meshes = bulging(arm(4)).into_buffers(layout, Space::ZUp).unwrap();
+            let meshes = bulging(arm(4)).into_buffers(layout, Space::Blender).unwrap();
             let (cushion, scene) = (&meshes[2], bulging(arm(4)));
             assert_eq!(cushion.sources.len(), if layout == Layout::Render { 8 } else { 6 });
             for (there, ours) in cushion.morph_targets.iter().zip(&scene.meshes[2].morph_targets) {
                 assert_eq!(there.name, ours.name);
                 for (offset, source) in there.positions.iter().zip(&cushion.sources) {
-                    let back = Space::ZUp.to_ours(Vec3::from_array(*offset));
+                    let back = Space::Blender.to_ours(Vec3::from_array(*offset));
                     assert_eq!(back.to_array(), ours.positions[*source as usize]);
                 }
             }
@@ -240,7 +240,7 @@ mod tests {
     fn a_mesh_without_its_material_is_refused() {
         let mut scene = arm(4);
         scene.materials.clear();
-        let message = scene.into_buffers(Layout::Render, Space::YUp).unwrap_err().to_string();
+        let message = scene.into_buffers(Layout::Render, Space::Gltf).unwrap_err().to_string();
         assert!(message.contains("material 0"), "{message}");
     }
 }

@@ -44,7 +44,7 @@ mod tests {
             translation: Vec3::new(1.0, 2.0, 3.0),
         };
         let (root, child) = (step(0.3), step(-1.1));
-        for space in [Space::YUp, Space::ZUp, Space::Unity] {
+        for space in [Space::Gltf, Space::Blender, Space::Unity] {
             let there = [root.parent_from_joint_in(space, None), child.parent_from_joint_in(space, Some(0))];
             let end = there[0].then(there[1]);
             let expected = root.then(child).model_from_joint_in(space);

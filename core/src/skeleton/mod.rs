@@ -5,6 +5,7 @@
 //! [`Pose`] gives every joint a transform to its parent. Rotations are quaternions x, y, z, w, `parent_from_joint`; metres; joints stand
 //! after their parents.
 
+mod bind_joint;
 mod bones;
 pub mod humanoid;
 mod kinematics;
@@ -15,6 +16,7 @@ mod skin_weights;
 mod tree;
 pub(crate) mod written;
 
+pub use bind_joint::BindJoint;
 pub use bones::BonePositions;
 pub use kinematics::{Pose, model_from_joints};
 pub use rig_joint::{Finger, RigJoint, SidedJoint};

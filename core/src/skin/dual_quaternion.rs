@@ -7,7 +7,7 @@
 use glam::Vec4;
 
 use super::block::{Block, Lanes, add, cross, dot, scaled, transposed};
-use super::skinner::Motion;
+use super::rigid::Motion;
 
 /// Real and dual part, x, y, z, w each.
 pub(super) type DualQuaternion = [Vec4; 2];

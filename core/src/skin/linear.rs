@@ -3,7 +3,7 @@
 use glam::{DMat3, Vec4};
 
 use super::block::{Block, Lanes, dot, scaled, transposed};
-use super::skinner::Motion;
+use super::rigid::Motion;
 
 /// The first three rows of a matrix.
 pub(super) type Rows = [Vec4; 3];

@@ -2,7 +2,7 @@
 //!
 //! A [`Skinner`] holds a surface in its bind pose, ready to be posed; it is immutable and may be shared between
 //! threads. [`Skinner::skin`] poses one character, [`skin_many`] any number of them, on all threads of the pool, into
-//! buffers of the caller's: [`SurfaceMut`]. Every vertex is computed on its own with the same operations in the same
+//! buffers of the caller's: [`SurfaceMut`]. Both work in memory of the caller's, a [`SkinContext`]. Every vertex is computed on its own with the same operations in the same
 //! order, so the bits do not depend on the number of threads nor on the processor.
 //!
 //! Metres; right-handed; column vectors. With `D_j = posed model_from_joint · bind joint_from_model`, vertex x, its
@@ -16,9 +16,12 @@
 
 mod block;
 mod buffers;
+mod context;
 mod dual_quaternion;
 mod joint_translation;
 mod linear;
+mod palette;
+mod rigid;
 mod skinner;
 #[cfg(feature = "test-hooks")]
 #[doc(hidden)]
@@ -27,4 +30,5 @@ pub mod test_hooks;
 mod tests;
 
 pub use buffers::{BytesMut, StridedMut, SurfaceMut};
+pub use context::SkinContext;
 pub use skinner::{SkinJob, SkinMethod, Skinner, skin_many};

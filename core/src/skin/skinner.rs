@@ -2,14 +2,14 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{DQuat, DVec3, Vec3, Vec4};
+use glam::Vec3;
 use rayon::prelude::*;
 
+use super::SkinContext;
 use super::block::{Blocks, CHUNK_VERTICES, Chunk};
 use super::buffers::{SurfaceMut, Target};
-use super::dual_quaternion::{self, DualQuaternion};
-use super::joint_translation;
-use super::linear::{self, Rows};
+use super::palette::Palette;
+use super::rigid::{Motion, motions};
 use crate::math::RigidTransform;
 use crate::skeleton::Influences;
 use crate::{Error, Result};
@@ -85,9 +85,11 @@ impl Skinner {
         expect("skin weights", slots, influences.weights.len())?;
         finite("positions", positions)?;
         finite("normals", normals)?;
+        let mut bind = Vec::new();
+        motions("bind pose", model_from_joints, &mut bind)?;
         Ok(Self {
             vertex_count: count,
-            joint_from_model: motions("bind pose", model_from_joints)?.iter().map(Motion::inverse).collect(),
+            joint_from_model: bind.iter().map(Motion::inverse).collect(),
             blocks: Blocks::new(positions, normals, influences, model_from_joints.len())?,
         })
     }
@@ -111,31 +113,14 @@ impl Skinner {
         method: SkinMethod,
         model_from_joints: &[RigidTransform],
         out: SurfaceMut<'_>,
+        context: &mut SkinContext,
     ) -> Result<()> {
         let job = SkinJob { skinner: self, method, model_from_joints, offsets: None, out };
-        run(vec![Prepared::new(job)?]);
-        Ok(())
-    }
-
-    /// How each joint moves what follows it: posed `model_from_joint` · bind `joint_from_model`.
-    fn palette(&self, method: SkinMethod, model_from_joints: &[RigidTransform]) -> Result<Palette> {
-        let (expected, got) = (self.joint_count(), model_from_joints.len());
-        if expected != got {
-            return Err(Error::invalid("pose", format!("expected {expected} joints, got {got}")));
-        }
-        let posed = motions("pose", model_from_joints)?;
-        let joints = posed.iter().zip(&self.joint_from_model);
-        Ok(match method {
-            SkinMethod::Linear => Palette::Linear(joints.map(|(p, b)| linear::rows(&p.after(b))).collect()),
-            SkinMethod::DualQuaternion => Palette::DualQuaternion(
-                joints.map(|(p, b)| dual_quaternion::dual_quaternion(&p.after(b))).collect(),
-            ),
-            SkinMethod::JointTranslation => Palette::JointTranslation(
-                joints
-                    .map(|(p, b)| (p.translation - b.inverse().translation).extend(0.0).as_vec4())
-                    .collect(),
-            ),
-        })
+        let mut palette = context.palettes.pop().unwrap_or_default();
+        let prepared = Prepared::new(job, &mut palette, &mut context.posed);
+        let skinned = prepared.map(|prepared| run(vec![prepared]));
+        context.palettes.push(palette);
+        skinned
     }
 }
 
@@ -145,9 +130,13 @@ impl Skinner {
 /// [`Error::Invalid`] when the joints or offsets of a job are not as many as its skinner's, a number is not finite, a
 /// rotation is not of unit length, or a buffer is too small for its offset and stride; the message counts the
 /// characters from 0.
-pub fn skin_many(jobs: Vec<SkinJob<'_>>) -> Result<()> {
-    let prepared = jobs.into_iter().enumerate().map(|(i, job)| {
-        Prepared::new(job).map_err(|error| match error {
+pub fn skin_many(jobs: Vec<SkinJob<'_>>, context: &mut SkinContext) -> Result<()> {
+    let SkinContext { posed, palettes } = context;
+    if palettes.len() < jobs.len() {
+        palettes.resize_with(jobs.len(), Palette::default);
+    }
+    let prepared = jobs.into_iter().zip(palettes).enumerate().map(|(i, (job, palette))| {
+        Prepared::new(job, palette, posed).map_err(|error| match error {
             Error::Invalid { what, message } => Error::invalid(what, format!("character {i}: {message}")),
             other => other,
         })
@@ -159,22 +148,20 @@ pub fn skin_many(jobs: Vec<SkinJob<'_>>) -> Result<()> {
 /// A job that was found in order.
 struct Prepared<'a> {
     skinner: &'a Skinner,
-    palette: Palette,
+    palette: &'a Palette,
     offsets: Option<&'a [Vec3]>,
     targets: Vec<Target<'a>>,
 }
 
-/// What the kernels look joints up in.
-enum Palette {
-    Linear(Vec<Rows>),
-    DualQuaternion(Vec<DualQuaternion>),
-    JointTranslation(Vec<Vec4>),
-}
-
 impl<'a> Prepared<'a> {
-    fn new(job: SkinJob<'a>) -> Result<Self> {
+    fn new(job: SkinJob<'a>, palette: &'a mut Palette, posed: &mut Vec<Motion>) -> Result<Self> {
         let SkinJob { skinner, method, model_from_joints, offsets, out } = job;
-        let palette = skinner.palette(method, model_from_joints)?;
+        let (expected, got) = (skinner.joint_count(), model_from_joints.len());
+        if expected != got {
+            return Err(Error::invalid("pose", format!("expected {expected} joints, got {got}")));
+        }
+        motions("pose", model_from_joints, posed)?;
+        palette.fill(method, posed, &skinner.joint_from_model);
         if let Some(offsets) = offsets {
             if offsets.len() != skinner.vertex_count {
                 let message = format!("expected {} vertices, got {}", skinner.vertex_count, offsets.len());
@@ -192,7 +179,7 @@ fn run(mut characters: Vec<Prepared<'_>>) {
         let Prepared { skinner, palette, offsets, targets } = character;
         let mut offsets = offsets.map(|all| all.chunks(CHUNK_VERTICES));
         for (chunk, target) in skinner.blocks.chunks().zip(targets) {
-            work.push((&*palette, chunk, offsets.as_mut().and_then(Iterator::next), target));
+            work.push((*palette, chunk, offsets.as_mut().and_then(Iterator::next), target));
         }
     }
     let skin =
@@ -218,57 +205,6 @@ fn pool_has_threads() -> bool {
         Ok(_) => true,
         Err(owner) => owner == here,
     }
-}
-
-impl Palette {
-    fn skin(&self, chunk: Chunk<'_>, offsets: Option<&[Vec3]>, target: &mut Target<'_>) {
-        match self {
-            Self::Linear(palette) => chunk.run(offsets, target, |block| linear::deform(palette, block)),
-            Self::DualQuaternion(palette) => {
-                chunk.run(offsets, target, |block| dual_quaternion::deform(palette, block));
-            }
-            Self::JointTranslation(palette) => {
-                chunk.run(offsets, target, |block| joint_translation::deform(palette, block));
-            }
-        }
-    }
-}
-
-/// A rigid motion in double precision, so that the two poses of a joint cancel where it rests.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
-    pub(super) rotation: DQuat,
-    pub(super) translation: DVec3,
-}
-
-impl Motion {
-    fn after(&self, inner: &Self) -> Self {
-        Self {
-            rotation: self.rotation * inner.rotation,
-            translation: self.translation + self.rotation * inner.translation,
-        }
-    }
-
-    fn inverse(&self) -> Self {
-        let rotation = self.rotation.conjugate();
-        Self { rotation, translation: rotation * -self.translation }
-    }
-}
-
-/// Checked and normalised.
-fn motions(what: &'static str, locals: &[RigidTransform]) -> Result<Vec<Motion>> {
-    let motion = |(j, local): (usize, &RigidTransform)| {
-        let (rotation, translation) = (DQuat::from(local.rotation), local.translation.as_dvec3());
-        // False for what is not a number, too.
-        let unit = (rotation.length() - 1.0).abs() <= 1e-3;
-        if unit && translation.is_finite() {
-            return Ok(Motion { rotation: rotation.normalize(), translation });
-        }
-        let message =
-            format!("joint {j}: expected a unit quaternion and finite metres, got {rotation} {translation}");
-        Err(Error::invalid(what, message))
-    };
-    locals.iter().enumerate().map(motion).collect()
 }
 
 fn finite(what: &'static str, vectors: &[Vec3]) -> Result<()> {

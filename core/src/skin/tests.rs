@@ -57,7 +57,9 @@ impl Case {
 
     fn skin(&self, method: SkinMethod, pose: &[RigidTransform]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
         let mut out = (vec![[f32::NAN; 3]; self.positions.len()], vec![[f32::NAN; 3]; self.positions.len()]);
-        self.skinner().skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1)).unwrap();
+        self.skinner()
+            .skin(method, pose, SurfaceMut::packed(&mut out.0, &mut out.1), &mut SkinContext::default())
+            .unwrap();
         out
     }
 
@@ -222,7 +224,7 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
             position_offset,
             normal_offset,
         };
-        skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
+        skinner.skin(SkinMethod::Linear, &case.posed, out, &mut SkinContext::default()).unwrap();
         for v in 0..2050 {
             assert_eq!(read(&bytes, v * stride + position_offset), positions[v]);
             assert_eq!(read(&bytes, v * stride + normal_offset), normals[v]);
@@ -240,7 +242,7 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
         positions: StridedMut { bytes: wide.as_mut_slice().into(), offset: 5, stride: 16 },
         normals: Some(packed.as_mut_slice().into()),
     };
-    skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
+    skinner.skin(SkinMethod::Linear, &case.posed, out, &mut SkinContext::default()).unwrap();
     assert_eq!(packed, normals);
     for (v, position) in positions.iter().enumerate() {
         assert_eq!(read(&wide, 5 + 16 * v), *position);
@@ -248,7 +250,7 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
         assert!(wide[between].iter().all(|b| *b == 0xA5));
     }
     let out = SurfaceMut::Separate { positions: packed.as_mut_slice().into(), normals: None };
-    skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap();
+    skinner.skin(SkinMethod::Linear, &case.posed, out, &mut SkinContext::default()).unwrap();
     assert_eq!(packed, positions);
 }
 
@@ -260,13 +262,16 @@ fn offsets_come_before_the_pose() {
     for method in [SkinMethod::Linear, SkinMethod::DualQuaternion, SkinMethod::JointTranslation] {
         let skinner = case.skinner();
         let mut got = vec![[0.0; 3]; 1030];
-        skin_many(vec![SkinJob {
-            skinner: &skinner,
-            method,
-            model_from_joints: &case.posed,
-            offsets: Some(&offsets),
-            out: SurfaceMut::Separate { positions: got.as_mut_slice().into(), normals: None },
-        }])
+        skin_many(
+            vec![SkinJob {
+                skinner: &skinner,
+                method,
+                model_from_joints: &case.posed,
+                offsets: Some(&offsets),
+                out: SurfaceMut::Separate { positions: got.as_mut_slice().into(), normals: None },
+            }],
+            &mut SkinContext::default(),
+        )
         .unwrap();
         let plain = case.positions.clone();
         case.positions.iter_mut().zip(&offsets).for_each(|(p, o)| *p += *o);
@@ -292,7 +297,7 @@ fn any_number_of_threads_gives_the_same_bits() {
             }
         });
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| skin_many(jobs.collect())).unwrap();
+        pool.install(|| skin_many(jobs.collect(), &mut SkinContext::default())).unwrap();
         out.map(|o| o.into_iter().flatten().map(f32::to_bits).collect::<Vec<_>>())
     };
     let one = by(1);
@@ -300,6 +305,41 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(one, by(8));
     let (alone, _) = cases[0].skin(SkinMethod::DualQuaternion, &cases[0].posed);
     assert!(alone.iter().flatten().map(|x| x.to_bits()).eq(one[0][..15000].iter().copied()));
+}
+
+#[test]
+fn a_context_that_was_used_before_gives_the_same_bits() {
+    let cases = [Case::new(11, 50, 9, 8), Case::new(12, 1100, 3, 4), Case::new(13, 7, 30, 4)];
+    let skinners = cases.each_ref().map(Case::skinner);
+    let mut context = SkinContext::default();
+    for method in [SkinMethod::DualQuaternion, SkinMethod::Linear, SkinMethod::JointTranslation] {
+        // One more character each time, and then each alone.
+        for count in 1..=cases.len() {
+            let mut out = cases.each_ref().map(|c| [(); 2].map(|()| vec![[f32::NAN; 3]; c.positions.len()]));
+            let used = skinners.iter().zip(&cases).zip(&mut out).take(count);
+            let jobs = used.map(|((skinner, case), [positions, normals])| SkinJob {
+                skinner,
+                method,
+                model_from_joints: &case.posed,
+                offsets: None,
+                out: SurfaceMut::packed(positions, normals),
+            });
+            skin_many(jobs.collect(), &mut context).unwrap();
+            for (case, out) in cases.iter().zip(&out).take(count) {
+                assert_eq!(*out, <[_; 2]>::from(case.skin(method, &case.posed)), "{method:?}");
+            }
+        }
+        for (skinner, case) in skinners.iter().zip(&cases) {
+            let mut out = [(); 2].map(|()| vec![[f32::NAN; 3]; case.positions.len()]);
+            let [positions, normals] = &mut out;
+            let surface = SurfaceMut::packed(positions, normals);
+            skinner.skin(method, &case.posed, surface, &mut context).unwrap();
+            assert_eq!(out, <[_; 2]>::from(case.skin(method, &case.posed)), "{method:?}");
+            // What is refused leaves it fit for use.
+            let short = SurfaceMut::packed(&mut [], &mut []);
+            skinner.skin(method, &case.posed, short, &mut context).unwrap_err();
+        }
+    }
 }
 
 #[test]
@@ -330,7 +370,9 @@ fn a_surface_that_contradicts_itself_is_refused() {
     }
     let nothing =
         Skinner::new(&[], &[], &Influences { per_vertex: 4, ..Influences::default() }, &[]).unwrap();
-    nothing.skin(SkinMethod::Linear, &[], SurfaceMut::packed(&mut [], &mut [])).unwrap();
+    nothing
+        .skin(SkinMethod::Linear, &[], SurfaceMut::packed(&mut [], &mut []), &mut SkinContext::default())
+        .unwrap();
 }
 
 #[test]
@@ -361,7 +403,7 @@ fn a_pose_or_offsets_that_do_not_fit_are_refused_and_nothing_is_written() {
             out: SurfaceMut::Separate { positions: StridedMut::from(out), normals: None },
         };
         let jobs = vec![job(&case.posed[..], None, &mut first[..]), job(pose, offsets, &mut second[..])];
-        let error = skin_many(jobs).unwrap_err().to_string();
+        let error = skin_many(jobs, &mut SkinContext::default()).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
         assert_eq!(out, [[[7.0; 3]; 5]; 2]);
     }
@@ -372,7 +414,10 @@ fn buffers_that_do_not_fit_are_refused() {
     let case = Case::new(10, 5, 3, 4);
     let skinner = case.skinner();
     let refuse = |expected: &str, out: SurfaceMut<'_>| {
-        let error = skinner.skin(SkinMethod::Linear, &case.posed, out).unwrap_err().to_string();
+        let error = skinner
+            .skin(SkinMethod::Linear, &case.posed, out, &mut SkinContext::default())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(expected), "{error}");
     };
     let bytes = &mut [0; 200][..];

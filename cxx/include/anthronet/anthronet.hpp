@@ -9,9 +9,10 @@
 // was asked, as long as that lives; `rust::Slice<T>` is a buffer of yours that is filled, and is made of any container
 // that has `data()` and `size()`. `rust::Str` is made of a `std::string` or a literal, in UTF-8.
 //
-// Const member functions may be called by many threads at once, for there is no state that they change.
+// Const member functions may be called by many threads at once, for there is no state that they change but that of the
+// `Context` that some take: one call at a time may use it.
 //
-// Metres, radians, seconds, kilograms. Axes and handedness as the `Space` that is asked for. Matrices are column-major and
+// Metres, radians, seconds, kilograms. Axes and handedness are those of the `Space` of the call. Matrices are column-major and
 // multiply column vectors; quaternions are x, y, z, w.
 
 #pragma once

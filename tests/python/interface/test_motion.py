@@ -62,7 +62,7 @@ def test_sampling(walk):
     out = np.zeros((walk.joint_count, 7), np.float32)
     assert walk.sample(0.5, out=out) is out and np.array_equal(out, walk.sample(0.5))
     late = walk.duration * 2.5
-    once, loop, travel = (walk.sample(late, wrap, "model") for wrap in ("once", "loop", "travel"))
+    once, loop, travel = (walk.sample(late, wrap, "model") for wrap in ("once", "loop", "root_motion"))
     assert np.allclose(once, walk.bake("model")[-1], atol=1e-5) and not np.allclose(once, loop)
     assert travel[:, 6].mean() > loop[:, 6].mean() + 0.5, "two rounds further on"
 
@@ -186,7 +186,7 @@ def test_motion_refusals(woman, file, motion):
 def test_motion_of_poses(woman, walk):
     """a motion of poses of another program comes back as it was, and wrong arrays are refused"""
     joints = woman.joints("blender")
-    rest = np.concatenate([joints["rotation"], joints["translation"]], axis=1)
+    rest = joints["parent_from_joint"]
     posed = anthronet.Motion.from_poses("walk", woman.joint_names(), list(woman.parents), rest, walk.bake(space="blender"), 30,
                                         space="blender")
     assert posed.clip_names == ("walk",)

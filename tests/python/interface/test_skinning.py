@@ -1,5 +1,9 @@
 """Skinning: methods, buffers, many characters."""
 
+import gc
+import threading
+import weakref
+
 import anthronet
 import numpy as np
 import pytest
@@ -61,6 +65,24 @@ def test_many(skinner, walk):
     crowd = anthronet.skin([anthronet.SkinJob(skinner, p) for p in poses])
     assert len(crowd) == 6 and all(np.array_equal(many[0], skinner.skin(p)[0]) for many, p in zip(crowd, poses))
     assert anthronet.skin([]) == []
+
+
+def test_contexts(skinner, walk, pose):
+    """each thread samples and skins in memory of its own, which goes with it"""
+    expected, right, freed = skinner.skin(pose)[0], [], []
+
+    def work():
+        skinned = [skinner.skin(walk.sample(0.3, relative="model"))[0] for _ in range(3)]
+        right.append(all(np.array_equal(one, expected) for one in skinned))
+        weakref.finalize(anthronet._library.context(), freed.append, True)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    gc.collect()
+    assert right == freed == [True] * 4
 
 
 def test_refusals(mesh, skinner, pose):

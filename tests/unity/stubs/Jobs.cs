@@ -31,6 +31,12 @@ namespace Unity.Burst
     public class BurstCompileAttribute : Attribute { }
 }
 
+namespace Unity.Collections.LowLevel.Unsafe
+{
+    [AttributeUsage(AttributeTargets.Field)]
+    public sealed class NativeDisableUnsafePtrRestrictionAttribute : Attribute { }
+}
+
 namespace Unity.Collections
 {
     [AttributeUsage(AttributeTargets.Field)]

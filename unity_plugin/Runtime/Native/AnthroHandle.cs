@@ -21,7 +21,8 @@ namespace Anthronet.Native
         }
     }
 
-    /// <summary>Keeps a handle from being freed during a native call. A struct, to allocate no managed memory.</summary>
+    /// <summary>Keeps a handle from being freed during a native call. A struct, to allocate no managed memory; its default
+    /// holds nothing and has a null pointer.</summary>
     internal unsafe struct Held : IDisposable
     {
         readonly AnthroHandle handle;
@@ -42,7 +43,7 @@ namespace Anthronet.Native
 
         public void* Pointer
         {
-            get { return (void*)handle.DangerousGetHandle(); }
+            get { return handle == null ? null : (void*)handle.DangerousGetHandle(); }
         }
 
         public void Dispose()
@@ -150,6 +151,17 @@ namespace Anthronet.Native
         protected override bool ReleaseHandle()
         {
             NativeMethods.anthronet_skinner_free((anthronet_skinner*)handle);
+            return true;
+        }
+    }
+
+    internal sealed unsafe class ContextHandle : AnthroHandle
+    {
+        public ContextHandle(anthronet_context* pointer) : base((IntPtr)pointer) { }
+
+        protected override bool ReleaseHandle()
+        {
+            NativeMethods.anthronet_context_free((anthronet_context*)handle);
             return true;
         }
     }

@@ -28,7 +28,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_OK = 0;
         /// <summary>
-        ///  A pointer that has to be given is NULL, is not aligned, or leads into what is written through another.
+        ///  A required pointer is NULL, a pointer is not aligned, or a buffer overlaps one that the call writes.
         /// </summary>
         internal const int ANTHRONET_ERROR_POINTER = 101;
         /// <summary>
@@ -36,7 +36,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_SIZE = 102;
         /// <summary>
-        ///  A number is none of the values of its enumeration.
+        ///  A number is not a value of its enumeration.
         /// </summary>
         internal const int ANTHRONET_ERROR_ENUM = 103;
         /// <summary>
@@ -60,7 +60,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_MODEL = 301;
         /// <summary>
-        ///  A file is not what it should be.
+        ///  A file is damaged or not of its format.
         /// </summary>
         internal const int ANTHRONET_ERROR_FILE = 401;
         /// <summary>
@@ -76,15 +76,15 @@ namespace Anthronet.Native
         /// </summary>
         internal const int ANTHRONET_ERROR_BUSY = 601;
         /// <summary>
-        ///  The job was cancelled before this was made.
+        ///  The job was cancelled before the body was made.
         /// </summary>
         internal const int ANTHRONET_ERROR_CANCELLED = 602;
         /// <summary>
-        ///  What was asked for was taken before.
+        ///  The body was taken before.
         /// </summary>
         internal const int ANTHRONET_ERROR_TAKEN = 603;
         /// <summary>
-        ///  An error of a kind that is younger than this header.
+        ///  Any other error.
         /// </summary>
         internal const int ANTHRONET_ERROR_OTHER = 900;
         /// <summary>
@@ -96,12 +96,12 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_SPACE_GLTF = 0;
         /// <summary>
-        ///  Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. Joints keep their own axes.
+        ///  Right-handed, +Z up, the character faces −Y and has its left at +X: Blender. The axes of joints stay the same.
         /// </summary>
         internal const uint ANTHRONET_SPACE_BLENDER = 1;
         /// <summary>
-        ///  Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles go round the other way,
-        ///  and joints' own axes are mirrored at X, too.
+        ///  Left-handed, +Y up, the character faces +Z and has its left at −X: Unity. Triangles have the opposite
+        ///  winding, and the axes of joints are mirrored at X too.
         /// </summary>
         internal const uint ANTHRONET_SPACE_UNITY = 2;
         /// <summary>
@@ -137,11 +137,11 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_SKIN_JOINT_TRANSLATION = 2;
         /// <summary>
-        ///  Worth knowing.
+        ///  Information.
         /// </summary>
         internal const uint ANTHRONET_LOG_INFO = 0;
         /// <summary>
-        ///  Something may not be as it was meant.
+        ///  A warning: a result may not be as intended.
         /// </summary>
         internal const uint ANTHRONET_LOG_WARNING = 1;
         /// <summary>
@@ -149,7 +149,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_LOG_ERROR = 2;
         /// <summary>
-        ///  The sex is left to the measures.
+        ///  Inferred from the measures.
         /// </summary>
         internal const uint ANTHRONET_SEX_ANY = 0;
         /// <summary>
@@ -161,11 +161,11 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_SEX_MALE = 2;
         /// <summary>
-        ///  Open measures get their likeliest values beside the given ones.
+        ///  Measures that are not given get their most likely values, given the others.
         /// </summary>
         internal const uint ANTHRONET_FILL_MEAN = 0;
         /// <summary>
-        ///  Open measures are drawn from what is plausible beside the given ones; the seed chooses.
+        ///  Measures that are not given are drawn from their distribution, given the others; the seed chooses.
         /// </summary>
         internal const uint ANTHRONET_FILL_SAMPLE = 1;
         /// <summary>
@@ -181,11 +181,11 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_JOB_CANCELLED = 2;
         /// <summary>
-        ///  One texture coordinate per vertex (vertices at seams are doubled) and triangles alone: what is drawn.
+        ///  One texture coordinate per vertex (vertices at seams are doubled) and triangles only: for drawing.
         /// </summary>
         internal const uint ANTHRONET_LAYOUT_RENDER = 0;
         /// <summary>
-        ///  The model's own vertices and quads, texture coordinates by corner: what is edited and measured.
+        ///  The model's own vertices and quads, texture coordinates per corner: for editing and measuring.
         /// </summary>
         internal const uint ANTHRONET_LAYOUT_MODEL = 1;
         /// <summary>
@@ -198,11 +198,11 @@ namespace Anthronet.Native
         internal const uint ANTHRONET_ATTRIBUTE_NORMALS = 1;
         /// <summary>
         ///  float × 2 per vertex (render layout) or per texture coordinate (model layout); v grows downwards in glTF space and
-        ///  upwards in the others, as their programs have it.
+        ///  upwards in the others.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_UVS = 2;
         /// <summary>
-        ///  uint32 × 3 per triangle: vertices. In the model layout these are the faces that are no quads: none at levels 0 and 1.
+        ///  uint32 × 3 per triangle: vertices. In the model layout these are the faces that are not quads: none at levels 0 and 1.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_TRIANGLES = 3;
         /// <summary>
@@ -218,15 +218,15 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_SOURCES = 6;
         /// <summary>
-        ///  uint32 × 4 per quad: vertices. Model layout alone.
+        ///  uint32 × 4 per quad: vertices. Model layout only.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_QUADS = 7;
         /// <summary>
-        ///  uint32 × 4 per quad: texture coordinates of its corners. Model layout alone.
+        ///  uint32 × 4 per quad: texture coordinates of its corners. Model layout only.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_QUAD_UVS = 8;
         /// <summary>
-        ///  uint32 × 3 per triangle: texture coordinates of its corners. Model layout alone.
+        ///  uint32 × 3 per triangle: texture coordinates of its corners. Model layout only.
         /// </summary>
         internal const uint ANTHRONET_ATTRIBUTE_TRIANGLE_UVS = 9;
         /// <summary>
@@ -242,17 +242,17 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_TYPE_U16 = 2;
         /// <summary>
-        ///  Outside its duration a clip holds its first or last frame.
+        ///  The clip holds its first or last frame outside its duration.
         /// </summary>
         internal const uint ANTHRONET_WRAP_ONCE = 0;
         /// <summary>
-        ///  A clip starts anew; its last frame is its first.
+        ///  The clip starts over; its last frame is its first.
         /// </summary>
         internal const uint ANTHRONET_WRAP_LOOP = 1;
         /// <summary>
-        ///  As `ANTHRONET_WRAP_LOOP`, and each round goes on from where the last one ended.
+        ///  As `ANTHRONET_WRAP_LOOP` with root motion: every cycle continues where the last one ended.
         /// </summary>
-        internal const uint ANTHRONET_WRAP_TRAVEL = 2;
+        internal const uint ANTHRONET_WRAP_ROOT_MOTION = 2;
         /// <summary>
         ///  Each joint relative to its parent: what animation tracks hold.
         /// </summary>
@@ -262,11 +262,11 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_RELATIVE_TO_MODEL = 1;
         /// <summary>
-        ///  Fingers as the source's where it has any, else at ease.
+        ///  Fingers of the motion where it has any, else relaxed.
         /// </summary>
         internal const uint ANTHRONET_FINGERS_SOURCE = 0;
         /// <summary>
-        ///  Hands at ease.
+        ///  Relaxed hands.
         /// </summary>
         internal const uint ANTHRONET_FINGERS_RELAXED = 1;
         /// <summary>
@@ -274,7 +274,7 @@ namespace Anthronet.Native
         /// </summary>
         internal const uint ANTHRONET_FINGERS_REST = 2;
         /// <summary>
-        ///  What the file says, or its proportions.
+        ///  As the file says, or else found from the proportions of its skeleton.
         /// </summary>
         internal const uint ANTHRONET_UP_FOUND = 0;
         /// <summary>
@@ -293,20 +293,20 @@ namespace Anthronet.Native
 
 
         /// <summary>
-        ///  The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another must not go
-        ///  on.
+        ///  The `ANTHRONET_ABI_VERSION` that the library was compiled with; a caller that was compiled with another one must
+        ///  stop.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_abi_version", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern uint anthronet_abi_version();
 
         /// <summary>
-        ///  The version of the library, such as `0.1.0`; valid for ever.
+        ///  The version of the library, such as `0.1.0`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_version", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_version(anthronet_text* out_version, anthronet_error* error);
 
         /// <summary>
-        ///  Sets who hears messages; NULL for nobody, which is the default. When it returns, the former callback is not running
+        ///  Sets the callback that receives messages; NULL for none, which is the default. When it returns, the former callback is not running
         ///  and will not be called again. `user` is handed to every call.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_set_log_callback", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -386,7 +386,7 @@ namespace Anthronet.Native
         internal static extern uint anthronet_measure_count();
 
         /// <summary>
-        ///  The name of a measure, such as `waist_circumference`; valid for ever.
+        ///  The name of a measure, such as `waist_circumference`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_measure_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_measure_name(uint measure, anthronet_text* out_name, anthronet_error* error);
@@ -413,7 +413,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_measure_file(anthronet_model* model, byte* path, ulong path_length, double* out_metres, uint count, anthronet_measured* out_measured, anthronet_error* error);
 
         /// <summary>
-        ///  A request that asks for nothing: the likeliest person.
+        ///  A request without given measures: the most likely person.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_new(anthronet_request** out_request, anthronet_error* error);
@@ -425,7 +425,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_request_from_json(byte* json, ulong json_length, anthronet_request** out_request, anthronet_error* error);
 
         /// <summary>
-        ///  Another request that asks for the same.
+        ///  A copy of a request.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_copy", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_copy(anthronet_request* request, anthronet_request** out_request, anthronet_error* error);
@@ -449,52 +449,51 @@ namespace Anthronet.Native
         internal static extern int anthronet_request_set_sex(anthronet_request* request, uint sex, anthronet_error* error);
 
         /// <summary>
-        ///  Gives a measure by its name, metres; a name without its side, such as `arm_length`, gives both sides.
+        ///  Sets a measure by its name, metres; a name without its side, such as `arm_length`, sets both sides.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_measure", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_measure(anthronet_request* request, byte* name, ulong name_length, double metres, anthronet_error* error);
 
         /// <summary>
-        ///  Gives or opens all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
-        ///  `anthronet_measure_name`; `count` is their number. What `metres` holds of an open measure does not matter.
+        ///  Sets or unsets all measures at once: `metres` and `given` (0 or 1) have one entry per measure in the order of
+        ///  `anthronet_measure_name`; `count` is their number. `metres` of a measure that is not given is ignored.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_measures", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_measures(anthronet_request* request, double* metres, byte* given, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  What is given: fills `out_metres` (0 for an open measure) and `out_given`, `count` entries each, one per measure.
+        ///  The given measures: fills `out_metres` (0 for a measure that is not given) and `out_given`, `count` entries each, one per measure.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_measures", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_measures(anthronet_request* request, double* out_metres, byte* out_given, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  Leaves a measure open again, by its place in the order of `anthronet_measure_name`.
+        ///  Makes a measure not given, so that it is filled again; by its place in the order of `anthronet_measure_name`.
         /// </summary>
-        [DllImport(__DllName, EntryPoint = "anthronet_request_open_measure", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_request_open_measure(anthronet_request* request, uint measure, anthronet_error* error);
+        [DllImport(__DllName, EntryPoint = "anthronet_request_unset_measure", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_request_unset_measure(anthronet_request* request, uint measure, anthronet_error* error);
 
         /// <summary>
-        ///  Sets the seed: 0 for the likeliest of the people with these measures, any other number for one of them.
+        ///  Sets the seed: 0 for the most likely person with these measures, any other number for another one.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_seed", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_seed(anthronet_request* request, ulong seed, anthronet_error* error);
 
         /// <summary>
-        ///  Sets the latent numbers by hand, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the
-        ///  seed.
+        ///  Sets the latent numbers, as many as `anthronet_model_latent_size` says; none (`count` 0) leaves them to the seed.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_latent", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_latent(anthronet_request* request, double* latent, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  Sets how open measures are filled: `ANTHRONET_FILL_…`.
+        ///  Sets how measures that are not given are filled: `ANTHRONET_FILL_…`.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_fill", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_fill(anthronet_request* request, uint fill, anthronet_error* error);
 
         /// <summary>
-        ///  Whether measures that no one person has are replaced by the nearest that one has (1), with a warning in the report,
-        ///  or refused (0).
+        ///  Whether measures that no person has together are replaced by the nearest that a person has (1), with a warning in the
+        ///  report, or refused (0).
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_request_set_nearest", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_request_set_nearest(anthronet_request* request, uint nearest, anthronet_error* error);
@@ -506,7 +505,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_generate(anthronet_model* model, anthronet_request* request, anthronet_body** out_body, anthronet_error* error);
 
         /// <summary>
-        ///  Makes the body between two requests: measures and identity at the share `t`, 0 to 1, of the way.
+        ///  Makes a body between two requests: `t` = 0 is the first, 1 the second; measures and identity are interpolated.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_interpolate", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_interpolate(anthronet_model* model, anthronet_request* from, anthronet_request* to, double t, anthronet_body** out_body, anthronet_error* error);
@@ -549,13 +548,13 @@ namespace Anthronet.Native
         internal static extern int anthronet_job_start(anthronet_model* model, anthronet_request** requests, uint count, anthronet_job** out_job, anthronet_error* error);
 
         /// <summary>
-        ///  How far the job is. Returns at once.
+        ///  The progress of the job. Returns at once.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_job_poll", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_job_poll(anthronet_job* job, anthronet_job_progress* out_progress, anthronet_error* error);
 
         /// <summary>
-        ///  Asks the job to stop after the body that it is at, which takes some hundredths of a second at most. Returns at once.
+        ///  Asks the job to stop after the current body, which takes some hundredths of a second at most. Returns at once.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_job_cancel", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_job_cancel(anthronet_job* job, anthronet_error* error);
@@ -605,8 +604,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_new(anthronet_body* body, anthronet_mesh_options* options, anthronet_mesh** out_mesh, anthronet_error* error);
 
         /// <summary>
-        ///  Makes the mesh that of another body, with the options that it was made with and without blend shapes. Views of before
-        ///  are invalid.
+        ///  Changes the mesh to that of another body, with the same options and without blend shapes. Earlier views become
+        ///  invalid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_update", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_update(anthronet_mesh* mesh, anthronet_body* body, anthronet_error* error);
@@ -624,7 +623,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_part_count(anthronet_mesh* mesh, uint* out_count, anthronet_error* error);
 
         /// <summary>
-        ///  What a part is.
+        ///  Describes a part.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_describe_part", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_describe_part(anthronet_mesh* mesh, uint part, anthronet_mesh_part* out_part, anthronet_error* error);
@@ -643,8 +642,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_read(anthronet_mesh* mesh, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
 
         /// <summary>
-        ///  Adds a blend shape to a mesh that leads to the surface of another body: at weight 1 the mesh has that body's shape in
-        ///  the bind pose. Bones stay where they are, so bodies should be of about the same stature.
+        ///  Adds a blend shape from the mesh to the surface of another body: at weight 1 the mesh has that body's shape in the bind
+        ///  pose. Joints stay where they are, so bodies should be of about the same stature.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_add_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_add_blend_shape(anthronet_mesh* mesh, byte* name, ulong name_length, anthronet_body* body, anthronet_error* error);
@@ -662,17 +661,29 @@ namespace Anthronet.Native
         internal static extern int anthronet_mesh_blend_shape_name(anthronet_mesh* mesh, uint shape, anthronet_text* out_name, anthronet_error* error);
 
         /// <summary>
-        ///  Where the way of a part is: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
-        ///  floats per vertex to be added to those of the mesh.
+        ///  Where the displacements of a part are: `attribute` is `ANTHRONET_ATTRIBUTE_POSITIONS` or `ANTHRONET_ATTRIBUTE_NORMALS`, three
+        ///  floats per vertex, to be added to those of the mesh.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_blend_shape_data", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_blend_shape_data(anthronet_mesh* mesh, uint shape, uint part, uint attribute, anthronet_view* out_view, anthronet_error* error);
 
         /// <summary>
-        ///  Copies the way of a part to a buffer, as `anthronet_mesh_read` does.
+        ///  Copies the displacements of a part to a buffer, as `anthronet_mesh_read` does.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_mesh_read_blend_shape", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_mesh_read_blend_shape(anthronet_mesh* mesh, uint shape, uint part, uint attribute, void* out_rows, ulong buffer_bytes, ulong stride, anthronet_error* error);
+
+        /// <summary>
+        ///  Makes a context, which holds nothing yet.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_context_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_context_new(anthronet_context** out_context, anthronet_error* error);
+
+        /// <summary>
+        ///  Frees a context; NULL is nothing.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_context_free", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern void anthronet_context_free(anthronet_context* context);
 
         /// <summary>
         ///  Number of built-in clips.
@@ -681,7 +692,7 @@ namespace Anthronet.Native
         internal static extern uint anthronet_clip_builtin_count();
 
         /// <summary>
-        ///  The name of a built-in clip, such as `walk`; valid for ever.
+        ///  The name of a built-in clip, such as `walk`; always valid.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_builtin_name", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_builtin_name(uint index, anthronet_text* out_name, anthronet_error* error);
@@ -693,11 +704,11 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_builtin(byte* name, ulong name_length, anthronet_body* body, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  Makes a clip of poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
+        ///  Makes a clip from poses of a body, such as an action of its armature: `frames` holds, frame by frame, every joint
         ///  relative to its parent in `in_space`; `count` = frames × joints.
         /// </summary>
-        [DllImport(__DllName, EntryPoint = "anthronet_clip_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_clip_new(anthronet_body* body, byte* name, ulong name_length, double frames_per_second, uint in_space, anthronet_transform* frames, ulong count, anthronet_clip** out_clip, anthronet_error* error);
+        [DllImport(__DllName, EntryPoint = "anthronet_clip_from_poses", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_clip_from_poses(anthronet_body* body, byte* name, ulong name_length, double frames_per_second, uint in_space, anthronet_transform* frames, ulong count, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
         ///  Frees a clip; NULL is nothing.
@@ -706,20 +717,20 @@ namespace Anthronet.Native
         internal static extern void anthronet_clip_free(anthronet_clip* clip);
 
         /// <summary>
-        ///  What a clip is.
+        ///  Describes a clip.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_describe", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_describe(anthronet_clip* clip, anthronet_clip_info* out_info, anthronet_error* error);
 
         /// <summary>
-        ///  The pose of a clip at a time, up to 1e9 seconds either way: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
-        ///  `ANTHRONET_RELATIVE_TO_…`.
+        ///  The pose of a clip at a time, from −1e9 to 1e9 seconds: fills `count` joints. `wrap` is `ANTHRONET_WRAP_…`, `relative`
+        ///  `ANTHRONET_RELATIVE_TO_…`; `context` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_sample", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_clip_sample(anthronet_clip* clip, double seconds, uint wrap, uint relative, uint in_space, anthronet_transform* out_joints, uint count, anthronet_error* error);
+        internal static extern int anthronet_clip_sample(anthronet_clip* clip, anthronet_context* context, double seconds, uint wrap, uint relative, uint in_space, anthronet_transform* out_joints, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  All frames of a clip, one after the other: fills `count` = frames × joints transforms.
+        ///  All frames of a clip in order: fills `count` = frames × joints transforms.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_bake", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_bake(anthronet_clip* clip, uint relative, uint in_space, anthronet_transform* out_joints, ulong count, anthronet_error* error);
@@ -731,33 +742,33 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_resample(anthronet_clip* clip, double frames_per_second, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  The clip without its way over the ground.
+        ///  The clip without root motion.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_in_place", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_in_place(anthronet_clip* clip, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  The clip with its end going over into its beginning during the last `seconds`.
+        ///  The clip with its end blended into its beginning during the last `seconds`, so that it loops.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_looped", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_looped(anthronet_clip* clip, double seconds, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  Two clips of one body at once: `weight` 0 is the first, 1 the second.
+        ///  Blends two clips of one body: `weight` 0 is the first, 1 the second.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_blend", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_blend(anthronet_clip* first, anthronet_clip* second, float weight, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  As `anthronet_clip_blend` with a share of each joint: `mask` has one number from 0 (stays with the first) to 1 (takes
-        ///  part fully) per joint, `count` of them, such as `anthronet_clip_joint_mask` makes.
+        ///  As `anthronet_clip_blend` with a weight per joint: `mask` has `count` numbers, one per joint, from 0 (the first clip) to
+        ///  1 (blended fully), such as `anthronet_clip_joint_mask` makes.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_blend_masked", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_blend_masked(anthronet_clip* first, anthronet_clip* second, float weight, float* mask, uint count, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  Layers a clip on another of the same body: at `weight` 1 `base` moves by all that `layer` differs from the pose
-        ///  `reference` by, at 0 not at all. A layer shorter than the base starts anew. `reference` has `count` joints,
+        ///  Adds a clip to another of the same body: the difference between `layer` and the pose `reference` times `weight`, 0 to 1,
+        ///  is added to `base`. A layer shorter than the base starts over. `reference` has `count` joints,
         ///  each relative to its parent in `in_space`; NULL and 0 stand for the layer's first frame. `mask` is that of
         ///  `anthronet_clip_blend_masked`; NULL and 0 stand for every joint.
         /// </summary>
@@ -772,7 +783,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_joint_mask(anthronet_clip* clip, byte* name, ulong name_length, float* out_mask, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  Two clips of one body one after the other, overlapping by `seconds`.
+        ///  Plays two clips of one body one after the other, blended over the `seconds` by which they overlap.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_clip_crossfade", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_clip_crossfade(anthronet_clip* first, anthronet_clip* second, double seconds, anthronet_clip** out_clip, anthronet_error* error);
@@ -784,17 +795,17 @@ namespace Anthronet.Native
         internal static extern int anthronet_motion_open_path(byte* path, ulong path_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
-        ///  Reads a motion file from memory. `name` is the file's: its ending tells the format, and a clip without a name gets
+        ///  Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
         ///  it.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_open_memory", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_open_memory(byte* data, ulong length, byte* name, ulong name_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
-        ///  Makes a motion of poses instead of a file, to be retargeted as one.
+        ///  Makes a motion from poses, to be retargeted like one that was read from a file.
         /// </summary>
-        [DllImport(__DllName, EntryPoint = "anthronet_motion_new", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_motion_new(anthronet_motion_source* source, anthronet_motion** out_motion, anthronet_error* error);
+        [DllImport(__DllName, EntryPoint = "anthronet_motion_from_poses", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_motion_from_poses(anthronet_motion_source* source, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
         ///  Frees a motion; NULL is nothing.
@@ -815,14 +826,14 @@ namespace Anthronet.Native
         internal static extern int anthronet_motion_clip_name(anthronet_motion* motion, uint clip, anthronet_text* out_name, anthronet_error* error);
 
         /// <summary>
-        ///  How the file was understood, as JSON: format, unit, axis, rate, how each was found, warnings.
+        ///  How the file was read, as JSON: format, unit, up axis, frame rate, how each was found, warnings.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_report", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_report(anthronet_motion* motion, anthronet_bytes** out_json, anthronet_error* error);
 
         /// <summary>
-        ///  Brings one clip of a motion onto a body. `retarget_options` may be NULL; `out_report` too, else it gets JSON: which
-        ///  joint drives which, what drives nothing, how far directions, limits and feet are off.
+        ///  Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
+        ///  which joint drives which, which joints drive none, errors of directions, limits and feet.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_retarget", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_retarget(anthronet_motion* motion, uint clip, anthronet_body* body, anthronet_retarget_options* retarget_options, anthronet_clip** out_clip, anthronet_bytes** out_report, anthronet_error* error);
@@ -847,14 +858,14 @@ namespace Anthronet.Native
 
         /// <summary>
         ///  Poses the surfaces of `count` jobs, on all cores. Nothing is written unless all jobs are in order. From its first byte
-        ///  to its last, what a job writes must not overlap what another writes nor what any of them reads.
+        ///  to its last, what a job writes must not overlap what another writes nor what any of them reads. `context` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_skin", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
-        internal static extern int anthronet_skin(anthronet_skin_job* jobs, uint count, anthronet_error* error);
+        internal static extern int anthronet_skin(anthronet_context* context, anthronet_skin_job* jobs, uint count, anthronet_error* error);
 
         /// <summary>
         ///  Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-        ///  .obj. The file appears whole or not at all. `options` may be NULL.
+        ///  .obj. The file is written completely or not at all. `options` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_export_path", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_export_path(anthronet_body* body, anthronet_export_options* options, byte* path, ulong path_length, anthronet_error* error);
@@ -869,7 +880,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  What went wrong. The caller's own; may be NULL wherever it is asked for. Written only on failure.
+    ///  What went wrong. The caller's own; may be NULL in every call. Written only on failure.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_error
@@ -885,7 +896,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  Text of the library's: UTF-8, not ended by a zero, valid as long as what it was asked of.
+    ///  A text that the library owns: UTF-8, not ended by a zero, valid as long as the object that it was read from.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_text
@@ -901,7 +912,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  Bytes of the library's: a file in memory, or JSON as UTF-8.
+    ///  Bytes that the library made: a file in memory, or JSON as UTF-8.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_bytes
@@ -917,7 +928,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  What the scales say of a mesh.
+    ///  Mass and volume of a measured mesh.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_measured
@@ -927,7 +938,7 @@ namespace Anthronet.Native
         /// </summary>
         public uint struct_size;
         /// <summary>
-        ///  The level of detail that the mesh was recognised as.
+        ///  The level of detail of the mesh, recognised by its number of vertices.
         /// </summary>
         public uint lod;
         /// <summary>
@@ -967,15 +978,15 @@ namespace Anthronet.Native
     internal unsafe partial struct anthronet_measure_report
     {
         /// <summary>
-        ///  What the request gives; 0 for an open measure.
+        ///  The value in the request; 0 for a filled measure.
         /// </summary>
         public double asked;
         /// <summary>
-        ///  What the body has.
+        ///  The value of the body.
         /// </summary>
         public double obtained;
         /// <summary>
-        ///  Obtained − asked; 0 for an open measure.
+        ///  Obtained − asked; 0 for a filled measure.
         /// </summary>
         public double residual;
         /// <summary>
@@ -995,7 +1006,7 @@ namespace Anthronet.Native
         /// </summary>
         public uint given;
         /// <summary>
-        ///  `ANTHRONET_FILL_…` of an open measure, 0 of a given one.
+        ///  How a measure that is not given was filled: `ANTHRONET_FILL_…`; 0 for a given one.
         /// </summary>
         public uint filled;
     }
@@ -1061,7 +1072,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  How far a job is.
+    ///  Progress of a job.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_job_progress
@@ -1075,7 +1086,7 @@ namespace Anthronet.Native
         /// </summary>
         public uint state;
         /// <summary>
-        ///  Requests that have their body or error; what a body is made of is not counted.
+        ///  Requests that have their body or error.
         /// </summary>
         public uint done;
         /// <summary>
@@ -1129,7 +1140,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts are valid for ever.
+    ///  A joint that is a bone of the standard humanoid, with its name in every vocabulary. All texts stay valid.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_humanoid_bone
@@ -1169,7 +1180,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  What of a body becomes a mesh; all zeros ask for the defaults.
+    ///  How a mesh is made of a body; all zeros are the defaults.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_mesh_options
@@ -1259,7 +1270,7 @@ namespace Anthronet.Native
     internal unsafe partial struct anthronet_view
     {
         /// <summary>
-        ///  The first number; packed rows follow. NULL of an empty array. Valid until the mesh is updated or freed.
+        ///  The first number; packed rows follow. NULL for an empty array. Valid until the mesh is updated or freed.
         /// </summary>
         public void* data;
         /// <summary>
@@ -1281,6 +1292,16 @@ namespace Anthronet.Native
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_mesh
+    {
+    }
+
+    /// <summary>
+    ///  Memory that sampling and skinning work in, used again by the next call: it saves allocations and changes no result. Keep
+    ///  one per character or per thread that calls; one call at a time may use it. It grows as calls need and is freed as a
+    ///  whole. Where a function takes one, NULL stands for memory that is made for the call.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    internal unsafe partial struct anthronet_context
     {
     }
 
@@ -1329,7 +1350,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  What is said of a motion file beforehand; it wins over what the file says. Zeros leave everything to the file.
+    ///  How a motion file is read; these values override those in the file. Zeros leave everything to the file.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_motion_options
@@ -1353,7 +1374,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  How a motion comes onto a body; all zeros ask for the defaults.
+    ///  How a motion is retargeted to a body; all zeros are the defaults.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_retarget_options
@@ -1367,23 +1388,23 @@ namespace Anthronet.Native
         /// </summary>
         public uint fingers;
         /// <summary>
-        ///  1 leaves joints beyond what people's joints do.
+        ///  1 does not keep joints within the limits of human joints.
         /// </summary>
         public uint no_limits;
         /// <summary>
-        ///  1 leaves feet where the motion puts them, sliding or under the floor.
+        ///  1 does not keep feet that touch the floor from sliding and sinking in.
         /// </summary>
         public uint no_feet;
         /// <summary>
-        ///  1 leaves out the way over the ground.
+        ///  1 removes root motion.
         /// </summary>
         public uint in_place;
         /// <summary>
-        ///  1 makes the end meet the beginning.
+        ///  1 blends the end into the beginning, so that the clip loops.
         /// </summary>
         public uint looped;
         /// <summary>
-        ///  1 gives the way over the ground to the joint `Root` instead of the pelvis.
+        ///  1 puts root motion on the joint `Root` instead of the pelvis.
         /// </summary>
         public uint root_motion;
         /// <summary>
@@ -1391,8 +1412,8 @@ namespace Anthronet.Native
         /// </summary>
         public uint mapping_length;
         /// <summary>
-        ///  Which joint of the source drives which of ours, or nothing, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
-        ///  those that it does not name are found. NULL to find all of them.
+        ///  Which joint of the motion drives which joint of the rig, or none, as JSON: `{"LeftArm": "upperarm_l", "Tail": null}`;
+        ///  joints that it does not name are matched automatically. NULL matches all of them.
         /// </summary>
         public byte* mapping_json;
         /// <summary>
@@ -1410,7 +1431,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  A motion of a skeleton that a program has, such as an action of an armature. Arrays are read during the call alone.
+    ///  A motion of a skeleton of another program, such as an action of an armature. Arrays are read only during the call.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_motion_source
@@ -1528,7 +1549,7 @@ namespace Anthronet.Native
     }
 
     /// <summary>
-    ///  What of a body goes into a file; all zeros ask for the defaults.
+    ///  How a body is written to a file; all zeros are the defaults.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     internal unsafe partial struct anthronet_export_options
@@ -1546,7 +1567,7 @@ namespace Anthronet.Native
         /// </summary>
         public uint influences;
         /// <summary>
-        ///  What the joints are called: `ANTHRONET_NAMES_…`.
+        ///  Names of the joints: `ANTHRONET_NAMES_…`.
         /// </summary>
         public uint joint_names;
         /// <summary>

@@ -21,7 +21,7 @@ namespace Anthronet.Tests
             model.Dispose();
             Expect.Throws<ObjectDisposedException>(() => model.Generate(new AnthroRequest()), "model");
             Expect.Throws<ObjectDisposedException>(() => model.StartJob(new[] { new AnthroRequest() }), "model");
-            var surface = new AnthroSurface(body, 2);
+            var surface = new AnthroMesh(body, 2);
             var clip = AnthroClip.Builtin("idle", body);
             body.Dispose();
             Expect.Throws<ObjectDisposedException>(() => body.Joints(), "body");
@@ -35,6 +35,11 @@ namespace Anthronet.Tests
             skinner.Dispose();
             crowd.Pose(0, clip, 0.1, AnthroWrap.Loop);
             crowd.Pose(1, clip, 0.1, AnthroWrap.Loop);
+            var context = new AnthroContext();
+            context.Dispose();
+            Expect.Equal(IntPtr.Zero, context.Pointer, "pointer of a disposed context");
+            Expect.Throws<ObjectDisposedException>(
+                () => clip.Sample(0, AnthroWrap.Once, new AnthroTransform[clip.JointCount], false, context), "context");
             clip.Dispose();
             Expect.Throws<ObjectDisposedException>(() => crowd.Pose(0, clip, 0, AnthroWrap.Loop), "clip");
             crowd.Run();
@@ -53,7 +58,7 @@ namespace Anthronet.Tests
             // Nobody disposes these: the finalisers do.
             for (var i = 0; i < 20; i++)
             {
-                new AnthroSurface(last, 3);
+                new AnthroMesh(last, 3);
                 AnthroClip.Builtin("idle", last);
             }
             GC.Collect();
@@ -75,10 +80,13 @@ namespace Anthronet.Tests
                     try
                     {
                         var pose = new AnthroTransform[clip.JointCount];
-                        for (var k = 0; k < 200; k++)
+                        using (var context = new AnthroContext())
                         {
-                            clip.Sample(0.3, AnthroWrap.Loop, pose);
-                            Expect.That(pose.SequenceEqual(expected), "another pose");
+                            for (var k = 0; k < 200; k++)
+                            {
+                                clip.Sample(0.3, AnthroWrap.Loop, pose, false, k % 2 == 0 ? context : null);
+                                Expect.That(pose.SequenceEqual(expected), "another pose");
+                            }
                         }
                         using (var other = AnthroModel.Default.Generate(new AnthroRequest { Seed = (ulong)i }))
                         {

@@ -98,10 +98,10 @@ namespace Anthronet.Tests
             Expect.Throws<ArgumentNullException>(() => AnthroModel.Open((string)null), "no path");
             foreach (var given in new Action[]
             {
-                () => AnthroClip.Builtin("walk", null), () => new AnthroSkinner(null), () => new AnthroSurface(null, 0),
+                () => AnthroClip.Builtin("walk", null), () => new AnthroSkinner(null), () => new AnthroMesh(null, 0),
                 () => new AnthroCrowdSkin(null, 1), () => new AnthroCrowdSkin(new AnthroSkinner[1], 1),
                 () => model.StartJob(new AnthroRequest[1]), () => AnthroFactory.CreateAsync(null),
-                () => AnthroFactory.CreateAsync(new AnthroRequest[1]), () => AnthroMeshes.Create((AnthroSurface)null, new AnthroJoint[0], "x"),
+                () => AnthroFactory.CreateAsync(new AnthroRequest[1]), () => AnthroMeshes.Create((AnthroMesh)null, new AnthroJoint[0], "x"),
                 () => new AnthroRequest().CopyFrom(null), () => AnthroRequest.FromJson(null),
             })
             {
@@ -116,7 +116,7 @@ namespace Anthronet.Tests
                 Expect.Code(AnthroError.Size, "", () => body.Joints(new AnthroJoint[0]), "no joints");
                 Expect.Code(AnthroError.Request, "fly", () => AnthroClip.Builtin("fly", body), "clip");
                 Expect.Code(AnthroError.Request, "docx", () => body.ToBytes("docx"), "format");
-                Expect.Throws<AnthroException>(() => new AnthroSurface(body, 4), "level of detail");
+                Expect.Throws<AnthroException>(() => new AnthroMesh(body, 4), "level of detail");
                 using (var clip = AnthroClip.Builtin("walk", body))
                 {
                     Expect.Code(AnthroError.Request, "", () => clip.Sample(double.NaN, AnthroWrap.Loop,

@@ -16,7 +16,7 @@ pub(crate) const CSHARP: &str = "unity_plugin/Runtime/Native/NativeMethods.g.cs"
 pub(crate) const PYTHON: &str = "python/anthronet/_native.py";
 
 /// The files of `ffi/src` in the order of their declarations: a type comes before its users.
-const SOURCES: [&str; 18] = [
+const SOURCES: [&str; 19] = [
     "version",
     "status",
     "pointer",
@@ -31,6 +31,7 @@ const SOURCES: [&str; 18] = [
     "skeleton",
     "mesh",
     "blend_shape",
+    "context",
     "clip",
     "motion",
     "skin",

@@ -27,18 +27,15 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// From plain numbers, as hosts pass them: 0 metres per unit and 0 frames per second leave that to the file.
+    /// The same options with the unit of lengths in metres.
     ///
     /// # Errors
-    /// [`Error::Request`] for a unit that is no length.
-    pub fn of_numbers(metres_per_unit: f64, up: Option<Axis>, frames_per_second: f64) -> Result<Self> {
-        let unit = match metres_per_unit {
-            0.0 => None,
-            metres => Some(Unit::from_metres(metres).ok_or_else(|| {
-                Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
-            })?),
-        };
-        Ok(Self { unit, up, frames_per_second: (frames_per_second != 0.0).then_some(frames_per_second) })
+    /// [`Error::Request`] when the number is not finite and positive.
+    pub fn with_metres_per_unit(self, metres: f64) -> Result<Self> {
+        let unit = Unit::from_metres(metres).ok_or_else(|| {
+            Error::request("metres_per_unit", format!("expected a positive number, got {metres}"))
+        })?;
+        Ok(Self { unit: Some(unit), ..self })
     }
 
     /// Refuses a rate that is none.

@@ -1,15 +1,12 @@
 //! The whole way of a motion onto a body of ours: matched, retargeted, limited, feet on the floor; and how well it went.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
-use super::joint_map::{JointMap, JointMapReport, Overrides, read_overrides};
-use super::solve::{
-    DirectionError, FingerMode, Jump, Retargeter, RootMotion, TransferOptions, direction_error, worst_jump,
-};
+use super::joint_map::{JointMap, JointMapReport, Overrides};
+use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error, worst_jump};
 use crate::clip::{Clip, in_place, looped, resample};
 use crate::pose::limits::{JointLimits, TwistsBefore};
 use crate::skeleton::Skeleton;
@@ -48,48 +45,6 @@ impl Default for RetargetOptions {
             in_place: false,
             looped: false,
         }
-    }
-}
-
-/// [`RetargetOptions`] as plain values, as hosts pass them: the default of each is the default.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct RetargetSwitches<'a> {
-    /// What fingers do.
-    pub fingers: FingerMode,
-    /// Leaves joints beyond what people's joints do.
-    pub no_limits: bool,
-    /// Leaves feet where the motion puts them.
-    pub no_feet: bool,
-    /// Leaves out motion over the ground.
-    pub in_place: bool,
-    /// Makes the end meet the beginning.
-    pub looped: bool,
-    /// Gives the way over the ground to the root instead of the pelvis.
-    pub root_motion: bool,
-    /// What [`read_overrides`] reads; empty to find all joints.
-    pub mapping_json: &'a str,
-    /// Frames per second of the result; 0 keeps those of the motion.
-    pub frames_per_second: f64,
-}
-
-impl TryFrom<RetargetSwitches<'_>> for RetargetOptions {
-    type Error = Error;
-
-    fn try_from(asked: RetargetSwitches<'_>) -> Result<Self> {
-        let mapping = match asked.mapping_json {
-            "" => Overrides::new(),
-            json => read_overrides(json, Path::new("mapping_json"))?,
-        };
-        let root = if asked.root_motion { RootMotion::Root } else { RootMotion::Pelvis };
-        Ok(Self {
-            mapping,
-            transfer: TransferOptions { fingers: asked.fingers, root, ..TransferOptions::default() },
-            limits: !asked.no_limits,
-            feet: (!asked.no_feet).then(FeetOptions::default),
-            frames_per_second: (asked.frames_per_second != 0.0).then_some(asked.frames_per_second),
-            in_place: asked.in_place,
-            looped: asked.looped,
-        })
     }
 }
 

@@ -4,8 +4,8 @@ using UnityEngine;
 
 namespace Anthronet
 {
-    /// <summary>A part of a surface, with one material.</summary>
-    public struct AnthroPart
+    /// <summary>A part of a mesh: one surface with one material.</summary>
+    public struct AnthroMeshPart
     {
         /// <summary>Name, such as `Body`.</summary>
         public string name;
@@ -21,7 +21,7 @@ namespace Anthronet
         public Color baseColor;
     }
 
-    /// <summary>Vertex attributes and indices of a surface.</summary>
+    /// <summary>Vertex attributes and indices of a mesh.</summary>
     internal enum AnthroAttribute : uint
     {
         Positions = NativeMethods.ANTHRONET_ATTRIBUTE_POSITIONS,
@@ -33,20 +33,20 @@ namespace Anthronet
     }
 
     /// <summary>
-    /// The surface of a body at one level of detail, in Unity's space and in native memory: the body part first, then
+    /// The mesh of a body at one level of detail, in Unity's space and in native memory: the body part first, then
     /// eyes, teeth, tongue and eyelashes. `AnthroMeshes` makes Unity meshes of it. One thread at a time may change it.
     /// </summary>
-    public sealed unsafe class AnthroSurface : IDisposable
+    public sealed unsafe class AnthroMesh : IDisposable
     {
         readonly MeshHandle handle;
-        readonly AnthroPart[] parts;
+        readonly AnthroMeshPart[] parts;
 
-        /// <summary>Makes the surface of a body.</summary>
+        /// <summary>Makes the mesh of a body.</summary>
         /// <param name="body">The body; may be disposed afterwards.</param>
         /// <param name="lod">Level of detail, 0 (finest) to 3.</param>
         /// <param name="skinTone">Skin tone on the Monk scale, 1 to 10; 0 for the default.</param>
         /// <param name="bodyOnly">Leaves out eyes, teeth, tongue and eyelashes.</param>
-        public AnthroSurface(AnthroBody body, int lod, int skinTone = 0, bool bodyOnly = false)
+        public AnthroMesh(AnthroBody body, int lod, int skinTone = 0, bool bodyOnly = false)
         {
             var options = new anthronet_mesh_options();
             options.struct_size = (uint)sizeof(anthronet_mesh_options);
@@ -67,7 +67,7 @@ namespace Anthronet
             uint count;
             var mesh = (anthronet_mesh*)handle.DangerousGetHandle();
             Library.Check(NativeMethods.anthronet_mesh_part_count(mesh, &count, &error), &error);
-            parts = new AnthroPart[count];
+            parts = new AnthroMeshPart[count];
             for (var i = 0u; i < count; i++)
             {
                 var part = new anthronet_mesh_part();
@@ -100,7 +100,7 @@ namespace Anthronet
         }
 
         /// <summary>Description of a part.</summary>
-        public AnthroPart Part(int part)
+        public AnthroMeshPart Part(int part)
         {
             return parts[part];
         }
@@ -111,7 +111,7 @@ namespace Anthronet
         /// <summary>Number of triangles of all parts.</summary>
         public int TriangleCount { get; private set; }
 
-        /// <summary>Changes it to another body's surface; removes blend shapes.</summary>
+        /// <summary>Changes it to another body's shape; removes blend shapes.</summary>
         public void Update(AnthroBody body)
         {
             using (var other = new Held(Library.NotNull(body, "body").Handle))
@@ -179,7 +179,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>Pointer to an attribute of a part; valid until the surface is changed or disposed.</summary>
+        /// <summary>Pointer to an attribute of a part; valid until the mesh is changed or disposed.</summary>
         internal void* View(int part, AnthroAttribute attribute)
         {
             using (var held = new Held(handle))

@@ -1,0 +1,53 @@
+//! How each joint of a posed character moves what follows it, as the kernels look it up.
+
+use glam::{Vec3, Vec4};
+
+use super::block::Chunk;
+use super::buffers::Target;
+use super::rigid::Motion;
+use super::{SkinMethod, dual_quaternion, joint_translation, linear};
+
+/// What the kernel of a method looks joints up in.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Palette {
+    method: SkinMethod,
+    /// As many per joint as the method needs.
+    vectors: Vec<Vec4>,
+}
+
+impl Palette {
+    /// Fills it with posed `model_from_joint` · bind `joint_from_model` of each joint.
+    pub(super) fn fill(&mut self, method: SkinMethod, posed: &[Motion], joint_from_model: &[Motion]) {
+        self.method = method;
+        self.vectors.clear();
+        for (posed, bind) in posed.iter().zip(joint_from_model) {
+            match method {
+                SkinMethod::Linear => self.vectors.extend(linear::rows(&posed.after(bind))),
+                SkinMethod::DualQuaternion => {
+                    self.vectors.extend(dual_quaternion::dual_quaternion(&posed.after(bind)));
+                }
+                SkinMethod::JointTranslation => {
+                    let moved = posed.translation - bind.inverse().translation;
+                    self.vectors.push(moved.extend(0.0).as_vec4());
+                }
+            }
+        }
+    }
+
+    /// Poses the vertices of a chunk.
+    pub(super) fn skin(&self, chunk: Chunk<'_>, offsets: Option<&[Vec3]>, target: &mut Target<'_>) {
+        match self.method {
+            SkinMethod::Linear => {
+                let (rows, _) = self.vectors.as_chunks();
+                chunk.run(offsets, target, |block| linear::deform(rows, block));
+            }
+            SkinMethod::DualQuaternion => {
+                let (quaternions, _) = self.vectors.as_chunks();
+                chunk.run(offsets, target, |block| dual_quaternion::deform(quaternions, block));
+            }
+            SkinMethod::JointTranslation => {
+                chunk.run(offsets, target, |block| joint_translation::deform(&self.vectors, block));
+            }
+        }
+    }
+}
