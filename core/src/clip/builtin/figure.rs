@@ -195,7 +195,7 @@ impl Figure {
             let outwards = -Side::ALL[f].sign() * stance.knees_out.to_radians();
             pose.locals[leg.limb.upper].rotation *= Rotation::from_rotation_y(outwards);
             pose.locals[leg.limb.lower].rotation *= Rotation::from_rotation_x(-0.5);
-            leg.limb.reach(&mut pose, leg.above(&model), &Reach::to(target));
+            leg.limb.reach(&mut pose, leg.model_from_parent(&model), &Reach::to(target));
             let toes = Rotation::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
             pose.locals[leg.ball].rotation *= toes;
         }

@@ -45,7 +45,7 @@ pub(super) fn corrections(
     let [heel, ball] = held;
 
     let turns = track.iter().zip(heel.iter().zip(&ball)).map(|(sole, held)| match held {
-        (Some(heel), Some(ball)) => flat_turn(sole.turn, at_rest, *ball - *heel),
+        (Some(heel), Some(ball)) => flat_turn(sole.rotation, at_rest, *ball - *heel),
         _ => None,
     });
     let turns = bridged(&turns.collect::<Vec<_>>(), blend);

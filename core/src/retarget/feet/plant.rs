@@ -232,9 +232,9 @@ impl Planter<'_> {
         model_from_joints(parents, &pose.locals, model);
         for ((leg, goal), correction) in self.legs.iter().zip(goals).zip(corrections) {
             let pivot = if correction.on_heel { leg.heel } else { pose.locals[leg.ball].translation };
-            self.reach(leg, pose, leg.above(model), goal, pivot);
+            self.reach(leg, pose, leg.model_from_parent(model), goal, pivot);
         }
-        std::array::from_fn(|f| self.toe_bend(&self.legs[f], pose, self.legs[f].above(model)))
+        std::array::from_fn(|f| self.toe_bend(&self.legs[f], pose, self.legs[f].model_from_parent(model)))
     }
 
     /// Bends the leg to its goal. Where the ankle is past its limit the foot turns back about `pivot`, a point in its

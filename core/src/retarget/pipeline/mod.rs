@@ -11,7 +11,7 @@ use super::solve::{
     DirectionError, FingerMode, Jump, Retargeter, RootMotion, TransferOptions, direction_error, worst_jump,
 };
 use crate::clip::{Clip, in_place, looped, resample};
-use crate::pose::limits::{JointLimits, TwistsBefore};
+use crate::pose::limits::{JointLimits, TwistHistory};
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
@@ -182,10 +182,10 @@ impl<'a> Way<'a> {
         let Self { target, options, map, retargeter, limits, report } = self;
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
-        let mut twists = TwistsBefore::first(limits, source.frames_per_second());
+        let mut twists = TwistHistory::new(limits, source.frames_per_second());
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
-                limits.clamp_after(target, pose, &mut twists);
+                limits.clamp_next(target, pose, &mut twists);
             }
         })?;
         let as_it_came = options.looped.then(|| clip.clone());
