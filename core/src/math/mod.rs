@@ -2,7 +2,10 @@
 
 pub(crate) mod cholesky;
 mod least_squares;
-#[allow(clippy::disallowed_types, reason = "conversions to and from glam's quaternions, and tests against them")]
+#[allow(
+    clippy::disallowed_types,
+    reason = "conversions to and from glam's quaternions, and tests against them"
+)]
 mod rotation;
 mod smoothstep;
 mod transform;

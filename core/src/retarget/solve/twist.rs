@@ -33,7 +33,7 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
     let rest = joints.target.rest_pose();
     let twist = |(joint, ours): (usize, Option<RigJoint>)| {
         let RigJoint::Sided(helper, side) = ours.filter(|ours| ours.is_twist())? else { return None };
-        let limb = helper.limb();
+        let limb = helper.main_joint();
         let own = matches!(limb, SidedJoint::Upperarm | SidedJoint::Thigh);
         let of = match limb {
             SidedJoint::Lowerarm => SidedJoint::Hand,
