@@ -193,11 +193,16 @@ mod tests {
 
     #[test]
     fn a_pose_has_the_rotations_of_its_frame_and_translations_of_the_tracks() {
-        let turn = Rotation::from_rotation_x(1.0);
+        let rotated = Rotation::from_rotation_x(1.0);
         let track = TranslationTrack { joint: 0, values: vec![Vec3::ZERO, Vec3::X] };
-        let clip =
-            Clip::new("walk".into(), rest(), 30.0, vec![Rotation::IDENTITY, turn, turn, -turn], vec![track])
-                .unwrap();
+        let clip = Clip::new(
+            "walk".into(),
+            rest(),
+            30.0,
+            vec![Rotation::IDENTITY, rotated, rotated, -rotated],
+            vec![track],
+        )
+        .unwrap();
         assert_eq!((clip.frame_count(), clip.duration()), (2, 1.0 / 30.0));
         let pose = clip.pose(1);
         assert_eq!((pose.locals[0].translation, pose.locals[1].translation), (Vec3::X, Vec3::NEG_Y));
@@ -207,9 +212,9 @@ mod tests {
 
     #[test]
     fn poses_become_rotations_and_tracks_of_moving_joints() {
-        let turn = Rotation::from_rotation_x(1.0);
+        let rotated = Rotation::from_rotation_x(1.0);
         let frame = |at: Vec3| {
-            let hips = RigidTransform { rotation: turn, translation: at };
+            let hips = RigidTransform { rotation: rotated, translation: at };
             [hips, RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::NEG_Y }]
         };
         let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();

@@ -112,10 +112,11 @@ mod tests {
     fn clip() -> Clip {
         let rest = Skeleton::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
             .unwrap();
-        let turn = |angle| Rotation::from_rotation_x(angle);
+        let rotation = |angle| Rotation::from_rotation_x(angle);
         let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];
         let tracks = vec![TranslationTrack { joint: 0, values }];
-        Clip::new("c".into(), Arc::new(rest), 10.0, vec![turn(0.0), turn(0.5), turn(1.0)], tracks).unwrap()
+        Clip::new("c".into(), Arc::new(rest), 10.0, vec![rotation(0.0), rotation(0.5), rotation(1.0)], tracks)
+            .unwrap()
     }
 
     #[test]

@@ -15,18 +15,18 @@ const NAMES: [&str; 8] = [
 ];
 
 fn rest() -> Skeleton {
-    let turned = RigidTransform { rotation: Rotation::from_rotation_x(0.4), translation: Vec3::Y };
+    let local = RigidTransform { rotation: Rotation::from_rotation_x(0.4), translation: Vec3::Y };
     let names = NAMES.map(String::from).to_vec();
     let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
-    Skeleton::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
+    Skeleton::new(names, parents, vec![local; NAMES.len()], vec![None; NAMES.len()]).unwrap()
 }
 
 /// Degrees beyond the limit when one joint is rotated from rest about its own axes.
 fn beyond(joint: &str, x: f32, y: f32, z: f32) -> f32 {
     let rest = rest();
     let mut pose = rest.rest_pose().clone();
-    let turn = Vec3::new(x, y, z).map(f32::to_radians);
-    pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_scaled_axis(turn);
+    let rotation = Vec3::new(x, y, z).map(f32::to_radians);
+    pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_scaled_axis(rotation);
     JointLimits::of_rig(&rest).excess(&rest, &pose).into_iter().sum::<f32>().to_degrees()
 }
 
@@ -97,15 +97,15 @@ fn a_full_turn_crosses_the_range_at_a_limited_speed() {
 proptest! {
     #[test]
     fn clamping_twice_is_clamping_once_and_ends_within(
-        turns in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0), NAMES.len()),
+        rotations in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0), NAMES.len()),
     ) {
         let rest = rest();
         let limits = JointLimits::of_rig(&rest);
         let mut pose = rest.rest_pose().clone();
-        for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(turns) {
-            let turn = Rotation::from_xyzw(x, y, z, w);
-            prop_assume!(turn.length_squared() > 1e-3);
-            local.rotation *= turn.normalize();
+        for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(rotations) {
+            let rotation = Rotation::from_xyzw(x, y, z, w);
+            prop_assume!(rotation.length_squared() > 1e-3);
+            local.rotation *= rotation.normalize();
         }
         let given = pose.clone();
         let before = limits.excess(&rest, &pose);

@@ -59,12 +59,14 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
 /// Three frames in which every joint of a scene rotates about its own axis and the root moves.
 pub(crate) fn bent(scene: &Scene) -> Clip {
     let rest = Arc::new(scene.skeleton(str::to_owned).unwrap());
-    let turn = |frame: usize, joint: usize| {
+    let rotation = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
         Rotation::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
     };
     let rotations = (0..3)
-        .flat_map(|f| rest.rest_rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
+        .flat_map(|f| {
+            rest.rest_rotations().enumerate().map(move |(j, q)| q * rotation(f, j)).collect::<Vec<_>>()
+        })
         .collect();
     let start = rest.rest_pose().locals[0].translation;
     let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
@@ -144,8 +146,8 @@ fn tube(influences: usize, rings: u32) -> SceneMesh {
     for ring in 0..rings {
         let t = ring as f32 / (rings - 1) as f32;
         for side in 0..SIDES {
-            let turn = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
-            let (c, s) = (libm::cos(turn) as f32, libm::sin(turn) as f32);
+            let angle = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
+            let (c, s) = (libm::cos(angle) as f32, libm::sin(angle) as f32);
             let radius = 0.05 + 0.01 * t + 0.003 * side as f32;
             mesh.positions.push([0.1 + 0.5 * t, 1.2 + radius * c, 0.1 * t * t - 0.03 + radius * s]);
             mesh.normals.push([0.0, c, s]);

@@ -115,8 +115,8 @@ fn overlap(a: &Contact, b: &Contact) -> (usize, usize) {
 /// The rotation, as axis times angle, from `rotation` to a foot flat on the floor that points along `sole`; `None` when a
 /// direction has no length.
 fn flattening(rotation: Rotation, at_rest: Vec3, sole: Vec3) -> Option<Vec3> {
-    let ahead = Rotation::from_rotation_arc(at_rest.try_normalize()?, sole.try_normalize()?);
-    let delta = ahead * rotation.conjugate();
+    let heading = Rotation::from_rotation_arc(at_rest.try_normalize()?, sole.try_normalize()?);
+    let delta = heading * rotation.conjugate();
     Some((if delta.w < 0.0 { -delta } else { delta }).to_scaled_axis())
 }
 

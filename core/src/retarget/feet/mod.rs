@@ -1,7 +1,7 @@
 //! Foot contact: finding contacts with the floor, measuring foot sliding, and planting feet.
 //!
-//! The sole of a foot has three points: heel, ball and tip of the toes. [`contacts`] finds when heels and balls stand still
-//! on the floor, [`measure`] tells how far they slide meanwhile and how deep they sink into it, and [`plant`] holds them in
+//! The sole of a foot has three points: heel, ball and tip of the toes. [`contacts()`] finds when heels and balls stand still
+//! on the floor, [`measure`] tells how far they slide meanwhile and how deep they sink into it, and [`plant()`] holds them in
 //! place (Kovar, Schreiner, Gleicher, "Footskate cleanup for motion capture editing", SCA 2002): the sole is moved rigidly
 //! so that what touches the floor stays in place and rolls without slipping, the pelvis is lowered a little where a leg is
 //! too short, and two-bone inverse kinematics bends the leg.
@@ -93,7 +93,7 @@ pub struct FeetMeasure {
     pub deepest: [f32; 2],
 }
 
-/// The result of [`plant`].
+/// The result of [`plant()`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct FeetReport {
     /// Height of the floor in the input, metres; it is 0 in the output.

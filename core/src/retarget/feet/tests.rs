@@ -93,12 +93,12 @@ fn toes_leave_the_floor_without_a_jump() {
     for (body, rest) in bodies() {
         let (planted, report) = plant(&lifted(&rest), &FeetOptions::default()).unwrap();
         let ball = rest.find("ball_l").unwrap();
-        let turns: Vec<f32> = (1..planted.frame_count())
+        let angles: Vec<f32> = (1..planted.frame_count())
             .map(|f| planted.rotations(f)[ball].angle_between(planted.rotations(f - 1)[ball]).to_degrees())
             .collect();
-        let most = turns.iter().copied().fold(0.0, f32::max);
-        assert!(turns.iter().sum::<f32>() > 60.0, "{body}: the toes bend on the floor: {turns:?}");
-        assert!(most < 21.0, "{body}: {most} degrees in one frame: {turns:?}");
+        let most = angles.iter().copied().fold(0.0, f32::max);
+        assert!(angles.iter().sum::<f32>() > 60.0, "{body}: the toes bend on the floor: {angles:?}");
+        assert!(most < 21.0, "{body}: {most} degrees in one frame: {angles:?}");
         assert!(report.after.deepest[0] < 0.007, "{body}: {report:?}");
     }
 }
