@@ -66,7 +66,7 @@ fn ranges_of_sided(joint: SidedJoint) -> Option<Ranges> {
         J::Clavicle => ranges([-35., 45.], [-25., 50.], [-50., 50.]),
         // From SHOULDER_CENTRE: across the chest and behind; overhead and hanging.
         J::Upperarm => ranges([-125., 120.], [-125., 125.], [-125., 125.]),
-        // At rest the palm faces down, which is nearly full pronation; supination takes it past facing up.
+        // At rest the palm faces down, which is nearly full pronation; supination takes it to nearly facing up.
         J::Lowerarm => ranges([-15., 160.], [-15., 15.], [-170., 60.]),
         J::Hand => ranges([-55., 45.], [-95., 95.], [-170., 60.]),
         J::Thumb01 => ranges([-60., 60.], [-60., 60.], [-60., 60.]),

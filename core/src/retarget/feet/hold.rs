@@ -72,8 +72,8 @@ pub(super) fn corrections(
     moves.map(|((scaled_axis, shift), on_heel)| Correction { scaled_axis, shift, on_heel }).collect()
 }
 
-/// The point of the floor at which each contact is held. The longest contact is held at its mean position; one that overlaps
-/// a held contact of the other point is held a foot's length from it, in the foot's direction half-way through the overlap.
+/// The point of the floor at which each contact is held: its mean position, the longest contact first; but a contact that
+/// overlaps a held one of the other point is held a foot's length from that, in the foot's direction half-way through the overlap.
 fn anchors(track: &[Sole], contacts: &[Contact], sole_length: f32) -> Vec<Vec3> {
     let mut anchors: Vec<Option<Vec3>> = vec![None; contacts.len()];
     loop {

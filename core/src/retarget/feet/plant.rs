@@ -269,7 +269,7 @@ impl Planter<'_> {
         let ball = foot.then(pose.locals[leg.ball]);
         let wanted = leg.clearance[1] - ball.translation.y - self.options.depth;
         let (axis, toes) = (ball.rotation * Vec3::X, ball.rotation * leg.tip);
-        // Solve toes.y · cos + (axis × toes).y · sin = wanted for the rising solution. The axis is level but for the foot's roll.
+        // The rising solution of toes.y · cos + (axis × toes).y · sin = wanted. The axis is level but for the foot's roll.
         let (cos, sin) = (toes.y, axis.cross(toes).y);
         let most = libm::sqrtf(cos * cos + sin * sin);
         if toes.y >= wanted || most < 1e-6 {
