@@ -1,4 +1,4 @@
-//! A clip: a skeleton at rest and how its joints move, sampled at a fixed rate.
+//! A clip: the motion of a skeleton, sampled at a fixed rate.
 
 use std::sync::Arc;
 
@@ -8,21 +8,21 @@ use crate::math::{RigidTransform, Rotation, unit};
 use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
-/// The most frames that a clip may have.
+/// Most frames of a clip.
 pub const MAX_FRAMES: usize = 1 << 20;
-/// The most rotations that a clip may hold, frames × joints, so that a damaged file cannot ask for all memory.
+/// Most rotations of a clip, frames × joints, so that a damaged file cannot exhaust memory.
 pub const MAX_ROTATIONS: usize = 1 << 28;
 
-/// Where one joint is in every frame.
+/// The translation of one joint in every frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TranslationTrack {
-    /// The joint.
+    /// Index of the joint.
     pub joint: u32,
-    /// Frames: translation in the parent's space, metres.
+    /// One per frame: translation of `parent_from_joint`, metres.
     pub values: Vec<Vec3>,
 }
 
-/// A motion of a skeleton. Metres, seconds, +Y up.
+/// A motion of a skeleton, sampled at a fixed rate. Metres, seconds, +Y up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     name: String,
@@ -34,13 +34,14 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// From parts: `rotations` holds, frame by frame, `parent_from_joint` of every joint (frames × joints);
-    /// `translations` those joints that move in their parents (the root, mostly); the others stay at rest.
+    /// From tracks: `rotations` are those of `parent_from_joint`, frame by frame, one per joint (frames × joints);
+    /// `translations` are tracks of the joints that move relative to their parents, mostly the root; other joints keep their
+    /// rest translation. Rotations are normalised, and each takes the sign nearer to that of the previous frame.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the clip, the joint and the frame when there are no frames or too many, the sizes do
-    /// not fit, a joint has two tracks, a number is not finite, or the rate is not in 0.1..=1000 frames a second.
-    /// Rotations are normalised, and of two signs each takes the one nearer to the frame before.
+    /// [`Error::Invalid`] naming the clip, the joint and the frame when there are no frames or too many, the sizes do not
+    /// match, a joint has two tracks, a number is not finite, a rotation is zero, or the rate is not in 0.1..=1000 frames a
+    /// second.
     pub fn new(
         name: String,
         rest: Arc<Skeleton>,
@@ -89,8 +90,8 @@ impl Clip {
         Ok(Self { name, rest, frames_per_second, frame_count, rotations, translations })
     }
 
-    /// From poses: `locals` holds, frame by frame, `parent_from_joint` of every joint (frames × joints). Joints that are
-    /// not always where they rest get a translation track.
+    /// From poses: `locals` are `parent_from_joint`, frame by frame, one per joint (frames × joints). Joints that leave their
+    /// rest translation get a translation track.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -114,7 +115,7 @@ impl Clip {
         Self::new(name, rest, frames_per_second, rotations, translations)
     }
 
-    /// Name, as files say it.
+    /// Its name, as in files.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -125,7 +126,7 @@ impl Clip {
         self
     }
 
-    /// The skeleton at rest.
+    /// The skeleton that moves, with its rest pose.
     pub fn skeleton(&self) -> &Arc<Skeleton> {
         &self.rest
     }
@@ -140,23 +141,23 @@ impl Clip {
         self.frame_count
     }
 
-    /// From the first to the last frame, seconds.
+    /// Time from the first to the last frame, seconds.
     pub fn duration(&self) -> f64 {
         (self.frame_count - 1) as f64 / self.frames_per_second
     }
 
-    /// Rotations of a frame, one per joint, `parent_from_joint`; empty beyond the last frame.
+    /// Rotations of `parent_from_joint` in a frame, one per joint; empty beyond the last frame.
     pub fn rotations(&self, frame: usize) -> &[Rotation] {
         let joints = self.rest.len();
         self.rotations.get(frame * joints..(frame + 1) * joints).unwrap_or(&[])
     }
 
-    /// The joints that move in their parents, in the order of the joints.
+    /// Tracks of the joints that move relative to their parents, in the order of the joints.
     pub fn translations(&self) -> &[TranslationTrack] {
         &self.translations
     }
 
-    /// Writes the pose of a frame; beyond the last frame, that of the last.
+    /// Writes the pose of a frame to `pose`; beyond the last frame, that of the last.
     pub fn pose_into(&self, frame: usize, pose: &mut Pose) {
         let frame = frame.min(self.frame_count - 1);
         pose.locals.clear();
@@ -191,24 +192,29 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_takes_rotations_of_its_frame_and_translations_where_there_are_tracks() {
-        let turn = Rotation::from_rotation_x(1.0);
+    fn a_pose_has_the_rotations_of_its_frame_and_translations_of_the_tracks() {
+        let rotated = Rotation::from_rotation_x(1.0);
         let track = TranslationTrack { joint: 0, values: vec![Vec3::ZERO, Vec3::X] };
-        let clip =
-            Clip::new("walk".into(), rest(), 30.0, vec![Rotation::IDENTITY, turn, turn, -turn], vec![track])
-                .unwrap();
+        let clip = Clip::new(
+            "walk".into(),
+            rest(),
+            30.0,
+            vec![Rotation::IDENTITY, rotated, rotated, -rotated],
+            vec![track],
+        )
+        .unwrap();
         assert_eq!((clip.frame_count(), clip.duration()), (2, 1.0 / 30.0));
         let pose = clip.pose(1);
         assert_eq!((pose.locals[0].translation, pose.locals[1].translation), (Vec3::X, Vec3::NEG_Y));
-        assert!(pose.locals[1].rotation.dot(clip.pose(0).locals[1].rotation) > 0.99, "nearer sign");
+        assert!(pose.locals[1].rotation.dot(clip.pose(0).locals[1].rotation) > 0.99, "continuous sign");
         assert_eq!(clip.pose(9), pose);
     }
 
     #[test]
-    fn poses_become_rotations_and_the_tracks_that_move() {
-        let turn = Rotation::from_rotation_x(1.0);
+    fn poses_become_rotations_and_tracks_of_moving_joints() {
+        let rotated = Rotation::from_rotation_x(1.0);
         let frame = |at: Vec3| {
-            let hips = RigidTransform { rotation: turn, translation: at };
+            let hips = RigidTransform { rotation: rotated, translation: at };
             [hips, RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::NEG_Y }]
         };
         let poses = [frame(Vec3::NEG_Y), frame(Vec3::X)].concat();

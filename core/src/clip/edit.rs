@@ -1,4 +1,4 @@
-//! Clips made of one clip: at another rate, closed to a loop, on the spot.
+//! Editing a clip: resampling, looping, removing root motion.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 impl Clip {
-    /// The tracks that move a joint with no other moving joint above it.
+    /// The topmost translation tracks: of joints none of whose ancestors has one. They carry root motion.
     pub(super) fn top_tracks(&self) -> impl Iterator<Item = &TranslationTrack> {
         self.translations().iter().filter(|track| {
             let mut above = self.skeleton().parents()[track.joint as usize];
@@ -26,7 +26,7 @@ impl Clip {
     }
 }
 
-/// A clip of poses; joints that leave their rest translation get a track.
+/// A clip from poses; joints that leave their rest translation get a track.
 ///
 /// # Errors
 /// As [`Clip::new`].
@@ -36,14 +36,14 @@ pub(super) fn clip_of_poses(
     frames_per_second: f64,
     poses: impl IntoIterator<Item = Pose>,
 ) -> Result<Clip> {
-    let home: Vec<Vec3> = rest.rest_pose().locals.iter().map(|l| l.translation).collect();
+    let at_rest: Vec<Vec3> = rest.rest_pose().locals.iter().map(|l| l.translation).collect();
     let mut rotations = Vec::new();
     let mut tracks: Vec<Option<Vec<Vec3>>> = vec![None; rest.len()];
     for (frame, pose) in poses.into_iter().enumerate() {
         rotations.extend(pose.locals.iter().map(|l| l.rotation));
-        for ((local, home), track) in pose.locals.iter().zip(&home).zip(&mut tracks) {
-            if track.is_none() && local.translation != *home {
-                *track = Some(vec![*home; frame]);
+        for ((local, at_rest), track) in pose.locals.iter().zip(&at_rest).zip(&mut tracks) {
+            if track.is_none() && local.translation != *at_rest {
+                *track = Some(vec![*at_rest; frame]);
             }
             if let Some(values) = track {
                 values.push(local.translation);
@@ -58,7 +58,7 @@ pub(super) fn clip_of_poses(
     Clip::new(name.to_owned(), rest.clone(), frames_per_second, rotations, tracks)
 }
 
-/// The clip at another rate. The first frame stays; the last is the last that falls within the clip.
+/// The clip at another frame rate. The first frame is kept; the last is the last that lies within the clip.
 ///
 /// # Errors
 /// [`Error::Request`] when the rate is not in 0.1..=1000 or the clip would have more than [`MAX_FRAMES`].
@@ -67,7 +67,7 @@ pub fn resample(clip: &Clip, frames_per_second: f64) -> Result<Clip> {
     if !(0.1..=1000.0).contains(&frames_per_second) {
         return Err(Error::request(field, format!("expected 0.1 to 1000, got {frames_per_second}")));
     }
-    // A hundredth of a frame for the rounding of rates such as 29.97.
+    // A tolerance of a hundredth of a frame, as rates such as 29.97 are rounded.
     let frames = libm::floor(clip.duration() * frames_per_second + 0.01) as usize + 1;
     if frames > MAX_FRAMES {
         let message =
@@ -79,9 +79,8 @@ pub fn resample(clip: &Clip, frames_per_second: f64) -> Result<Clip> {
     clip_of_poses(clip.name(), clip.skeleton(), frames_per_second, poses)
 }
 
-/// The clip closed to a loop: its last `seconds` turn into the frames that stand before its beginning, so that the last
-/// frame is the first. The clip gets shorter by `seconds`: what leads up to the new first frame is the old beginning.
-/// Travel along the floor is kept; height and all else meet.
+/// Makes the clip loop: its first `seconds` are cut off and blended over its last `seconds`, so that the last pose equals
+/// the first. The clip gets shorter by `seconds`. Root motion along the floor is kept; height and everything else match.
 ///
 /// # Errors
 /// [`Error::Request`] when `seconds` is not between 0 and half of the clip.
@@ -92,7 +91,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
     }
     let fade = libm::round(seconds * clip.frames_per_second()) as usize;
     let last = clip.frame_count() - 1;
-    // Frames fade..=last remain. Over its last `fade` frames the clip becomes frames 0..=fade, moved to where it is.
+    // Frames fade..=last remain. Over the last `fade` of them the clip blends into frames 0..=fade, moved by its travel.
     let fade = fade.min(last / 2);
     let travel = travel(clip, fade, last);
     let poses = (fade..=last).map(|frame| {
@@ -114,7 +113,7 @@ pub fn looped(clip: &Clip, seconds: f64) -> Result<Clip> {
     clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
-/// A clip whose last frame is its first but for its travel, `times` times one after the other.
+/// Plays a looping clip `times` times. Its last pose equals its first but for root motion, which continues.
 ///
 /// # Errors
 /// As [`Clip::new`].
@@ -122,17 +121,17 @@ pub(crate) fn repeated(clip: &Clip, times: usize) -> Result<Clip> {
     let cycle = clip.frame_count() - 1;
     let travel = travel(clip, 0, cycle);
     let poses = (0..=times * cycle).map(|frame| {
-        let turn = (frame / cycle.max(1)).min(times.saturating_sub(1));
-        let mut pose = clip.pose(frame - turn * cycle);
+        let round = (frame / cycle.max(1)).min(times.saturating_sub(1));
+        let mut pose = clip.pose(frame - round * cycle);
         for (joint, by) in &travel {
-            pose.locals[*joint as usize].translation += *by * turn as f32;
+            pose.locals[*joint as usize].translation += *by * round as f32;
         }
         pose
     });
     clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
-/// `count` frames of a clip, from `start` on, above the place where the whole clip starts.
+/// `count` frames of a clip from `start` on, moved along the floor back to where the whole clip starts.
 ///
 /// # Errors
 /// As [`Clip::new`].
@@ -148,7 +147,7 @@ pub(crate) fn cut(clip: &Clip, start: usize, count: usize) -> Result<Clip> {
     clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
-/// The clip with its first pose for its last, where that stands.
+/// The clip with its last pose replaced by its first, at the last one's position on the floor.
 ///
 /// # Errors
 /// As [`Clip::new`].
@@ -167,13 +166,13 @@ pub(crate) fn closed(clip: &Clip) -> Result<Clip> {
     clip_of_poses(clip.name(), clip.skeleton(), clip.frames_per_second(), poses)
 }
 
-/// How far a clip goes along the floor between two frames: the joints that do, metres.
+/// Root motion along the floor between two frames: joints and their displacements, metres.
 fn travel(clip: &Clip, from: usize, to: usize) -> Vec<(u32, Vec3)> {
     clip.top_tracks().map(|t| (t.joint, (t.values[to] - t.values[from]).with_y(0.0))).collect()
 }
 
-/// The clip on the spot: joints with translations that have no such parent stay over the place that they start at;
-/// heights are kept.
+/// The clip without root motion: the topmost joints with translations keep their first position on the floor; heights are
+/// kept.
 ///
 /// # Errors
 /// As [`Clip::new`].
@@ -194,7 +193,7 @@ mod tests {
     use crate::testing::clips::swing;
 
     #[test]
-    fn resampling_keeps_the_motion() {
+    fn resampling_and_back_keeps_the_rotations() {
         let clip = swing("a", 0.5, 31);
         let fine = resample(&clip, 120.0).unwrap();
         assert_eq!((fine.frame_count(), fine.frames_per_second()), (121, 120.0));
@@ -210,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_ends_as_it_begins_but_for_its_travel() {
+    fn a_loop_ends_in_its_first_pose_and_still_travels() {
         let clip = swing("a", 0.5, 61);
         let closed = looped(&clip, 0.5).unwrap();
         assert_eq!(closed.frame_count(), 46);
@@ -221,14 +220,14 @@ mod tests {
         }
         assert!(last.locals[0].translation.z - first.locals[0].translation.z > 1.0, "it still travels");
         let step = |f: usize| closed.rotations(f)[1].angle_between(closed.rotations(f - 1)[1]);
-        // A cut would turn by 0.7 rad at once; the swing itself turns by 0.1.
+        // A cut would rotate by 0.7 rad in one frame; the swing itself rotates by 0.1.
         assert!((1..46).map(step).fold(0.0, f32::max) < 0.35, "without a jump");
         assert_eq!(looped(&clip, 0.0).unwrap().frame_count(), 61);
         assert!(looped(&clip, 9.0).is_err());
     }
 
     #[test]
-    fn on_the_spot_heights_stay() {
+    fn in_place_keeps_heights_and_rotations() {
         let clip = swing("a", 0.5, 61);
         let still = in_place(&clip).unwrap();
         for frame in 0..61 {

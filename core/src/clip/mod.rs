@@ -1,4 +1,4 @@
-//! Motion: clips, sampling, blending, editing, and the built-in clips. Stands on [`pose`](crate::pose).
+//! Animation clips: sampling, blending, editing, and the built-in clips.
 
 mod blend;
 mod builtin;

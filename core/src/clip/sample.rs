@@ -1,4 +1,4 @@
-//! A clip at any time.
+//! Sampling a clip at any time.
 
 use super::Clip;
 use crate::math::RigidTransform;
@@ -10,19 +10,18 @@ pub enum Wrap {
     /// Holds the first and the last frame.
     #[default]
     Once,
-    /// Starts anew. The last frame is the first frame of the next round, as in clips from [`looped`](super::looped),
-    /// so the period is the clip's duration.
+    /// Repeats. The last frame is the first frame of the next cycle, as in clips from [`looped`](super::looped), so the
+    /// period is the clip's duration.
     Loop,
-    /// As [`Wrap::Loop`] with root motion: each round the joints with translations that have no such parent go on by what
-    /// they moved in one round along the floor. For clips that walk straight ahead.
+    /// Repeats with root motion: as [`Wrap::Loop`], and each cycle moves the topmost joints with translations on by their
+    /// displacement along the floor in one cycle. For clips that walk straight ahead.
     RootMotion,
 }
 
-/// Reads poses of a clip between its frames. Cheap to make and to copy; sampling allocates nothing once the pose has
-/// its size.
+/// Samples poses of a clip between its frames. Cheap to create and copy; sampling allocates nothing once the pose has its
+/// size.
 ///
-/// Rotations are interpolated spherically (where two frames are less than about 2° apart linearly, which differs by
-/// less than 1e-6 rad), translations linearly.
+/// Rotations are interpolated by [`slerp`](crate::math::Rotation::slerp), translations linearly.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler<'a> {
     clip: &'a Clip,
@@ -30,14 +29,14 @@ pub struct Sampler<'a> {
 }
 
 impl<'a> Sampler<'a> {
-    /// A reader of a clip.
+    /// A sampler of a clip.
     pub fn new(clip: &'a Clip, wrap: Wrap) -> Self {
         Self { clip, wrap }
     }
 
-    /// Writes the pose at a time, seconds. A time that is not finite is taken for 0.
+    /// Writes the pose at a time in seconds to `pose`. A time that is not finite counts as 0.
     pub fn sample_into(&self, seconds: f64, pose: &mut Pose) {
-        let (frame, share, rounds) = self.locate(if seconds.is_finite() { seconds } else { 0.0 });
+        let (frame, share, cycles) = self.locate(if seconds.is_finite() { seconds } else { 0.0 });
         self.clip.pose_into(frame, pose);
         if share > 0.0 {
             let next = self.clip.rotations(frame + 1);
@@ -49,45 +48,45 @@ impl<'a> Sampler<'a> {
                 local.translation = local.translation.lerp(track.values[frame + 1], share);
             }
         }
-        if rounds != 0.0 {
+        if cycles != 0.0 {
             for track in self.clip.top_tracks() {
                 let last = track.values[track.values.len() - 1];
                 let step = (last - track.values[0]).with_y(0.0);
-                pose.locals[track.joint as usize].translation += step * rounds;
+                pose.locals[track.joint as usize].translation += step * cycles;
             }
         }
     }
 
-    /// The pose at a time, seconds.
+    /// The pose at a time in seconds.
     pub fn sample(&self, seconds: f64) -> Pose {
         let mut pose = Pose::default();
         self.sample_into(seconds, &mut pose);
         pose
     }
 
-    /// Frame before a time, how far it is to the next, and rounds gone by.
+    /// The frame before a time, the fraction of the way to the next, and the cycles of root motion before it.
     fn locate(&self, seconds: f64) -> (usize, f32, f32) {
         let last = self.clip.frame_count() - 1;
         let duration = self.clip.duration();
         let mut at = seconds;
-        let mut rounds = 0.0;
+        let mut cycles = 0.0;
         if self.wrap != Wrap::Once && duration > 0.0 {
-            let round = libm::floor(seconds / duration);
-            at = seconds - round * duration;
-            rounds = if self.wrap == Wrap::RootMotion { round as f32 } else { 0.0 };
+            let cycle = libm::floor(seconds / duration);
+            at = seconds - cycle * duration;
+            cycles = if self.wrap == Wrap::RootMotion { cycle as f32 } else { 0.0 };
         }
         let place = (at * self.clip.frames_per_second()).clamp(0.0, last as f64);
-        // Frames whose time is not exact in binary are still hit.
+        // Times of frames, which binary numbers only approximate, give the frame itself.
         let nearest = libm::round(place);
         if libm::fabs(place - nearest) < 1e-6 {
-            return (nearest as usize, 0.0, rounds);
+            return (nearest as usize, 0.0, cycles);
         }
         let frame = (place as usize).min(last);
-        (frame, (place - frame as f64) as f32, rounds)
+        (frame, (place - frame as f64) as f32, cycles)
     }
 }
 
-/// Mixes two local transforms: `a` at 0, `b` at 1.
+/// Interpolates two transforms `parent_from_joint`: `a` at 0, `b` at 1.
 pub(super) fn mix(a: RigidTransform, b: RigidTransform, share: f32) -> RigidTransform {
     if share == 0.0 {
         return a;
@@ -109,18 +108,19 @@ mod tests {
     use crate::math::Rotation;
     use crate::skeleton::Skeleton;
 
-    /// One joint that turns from 0 to 1 radian about X and moves a metre ahead and up, in two frames at 10 a second.
+    /// One joint that rotates from 0 to 1 radian about X and moves a metre forwards and up, in three frames at 10 a second.
     fn clip() -> Clip {
         let rest = Skeleton::new(vec!["root".into()], vec![None], vec![RigidTransform::IDENTITY], vec![None])
             .unwrap();
-        let turn = |angle| Rotation::from_rotation_x(angle);
+        let rotation = |angle| Rotation::from_rotation_x(angle);
         let values = vec![Vec3::ZERO, Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.0, 1.0, 1.0)];
         let tracks = vec![TranslationTrack { joint: 0, values }];
-        Clip::new("c".into(), Arc::new(rest), 10.0, vec![turn(0.0), turn(0.5), turn(1.0)], tracks).unwrap()
+        Clip::new("c".into(), Arc::new(rest), 10.0, vec![rotation(0.0), rotation(0.5), rotation(1.0)], tracks)
+            .unwrap()
     }
 
     #[test]
-    fn between_frames_it_turns_evenly() {
+    fn between_frames_rotation_and_translation_are_interpolated() {
         let clip = clip();
         let local = Sampler::new(&clip, Wrap::Once).sample(0.025).locals[0];
         assert!(local.rotation.angle_between(Rotation::from_rotation_x(0.125)) < 1e-3);
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn outside_it_holds_repeats_or_travels() {
+    fn outside_its_duration_a_clip_holds_repeats_or_travels() {
         let clip = clip();
         let at = |wrap, seconds| Sampler::new(&clip, wrap).sample(seconds).locals[0].translation;
         assert_eq!(at(Wrap::Once, -1.0), Vec3::ZERO);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_met_exactly() {
+    fn the_time_of_a_frame_gives_that_frame() {
         let clip = clip();
         for wrap in [Wrap::Once, Wrap::Loop] {
             assert_eq!(Sampler::new(&clip, wrap).sample(0.1), clip.pose(1));

@@ -1,7 +1,7 @@
-//! A small dense Cholesky factorisation in f64, for the matrices of a few dozen rows that measures make, and the few
-//! hundred unknowns of a fitted body.
+//! Dense Cholesky factorisation in `f64`, for matrices over a few dozen measures or the few hundred unknowns of a fitted
+//! body.
 //!
-//! Plain loops in a fixed order: the same bits on every host.
+//! Plain loops in a fixed order, so that the result has the same bits on every machine.
 
 /// The lower triangle L of A = L Lᵀ, row-major, n × n.
 #[derive(Clone, Debug)]
@@ -38,8 +38,8 @@ impl Cholesky {
         Some(Self { n, l })
     }
 
-    /// Factors A + δI with the smallest δ of a geometric ladder that works, starting at zero: for positive
-    /// *semi*-definite matrices, whose smallest pivots are rounding noise. `None` for what is not even that.
+    /// Factors A + δI with the smallest δ that works of 0 and 10⁻¹⁵, 10⁻¹⁴, … below 10⁻³ times the largest diagonal entry:
+    /// for positive *semi*-definite matrices, whose smallest pivots are rounding noise. `None` when no δ works.
     pub(crate) fn with_jitter(a: &[f64], n: usize) -> Option<Self> {
         if let Some(factor) = Self::new(a, n) {
             return Some(factor);
@@ -59,7 +59,7 @@ impl Cholesky {
         None
     }
 
-    /// x with L x = b, in place; entries past n are left alone.
+    /// Solves L x = b in place; entries of `b` beyond n are not changed.
     pub(crate) fn forward(&self, b: &mut [f64]) {
         for i in 0..self.n.min(b.len()) {
             let dot: f64 = (0..i).map(|k| self.l[i * self.n + k] * b[k]).sum();
@@ -67,7 +67,7 @@ impl Cholesky {
         }
     }
 
-    /// x with A x = b, in place; `b` has n entries.
+    /// Solves A x = b in place; `b` has n entries.
     pub(crate) fn solve(&self, b: &mut [f64]) {
         self.forward(b);
         let n = self.n.min(b.len());
@@ -84,7 +84,7 @@ impl Cholesky {
         x.iter().map(|v| v * v).sum()
     }
 
-    /// L x: turns independent normal numbers into numbers of covariance A.
+    /// L x: gives independent standard normal numbers the covariance A.
     pub(crate) fn multiply(&self, x: &[f64]) -> Vec<f64> {
         (0..self.n)
             .map(|i| x.iter().take(i + 1).enumerate().map(|(k, v)| self.l[i * self.n + k] * v).sum())

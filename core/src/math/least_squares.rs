@@ -2,7 +2,10 @@
 
 use super::cholesky::Cholesky;
 
-/// Smallest `|A x - b|² + ridge |x|²` by Cholesky, refined twice, for `n` unknowns. `None` for numbers that are not finite.
+/// Minimises `|A x − b|² + ridge |x|²` over `n` unknowns x. `rows` are the rows of A, `right` is b.
+///
+/// Solves the normal equations by a Cholesky factor, with two steps of iterative refinement. `None` when a number is not
+/// finite or the normal matrix is not positive definite.
 pub(crate) fn least_squares(rows: &[Vec<f64>], right: &[f64], n: usize, ridge: f64) -> Option<Vec<f64>> {
     let mut normal = vec![0.0; n * n];
     for row in rows {

@@ -1,8 +1,11 @@
-//! Mathematics that knows nothing of bodies: rotations, rigid transforms, factorisations, least squares, eased steps.
+//! General mathematics: rotations, rigid transforms, Cholesky factors, least squares, smoothstep.
 
 pub(crate) mod cholesky;
 mod least_squares;
-#[allow(clippy::disallowed_types, reason = "conversions from and to glam's, and the comparison with it")]
+#[allow(
+    clippy::disallowed_types,
+    reason = "conversions to and from glam's quaternions, and tests against them"
+)]
 mod rotation;
 mod smoothstep;
 mod transform;

@@ -1,8 +1,8 @@
 //! Two-bone inverse kinematics: hip, knee, ankle; shoulder, elbow, wrist.
 //!
-//! The law of cosines gives the bend, the shortest rotation of the whole limb the direction, so that the plane in which
-//! the limb bends swings with it and is otherwise kept, unless a pole says where it shall lie. A limb that is straight, or
-//! bent the wrong way, bends the way its middle joint does.
+//! The law of cosines gives the bend of the middle joint. The shortest rotation then swings the limb to the target and
+//! carries the plane in which it bends along, unless a pole gives that plane. A limb that is straight or bent backwards
+//! bends in the natural direction of its middle joint.
 //!
 //! ```text
 //!           lower (knee)
@@ -20,16 +20,16 @@ use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Pose, RigJoint, Skeleton};
 use crate::{Error, Result};
 
-/// Which way the middle joint of a limb points when the limb bends.
+/// To which side the middle joint of a limb moves when the limb bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bend {
-    /// To where the upper bone's +Z axis leans, about its X axis: knees.
+    /// Towards the upper joint's +Z axis, about its X axis: knees.
     Forwards,
-    /// Away from it: elbows.
+    /// Away from +Z: elbows.
     Backwards,
 }
 
-/// Two bones and the joint at their end.
+/// Two bones, one behind the other, and the joint at their end: an arm or a leg. Joints are indices into the skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limb {
     /// Hip or shoulder.
@@ -38,41 +38,41 @@ pub struct Limb {
     pub lower: usize,
     /// Ankle or wrist, a child of `lower`.
     pub end: usize,
-    /// Which way it bends.
+    /// To which side it bends.
     pub bend: Bend,
 }
 
-/// Where a limb shall reach, and how.
+/// The goal of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// The end joint's position and rotation, `model_from_end`.
+    /// Where the end joint is to be and its rotation, `model_from_joint`, metres.
     pub target: RigidTransform,
-    /// Which way the middle joint shall lie off the line from the upper joint to the end, a direction in model space of any
-    /// length. `None`, and a direction along that line, keep the plane in which the limb bends already.
+    /// To which side of the line from the upper to the end joint the middle joint is to lie: a direction in model space, of
+    /// any length. `None`, or a direction along that line, keeps the plane in which the limb bends.
     pub pole: Option<Vec3>,
-    /// How much of it is done: 0 leaves the pose, 1 reaches; rotations between are interpolated.
+    /// 0 keeps the pose, 1 reaches for the target; between, joint rotations are interpolated. Clamped to 0..=1.
     pub weight: f32,
-    /// The stretch, as a share of the limb's length, over which it slows down before it is straight; a target within
-    /// it is missed by up to that. 0 to 0.5.
+    /// The last part of the limb's stretch, as a share of its length, over which it approaches straightness ever more
+    /// slowly; a target there is missed by up to that. Clamped to 0..=0.5.
     pub softness: f32,
 }
 
 impl Reach {
-    /// All the way to a target, exactly, in the plane in which the limb bends.
+    /// Reaches fully for a target, without softness, in the plane in which the limb bends.
     pub const fn to(target: RigidTransform) -> Self {
         Self { target, pole: None, weight: 1.0, softness: 0.0 }
     }
 }
 
-/// How far from its target an end joint may be for the target to be reached, as a share of the limb's length: the rounding of
-/// two bones in `f32`.
+/// How far from its target an end joint may be and still count as there, as a share of the limb's length: rounding of two
+/// bones in `f32`.
 const REACHED: f32 = 1e-4;
 
 impl Limb {
     /// The limb of these three joints.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming a joint that is missing or not the child of the one before.
+    /// [`Error::Invalid`] naming a joint that is missing or is not a child of the one before.
     pub fn of(rest: &Skeleton, chain: [RigJoint; 3], bend: Bend) -> Result<Self> {
         let mut joints = [0; 3];
         for (i, joint) in chain.iter().enumerate() {
@@ -86,23 +86,24 @@ impl Limb {
         Ok(Self { upper, lower, end, bend })
     }
 
-    /// The joints' `model_from_joint`: upper, lower, end. `parent` is `model_from_parent` of the upper joint.
+    /// `model_from_joint` of upper, lower and end; `parent` is that of the upper joint's parent.
     pub fn model_from_joints(&self, pose: &Pose, parent: RigidTransform) -> [RigidTransform; 3] {
         let upper = parent.then(pose.locals[self.upper]);
         let lower = upper.then(pose.locals[self.lower]);
         [upper, lower, lower.then(pose.locals[self.end])]
     }
 
-    /// The limb's length when it is straight, metres.
+    /// Length of the straight limb, metres.
     pub fn length(&self, pose: &Pose) -> f32 {
         pose.locals[self.lower].translation.length() + pose.locals[self.end].translation.length()
     }
 
-    /// Rotates the three joints so that the end stands at its target with the target's rotation. A target out of reach
-    /// is pointed at. `parent` is `model_from_parent` of the upper joint; nothing changes when a bone has no length or
-    /// a number is not finite.
+    /// Rotates the three joints so that the end joint takes the target's position and rotation. For a target out of reach
+    /// the limb points at it. `parent` is `model_from_joint` of the upper joint's parent. The pose does not change when a
+    /// bone has no length or a number is not finite.
     ///
-    /// Whether the end reaches its target at full weight: not when that is too far, too near, or within the soft stretch.
+    /// Returns whether the end reaches the target at full weight: not when that is too far, too near, or within the soft
+    /// stretch.
     pub fn reach(&self, pose: &mut Pose, parent: RigidTransform, reach: &Reach) -> bool {
         let [upper, lower, end] = self.model_from_joints(pose, parent);
         let (first, second) = (lower.translation - upper.translation, end.translation - lower.translation);
@@ -116,7 +117,7 @@ impl Limb {
         let distance = soften(to_target.length(), a + b, reach.softness).max((a - b).abs());
         let pole = self.pole(upper.rotation, line, first);
 
-        // The limb bent to the distance, still along its old line, then swung to the target.
+        // Bend the limb to the distance along its old line, then swing it to the target.
         let cos = ((a * a + distance * distance - b * b) / (2.0 * a * distance.max(1e-6))).clamp(-1.0, 1.0);
         let sin = libm::sqrtf(1.0 - cos * cos);
         let new_first = line * (a * cos) + pole * (a * sin);
@@ -125,9 +126,9 @@ impl Limb {
         let swing =
             reach.pole.and_then(|wanted| roll(to_target, swing * pole, wanted)).map_or(swing, |r| r * swing);
         let upper_rotation = (swing * arc(first, new_first) * upper.rotation).normalize();
-        let carried = upper_rotation * pose.locals[self.lower].rotation;
-        let second_now = carried * pose.locals[self.end].translation;
-        let lower_rotation = (arc(second_now, swing * new_second) * carried).normalize();
+        let unbent = upper_rotation * pose.locals[self.lower].rotation;
+        let second_now = unbent * pose.locals[self.end].translation;
+        let lower_rotation = (arc(second_now, swing * new_second) * unbent).normalize();
 
         let solved = [
             (self.upper, parent.rotation.conjugate() * upper_rotation),
@@ -143,11 +144,11 @@ impl Limb {
         (distance - to_target.length()).abs() <= REACHED * (a + b)
     }
 
-    /// Where the middle joint shall stand off the line from end to end: where it does, and a little towards where it
-    /// bends, which decides when it is on the line or on its wrong side.
+    /// The direction from the line between the ends to the middle joint. A small bias to the natural side decides when the
+    /// joint lies on the line or on the wrong side of it.
     fn pole(&self, upper: Rotation, line: Vec3, first: Vec3) -> Vec3 {
         let across = |v: Vec3| v - line * v.dot(line);
-        // By the hinge and not by where the front is: a folded leg's line runs along its front, or past it.
+        // From the hinge axis, not the bone's front: the line of a tightly folded leg may run along or past its front.
         let hinge = match self.bend {
             Bend::Forwards => upper * Vec3::X,
             Bend::Backwards => upper * Vec3::NEG_X,
@@ -155,13 +156,13 @@ impl Limb {
         let natural = hinge.cross(line).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
         let offset = across(first);
         let right_side = offset - natural * offset.dot(natural).min(0.0);
-        // Bent by less than about 5° it is nearly straight.
+        // The bias matters when the limb bends by less than about 5°.
         (right_side + natural * (0.04 * first.length())).try_normalize().unwrap_or(natural)
     }
 }
 
-/// The reach for a target at this distance: exact up to the soft stretch, then ever slower towards `length`
-/// (A. Nicholls, "Soft IK", 2010).
+/// How far the limb reaches for a target at `distance`: all the way up to the soft stretch, then approaching `length`
+/// exponentially (A. Nicholls, "Soft IK", 2010).
 fn soften(distance: f32, length: f32, softness: f32) -> f32 {
     let soft = length * softness.clamp(0.0, 0.5);
     let exact = length - soft;
@@ -174,19 +175,19 @@ fn soften(distance: f32, length: f32, softness: f32) -> f32 {
     }
 }
 
-/// The rotation about `line` that takes the part of `from` across it to that of `to`; `None` when one has no such part.
+/// The rotation about `line` that aligns `from` with `to` as seen along it; `None` when one of them lies along `line`.
 fn roll(line: Vec3, from: Vec3, to: Vec3) -> Option<Rotation> {
     let line = line.try_normalize()?;
     let across = |v: Vec3| {
         let part = v - line * v.dot(line);
-        // Less than that is what rounding leaves of a direction along the line.
+        // Below this it is the rounding error of a direction along the line.
         (part.length() > 1e-4 * v.length()).then_some(part)?.try_normalize()
     };
     let (from, to) = (across(from)?, across(to)?);
     Some(Rotation::from_axis_angle(line, libm::atan2f(from.cross(to).dot(line), from.dot(to))))
 }
 
-/// The shortest rotation from one direction to another; none when one of them has no length.
+/// The shortest rotation from one direction to another; the identity when one of them has no length.
 fn arc(from: Vec3, to: Vec3) -> Rotation {
     match (from.try_normalize(), to.try_normalize()) {
         (Some(from), Some(to)) => Rotation::from_rotation_arc(from, to),
@@ -206,7 +207,7 @@ mod tests {
     const LEG: [RigJoint; 3] =
         [SidedJoint::Thigh.on(Side::Left), SidedJoint::Calf.on(Side::Left), SidedJoint::Foot.on(Side::Left)];
 
-    /// A leg that hangs from the origin, knee half-way, bones along −Y and fronts along +Z.
+    /// A straight leg that hangs from the origin along −Y: thigh 0.5 m, calf 0.4 m, +Z axes forwards.
     fn leg() -> (Skeleton, Limb) {
         let down =
             Rotation::from_rotation_x(std::f32::consts::PI) * Rotation::from_rotation_y(std::f32::consts::PI);
@@ -247,7 +248,7 @@ mod tests {
         assert!(knee.translation.distance(Vec3::new(0.0, 0.0, 0.5)) < 1e-3, "{knee:?}");
         let [_, _, soft] = reached(Vec3::new(0.0, -0.9, 0.0), 0.02);
         let short = 0.9 + soft.translation.y;
-        // 2 % of 0.9 m, over e.
+        // 2 % of 0.9 m, divided by e.
         assert!((short - 0.018 / std::f32::consts::E).abs() < 1e-4, "{short}");
     }
 
@@ -276,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_reach_is_said_and_weight_goes_from_the_pose_to_the_target() {
+    fn out_of_reach_returns_false_and_weight_blends_from_the_pose_to_the_target() {
         let (rest, limb) = leg();
         let reach = |y: f32, weight: f32, softness: f32| {
             let mut pose = rest.rest_pose().clone();
@@ -323,11 +324,11 @@ mod tests {
             let target = RigidTransform { rotation: Rotation::from_rotation_x(turn), translation };
             limb.reach(&mut pose, parent, &Reach::to(target));
             let [upper, _, end] = limb.model_from_joints(&pose, parent);
-            let asked = Vec3::new(x, y, z).length();
-            prop_assume!(asked > 1e-3);
-            let distance = asked.clamp(0.1, 0.9);
+            let wanted = Vec3::new(x, y, z).length();
+            prop_assume!(wanted > 1e-3);
+            let distance = wanted.clamp(0.1, 0.9);
             prop_assert!((end.translation.distance(upper.translation) - distance).abs() < 1e-4);
-            let direction = Vec3::new(x, y, z) / asked;
+            let direction = Vec3::new(x, y, z) / wanted;
             prop_assert!(end.translation.distance(upper.translation + direction * distance) < 1e-3);
             prop_assert!(end.rotation.dot(target.rotation).abs() > 1.0 - 1e-5);
         }

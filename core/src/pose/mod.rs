@@ -1,4 +1,4 @@
-//! What joints do: inverse kinematics, joint limits, swing and twist, the leg and its sole; on poses of a
+//! Two-bone inverse kinematics, joint limits, swing-twist decomposition, and the leg with its sole, for poses of a
 //! [`Skeleton`](crate::skeleton::Skeleton).
 
 pub mod ik;

@@ -1,24 +1,32 @@
-//! A rotation as a swing of the bone and a twist about it.
+//! Swing-twist decomposition: a rotation as a swing of the bone and a twist about it.
 //!
-//! A joint's +Y axis runs along its bone. Every rotation is, but for half turns of the bone, in one way a twist about
-//! +Y followed by a swing about an axis in the XZ plane (Dobrowolski, "Swing-twist decomposition in Clifford
-//! algebra", 2015).
+//! A joint's +Y axis runs along its bone. A rotation is uniquely a twist about +Y followed by a swing about an axis in the
+//! XZ plane, unless it swings the bone by half a turn (Dobrowolski, "Swing-twist decomposition in Clifford algebra", 2015).
+//!
+//! ```text
+//!        +Y (bone)
+//!         │ ↻ twist
+//!         │
+//!         o───── +X            swing axis = swing.x · X + swing.y · Z, its length the angle
+//!        ╱
+//!      +Z                      rotation = swing · twist
+//! ```
 
 use glam::Vec2;
 
 use crate::math::Rotation;
 
-/// `rotation = swing · twist`: where the bone points, and how far it is turned about itself.
+/// `rotation = swing · twist`: where the bone points, and its roll about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingTwist {
-    /// The swing's axis times its angle, radians: components about X and Z. No longer than π.
+    /// The swing's axis times its angle, radians: its components along X and Z. Its length is at most π.
     pub swing: Vec2,
-    /// About +Y, radians, −π to π.
+    /// Angle about +Y, radians, −π to π.
     pub twist: f32,
 }
 
 impl SwingTwist {
-    /// Splits a unit quaternion. When the bone is turned by half a turn its twist is taken for none.
+    /// Decomposes a unit quaternion. When it swings the bone by half a turn, which leaves the twist open, the twist is 0.
     pub fn of(rotation: Rotation) -> Self {
         let q = if rotation.w < 0.0 { -rotation } else { rotation };
         let along = libm::sqrtf(q.y * q.y + q.w * q.w);
@@ -34,7 +42,7 @@ impl SwingTwist {
         Self { swing: axis * scale, twist: 2.0 * libm::atan2f(sin, cos) }
     }
 
-    /// The rotation.
+    /// The rotation composed of both.
     pub fn rotation(self) -> Rotation {
         Rotation::from_scaled_axis(glam::Vec3::new(self.swing.x, 0.0, self.swing.y))
             * Rotation::from_rotation_y(self.twist)
@@ -49,17 +57,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn parts_make_the_whole(x in -1.0f32..1.0, y in -1.0f32..1.0, z in -1.0f32..1.0, w in -1.0f32..1.0) {
+        fn swing_times_twist_is_the_rotation(x in -1.0f32..1.0, y in -1.0f32..1.0, z in -1.0f32..1.0, w in -1.0f32..1.0) {
             let q = Rotation::from_xyzw(x, y, z, w);
             prop_assume!(q.length_squared() > 1e-3);
             let q = q.normalize();
             let back = SwingTwist::of(q).rotation();
-            // f32 near half turns, where the twist is ill-conditioned but the whole is not.
+            // Rounding of f32. Near half turns the twist is ill-conditioned, but the product is not.
             prop_assert!(back.dot(q).abs() > 1.0 - 1e-5, "{q} {back}");
         }
 
         #[test]
-        fn swing_and_twist_are_found_again(x in -1.7f32..1.7, z in -1.7f32..1.7, twist in -3.0f32..3.0) {
+        fn swing_and_twist_are_recovered(x in -1.7f32..1.7, z in -1.7f32..1.7, twist in -3.0f32..3.0) {
             let given = SwingTwist { swing: Vec2::new(x, z), twist };
             let found = SwingTwist::of(given.rotation());
             prop_assert!(found.swing.distance(given.swing) < 1e-4, "{found:?}");

@@ -1,4 +1,4 @@
-//! Retargeting: which joint of a motion is which of ours, poses carried over, joints within limits, feet on the floor.
+//! Retargeting of motions to bodies of the rig: joint matching, pose transfer, joint limits, foot contact.
 
 pub mod feet;
 mod joint_map;

@@ -1,8 +1,8 @@
-//! From where the bones of a body begin and end to its skeleton.
+//! The skeleton of a body from the positions of its bones.
 //!
-//! A joint's +Y axis runs along its bone, from the joint to its far end, as Blender's bones do. Its +Z axis leans
-//! towards the front of the body (upwards for feet, eyes and jaw, which point forwards), so that left and right
-//! are mirror images and a limb bends on one axis.
+//! A joint's +Y axis runs along its bone, from head to tail, as Blender's bones do. Its +Z axis is as near to the front of
+//! the body as that allows (upwards for feet, toes, eyes and jaw, which point forwards), so that left and right are mirror
+//! images and a limb bends about one axis.
 
 use std::sync::Arc;
 
@@ -12,44 +12,43 @@ use super::written::round_to_file;
 use super::{JointTree, RigJoint, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
-/// Where a body's joints begin and end, metres.
+/// Where the bones of a body begin and end, in model space, metres.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BonePositions {
-    /// One place per joint.
+    /// Position of each joint.
     pub heads: Vec<Vec3>,
-    /// The far ends of the bones.
+    /// Far end of each joint's bone.
     pub tails: Vec<Vec3>,
 }
 
 impl BonePositions {
-    /// Puts elbows and wrists exactly on the line through the shoulder along ±X, where rounding left them a few
-    /// micrometres off it: the T-pose is exact.
+    /// Moves elbows and wrists, with their twist joints, exactly onto the line through the shoulder along ±X, from which
+    /// rounding put them a few micrometres off, so that the T-pose is exact.
     pub fn straighten(&mut self, tree: &JointTree) {
         for side in Side::ALL {
             let Some(shoulder) = tree.rig_joint(SidedJoint::Upperarm.on(side)) else { continue };
             let Some(&Vec3 { y, z, .. }) = self.heads.get(shoulder) else { continue };
             for (j, name) in tree.names().iter().enumerate() {
                 let of_side = RigJoint::from_name(name).filter(|joint| joint.side() == Some(side));
-                let Some(limb) = of_side.and_then(|joint| joint.sided()).map(SidedJoint::limb) else {
+                let Some(main) = of_side.and_then(|joint| joint.sided()).map(SidedJoint::main_joint) else {
                     continue;
                 };
-                if !matches!(limb, SidedJoint::Upperarm | SidedJoint::Lowerarm | SidedJoint::Hand) {
+                if !matches!(main, SidedJoint::Upperarm | SidedJoint::Lowerarm | SidedJoint::Hand) {
                     continue;
                 }
                 self.heads[j] = self.heads[j].with_y(y).with_z(z);
-                if limb != SidedJoint::Hand {
+                if main != SidedJoint::Hand {
                     self.tails[j] = self.tails[j].with_y(y).with_z(z);
                 }
             }
         }
     }
-}
 
-impl BonePositions {
-    /// The bind pose of a body of this rig, rounded to what a file gives back of it.
+    /// The skeleton of a body of this rig, its bind pose rounded so that writing it to a file and reading it changes nothing.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when there are other numbers of heads or tails than joints.
+    /// [`Error::Invalid`] when the number of heads or tails is not the number of joints, or as
+    /// [`Skeleton::from_bind`].
     pub fn skeleton(&self, tree: &Arc<JointTree>) -> Result<Skeleton> {
         if self.heads.len() != tree.len() || self.tails.len() != tree.len() {
             let (heads, tails) = (self.heads.len(), self.tails.len());
@@ -64,7 +63,7 @@ impl BonePositions {
             .map(|((bone, (name, parent)), head)| {
                 let rotation = match parent {
                     None => Mat3::IDENTITY,
-                    Some(_) => orientation(bone, leaning(name)),
+                    Some(_) => orientation(bone, z_hint(name)),
                 };
                 Affine3A::from_mat3_translation(rotation, *head)
             })
@@ -74,8 +73,8 @@ impl BonePositions {
     }
 }
 
-/// Where a joint's +Z axis leans to.
-fn leaning(name: &str) -> Vec3 {
+/// The direction that a joint's +Z axis is nearest to.
+fn z_hint(name: &str) -> Vec3 {
     match RigJoint::from_name(name) {
         Some(RigJoint::Jaw | RigJoint::Sided(SidedJoint::Foot | SidedJoint::Ball | SidedJoint::Eye, _)) => {
             Vec3::Y
@@ -84,12 +83,13 @@ fn leaning(name: &str) -> Vec3 {
     }
 }
 
-fn orientation(bone: Vec3, lean: Vec3) -> Mat3 {
+/// The rotation with +Y along `bone` and +Z as near to `hint` as possible; columns are the joint's axes.
+fn orientation(bone: Vec3, hint: Vec3) -> Mat3 {
     let y = bone.try_normalize().unwrap_or(Vec3::Y);
     let off_axis = |v: Vec3| (v - y * v.dot(y)).try_normalize();
-    // A bone along its own leaning direction takes the next axis.
+    // A bone along the hint itself takes the next axis.
     let z =
-        if y.dot(lean).abs() < 0.99 { off_axis(lean) } else { off_axis(Vec3::new(lean.z, lean.x, lean.y)) }
+        if y.dot(hint).abs() < 0.99 { off_axis(hint) } else { off_axis(Vec3::new(hint.z, hint.x, hint.y)) }
             .unwrap_or(Vec3::Z);
     Mat3::from_cols(y.cross(z), y, z)
 }
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bone_without_length_is_still_a_rotation() {
+    fn a_bone_without_length_still_has_a_rotation() {
         let (tree, mut shape) = arm();
         shape.tails = shape.heads.clone();
         for bind in shape.skeleton(&tree).unwrap().bind() {

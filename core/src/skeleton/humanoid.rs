@@ -1,19 +1,19 @@
-//! What other programs call the joints of the rig.
+//! Names of the rig's joints in other programs.
 //!
 //! The rows are those of [`RigJoint`]'s table. The vocabularies besides the rig's own are:
 //! - **Unity**: `HumanBodyBones` of the Unity scripting reference; with spaces they are `HumanTrait.BoneName`.
 //! - **VRM**: `humanoid.humanBones` of VRMC_vrm 1.0, whose thumbs are metacarpal, proximal, distal.
 //! - **Mixamo**: the names in files from mixamo.com, `mixamorig:` included.
-//! - **Blender**: Rigify-like, with the `.L`/`.R` endings that Blender mirrors by.
+//! - **Blender**: Rigify-like, with the endings `.L` and `.R` by which Blender finds mirrored bones.
 //!
-//! The root and the twist joints are no humanoid bones; in each vocabulary they get a name of its kind.
+//! The root and the twist joints are not humanoid bones; each vocabulary gets names in its own style for them.
 
 use std::{borrow::Cow, collections::BTreeMap, str::FromStr, sync::LazyLock};
 
 use super::rig_joint::{Bone, CENTRAL, Names, RigJoint, SIDED};
 use crate::{Error, Result, Side};
 
-/// The vocabulary that a file's joints are named in.
+/// The vocabulary in which a file names its joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JointNames {
     /// The rig's own names, such as `upperarm_l`.
@@ -33,7 +33,7 @@ impl JointNames {
     /// Every vocabulary.
     pub const ALL: [Self; 5] = [Self::Native, Self::Unity, Self::Mixamo, Self::Vrm, Self::Blender];
 
-    /// The word for it on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Native => "native",
@@ -65,7 +65,7 @@ pub struct HumanoidBone {
     pub native: String,
     /// Member of Unity's `HumanBodyBones`.
     pub unity: String,
-    /// Name in Unity's `HumanTrait.BoneName`, which `AvatarBuilder` wants: fingers have spaces, `Left Thumb Proximal`.
+    /// Name in Unity's `HumanTrait.BoneName`, as `AvatarBuilder` expects it: fingers have spaces, `Left Thumb Proximal`.
     pub unity_trait: String,
     /// Name in files from Mixamo.
     pub mixamo: String,
@@ -77,7 +77,7 @@ pub struct HumanoidBone {
     pub required: bool,
 }
 
-/// Endings and beginnings of a side: native, Unity, Mixamo, VRM, Blender.
+/// Prefix or suffix of a side: native, Unity, Mixamo, VRM, Blender.
 fn affixes(side: Side) -> Names {
     match side {
         Side::Left => [side.joint_suffix(), "Left", "Left", "left", ".L"],
@@ -90,7 +90,7 @@ const UNITY_FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
 struct Table {
     /// The humanoid bones: central before sided, left before right, required before optional.
     bones: Vec<HumanoidBone>,
-    /// Native name to the names of every joint, in the order of [`JointNames::ALL`].
+    /// The names of every joint, in the order of [`JointNames::ALL`], by native name.
     names: BTreeMap<String, [String; 5]>,
 }
 
@@ -135,22 +135,22 @@ fn bone(joint: RigJoint, [native, unity, mixamo, vrm, blender]: [String; 5], req
     HumanoidBone { joint, native, unity, unity_trait, mixamo, vrm, blender, required }
 }
 
-/// The humanoid bones of the rig: the seven in the middle, then 24 a side, the left first.
+/// The humanoid bones of the rig: the seven central ones, then 24 of the left and 24 of the right side.
 pub fn humanoid_bones() -> &'static [HumanoidBone] {
     &TABLE.bones
 }
 
-/// The humanoid bone that this joint of the rig is; `None` for the root, twist joints and unknown names.
+/// The humanoid bone with this native name; `None` for the root, twist joints and unknown names.
 pub fn humanoid(native: &str) -> Option<&'static HumanoidBone> {
     TABLE.bones.iter().find(|bone| bone.native == native)
 }
 
-/// Native names of all joints that the vocabularies name, in alphabetical order: every joint of the rig, once.
+/// Native names of all joints of the rig, in alphabetical order.
 pub fn native_names() -> impl Iterator<Item = &'static str> {
     TABLE.names.keys().map(String::as_str)
 }
 
-/// The joint's name in another vocabulary; a joint that is not of the rig keeps its name.
+/// The name of a joint in another vocabulary; a joint that the rig does not have keeps its name.
 pub fn renamed(native: &str, names: JointNames) -> Cow<'_, str> {
     match TABLE.names.get(native) {
         Some(row) if names != JointNames::Native => {
@@ -161,7 +161,7 @@ pub fn renamed(native: &str, names: JointNames) -> Cow<'_, str> {
     }
 }
 
-/// The joint of the rig that any vocabulary calls this; a name of none stays as it is.
+/// The native name of the joint that has this name in any vocabulary; an unknown name is returned unchanged.
 pub fn native_name(name: &str) -> Cow<'_, str> {
     if TABLE.names.contains_key(name) {
         return Cow::Borrowed(name);
@@ -203,7 +203,7 @@ mod tests {
             assert_eq!(names.len(), 68, "{scheme:?}");
             assert!(names.iter().all(|name| !name.is_empty()), "{scheme:?}");
             let kept = native_names().filter(|joint| renamed(joint, scheme) == **joint).count();
-            // "Root" is the root's name in two more vocabularies, and VRM and Blender call a head a head and a jaw a jaw.
+            // Unity keeps `Root`; VRM and Blender keep `head` and `jaw`.
             assert!(scheme == JointNames::Native || kept <= 2, "{scheme:?} renames too little");
         }
     }
@@ -214,7 +214,7 @@ mod tests {
             humanoid_bones().iter().filter(|b| b.required).map(name).collect::<BTreeSet<_>>()
         };
         assert_eq!(required(|b| &b.vrm), BTreeSet::from(VRM_REQUIRED));
-        // HumanTrait.RequiredBone names the same fifteen, spelt with a capital.
+        // HumanTrait.RequiredBone has the same fifteen, with capital initials.
         let capital = VRM_REQUIRED.map(|name| name[..1].to_uppercase() + &name[1..]);
         assert_eq!(required(|b| &b.unity), capital.iter().map(String::as_str).collect());
         // HumanTrait.BoneCount is 55: all of Unity's bones are there.
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_bone_is_no_bone() {
+    fn root_twist_joints_and_unknown_names_are_not_humanoid_bones() {
         assert_eq!(humanoid("Root"), None);
         assert_eq!(humanoid("calf_twist_01_l"), None);
         assert_eq!(humanoid("tail"), None);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn vocabularies_are_read_by_name() {
+    fn vocabularies_parse_from_their_names() {
         for scheme in JointNames::ALL {
             assert_eq!(scheme.name().parse::<JointNames>().unwrap(), scheme);
         }

@@ -1,16 +1,16 @@
-//! Poses of a skeleton, and forward kinematics.
+//! Poses and forward kinematics.
 
 use crate::math::RigidTransform;
 
-/// One local transform per joint.
+/// A pose: one transform per joint, relative to its parent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// `parent_from_joint`, in the order of the joints.
+    /// `parent_from_joint` of each joint, metres, in the order of the joints.
     pub locals: Vec<RigidTransform>,
 }
 
 impl Pose {
-    /// Where the joints are: `model_from_joint` of each, by [`model_from_joints`].
+    /// Forward kinematics: `model_from_joint` of each joint, metres; see [`model_from_joints`].
     pub fn model_from_joints(&self, parents: &[Option<u32>]) -> Vec<RigidTransform> {
         let mut out = Vec::with_capacity(self.locals.len());
         model_from_joints(parents, &self.locals, &mut out);
@@ -18,8 +18,8 @@ impl Pose {
     }
 }
 
-/// Forward kinematics: fills `out` with `model_from_joint` of each joint. Parents stand before their joints; a
-/// parent that does not is taken for none.
+/// Forward kinematics: fills `out` with `model_from_joint` of each joint, the product of the `parent_from_joint` in `locals`
+/// from its root down. Parents come before their joints; a parent that does not is ignored.
 pub fn model_from_joints(parents: &[Option<u32>], locals: &[RigidTransform], out: &mut Vec<RigidTransform>) {
     out.clear();
     for (parent, local) in parents.iter().zip(locals) {
@@ -38,7 +38,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn a_chain_ends_at_the_same_place_in_every_space() {
+    fn a_chain_ends_at_the_same_point_in_every_space() {
         let step = |angle| RigidTransform {
             rotation: Rotation::from_rotation_x(angle),
             translation: Vec3::new(1.0, 2.0, 3.0),

@@ -1,9 +1,13 @@
-//! The skeleton: joints with their names and parents, the pose they rest in, skin weights, and what other programs call
-//! the joints.
+//! Skeletons: joint trees, rest and bind pose, forward kinematics, skin weights, and the names of joints in other programs.
 //!
-//! A [`JointTree`] is names and parents; a [`Skeleton`] is a tree in the pose it rests in, of our rig or of any other; a
-//! [`Pose`] gives every joint a transform to its parent. Rotations are quaternions x, y, z, w, `parent_from_joint`; metres; joints stand
-//! after their parents.
+//! A [`JointTree`] has names and parents. A [`Skeleton`] is a joint tree with a rest pose, of the rig or of any file. A
+//! [`Pose`] has a transform `parent_from_joint` per joint; translations are in metres, rotations are quaternions x, y, z, w.
+//! Parents come before their joints, so that forward kinematics is one pass:
+//!
+//! ```text
+//! model_from_joint(hand) = parent_from_joint(root) · … · parent_from_joint(forearm) · parent_from_joint(hand)
+//!                        = model_from_joint(forearm) · parent_from_joint(hand)
+//! ```
 
 mod bind_joint;
 mod bones;

@@ -1,4 +1,4 @@
-//! The joints of our rig, as types: one table, a row per joint without its side, from which all their names follow.
+//! The joints of the rig as types, and the table of their names: one row per joint, sided joints without their side.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,10 +7,10 @@ use std::sync::LazyLock;
 use super::{JointTree, Skeleton};
 use crate::{Result, Side};
 
-/// A joint of our rig.
+/// A joint of the rig.
 ///
-/// The rig is MakeHuman's `game_engine` rig (Unreal-like names) with eyes, jaw and twist joints. A skeleton may lack joints
-/// and may have others: see [`Skeleton::rig_joint`].
+/// The rig is MakeHuman's `game_engine` rig (Unreal-like names) with eyes, jaw and twist joints. A skeleton may lack
+/// some of them and have others: see [`Skeleton::rig_joint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RigJoint {
     /// On the ground, below the body.
@@ -29,11 +29,11 @@ pub enum RigJoint {
     Head,
     /// The lower jaw.
     Jaw,
-    /// A joint that there is on both sides.
+    /// A joint of the left or right side.
     Sided(SidedJoint, Side),
 }
 
-/// A joint of our rig that there is on both sides; [`on`](Self::on) one of them it is a [`RigJoint`].
+/// A joint that the rig has on both sides; [`on`](Self::on) gives the [`RigJoint`] of one side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SidedJoint {
     /// Collar bone.
@@ -86,19 +86,19 @@ pub enum SidedJoint {
     Pinky03,
     /// Undoes the upper arm's roll at the shoulder.
     UpperarmTwist01,
-    /// Undoes half of the upper arm's roll half-way.
+    /// Undoes half of the upper arm's roll, half-way along it.
     UpperarmTwist02,
-    /// Takes over half of the hand's roll half-way.
+    /// Takes half of the hand's roll, half-way along the forearm.
     LowerarmTwist01,
-    /// Takes over the hand's roll at the wrist.
+    /// Takes the hand's roll at the wrist.
     LowerarmTwist02,
     /// Undoes the thigh's roll at the hip.
     ThighTwist01,
-    /// Takes over the foot's roll at the ankle.
+    /// Takes the foot's roll at the ankle.
     CalfTwist01,
 }
 
-/// A finger of either hand, the thumb among them. Each has three joints.
+/// A finger, including the thumb. Each has three joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Finger {
     /// The thumb.
@@ -113,22 +113,22 @@ pub enum Finger {
     Pinky,
 }
 
-/// What a joint is to the standard humanoid.
+/// Whether a joint is a bone of the standard humanoid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bone {
     /// A bone that Unity and VRM require.
     Required,
-    /// A bone that they know.
+    /// A bone that they support.
     Optional,
-    /// None: the root and the twist joints.
+    /// Not a humanoid bone: the root and the twist joints.
     No,
 }
 use Bone::{No, Optional, Required};
 
-/// Names of a joint: native, Unity, Mixamo, VRM, Blender. Those of a sided joint are completed by their side in `humanoid.rs`.
+/// Names of a joint: native, Unity, Mixamo, VRM, Blender. `humanoid.rs` adds the side to those of sided joints.
 pub(super) type Names = [&'static str; 5];
 
-/// The joints in the middle, in the order of the enum.
+/// The central joints, in the order of the enum.
 pub(super) const CENTRAL: [(RigJoint, Names, Bone); 8] = [
     (RigJoint::Root, ["Root", "Root", "Root", "root", "root"], No),
     (RigJoint::Pelvis, ["pelvis", "Hips", "Hips", "hips", "hips"], Required),
@@ -140,7 +140,7 @@ pub(super) const CENTRAL: [(RigJoint, Names, Bone); 8] = [
     (RigJoint::Jaw, ["jaw", "Jaw", "Jaw", "jaw", "jaw"], Optional),
 ];
 
-/// The joints that there are on both sides, in the order of the enum, names without their side.
+/// The sided joints, in the order of the enum, their names without the side.
 #[rustfmt::skip]
 pub(super) const SIDED: [(SidedJoint, Names, Bone); 30] = [
     (SidedJoint::Clavicle, ["clavicle", "Shoulder", "Shoulder", "Shoulder", "shoulder"], Optional),
@@ -175,7 +175,7 @@ pub(super) const SIDED: [(SidedJoint, Names, Bone); 30] = [
     (SidedJoint::CalfTwist01, ["calf_twist_01", "LowerLegTwist1", "LegTwist1", "LowerLegTwist1", "shin_twist.01"], No),
 ];
 
-/// Native names in the order of [`RigJoint::all`], and the joints by them.
+/// Native names in the order of [`RigJoint::all`], and the joints by name.
 struct NativeNames {
     names: Vec<String>,
     joints: BTreeMap<String, RigJoint>,
@@ -184,7 +184,7 @@ struct NativeNames {
 static NATIVE: LazyLock<NativeNames> = LazyLock::new(|| {
     let name = |joint: RigJoint| match joint {
         RigJoint::Sided(joint, side) => format!("{}{}", joint.name(), side.joint_suffix()),
-        _ => CENTRAL[joint.place()].1[0].to_owned(),
+        _ => CENTRAL[joint.index()].1[0].to_owned(),
     };
     let names: Vec<String> = RigJoint::all().map(name).collect();
     let joints = names.iter().cloned().zip(RigJoint::all()).collect();
@@ -192,23 +192,23 @@ static NATIVE: LazyLock<NativeNames> = LazyLock::new(|| {
 });
 
 impl RigJoint {
-    /// All joints: those in the middle, those of the left, those of the right.
+    /// All joints: central, then left, then right.
     pub fn all() -> impl Iterator<Item = Self> + Clone {
         let central = CENTRAL.into_iter().map(|row| row.0);
         central.chain(Side::ALL.into_iter().flat_map(|side| SidedJoint::all().map(move |j| j.on(side))))
     }
 
-    /// The joint of this name, such as `upperarm_l`.
+    /// The joint with this name, such as `upperarm_l`.
     pub fn from_name(name: &str) -> Option<Self> {
         NATIVE.joints.get(name).copied()
     }
 
     /// Its name, such as `upperarm_l`.
     pub fn name(self) -> &'static str {
-        &NATIVE.names[self.place()]
+        &NATIVE.names[self.index()]
     }
 
-    /// The side that it is on; `None` in the middle.
+    /// Its side; `None` for a central joint.
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Sided(_, side) => Some(side),
@@ -216,7 +216,7 @@ impl RigJoint {
         }
     }
 
-    /// What it is on either side; `None` in the middle.
+    /// The joint without its side; `None` for a central joint.
     pub const fn sided(self) -> Option<SidedJoint> {
         match self {
             Self::Sided(joint, _) => Some(joint),
@@ -224,18 +224,18 @@ impl RigJoint {
         }
     }
 
-    /// The finger that it is a joint of, and its number from the palm outwards, 1 to 3.
+    /// The finger that it belongs to and its number from the palm outwards, 1 to 3.
     pub fn finger(self) -> Option<(Finger, usize)> {
         self.sided()?.finger()
     }
 
-    /// Whether it only shares the roll of a limb.
+    /// Whether it is a twist joint, which only takes part of a limb's roll.
     pub fn is_twist(self) -> bool {
         self.sided().is_some_and(SidedJoint::is_twist)
     }
 
-    /// Place in the order of [`all`](Self::all).
-    pub(super) const fn place(self) -> usize {
+    /// Its index in the order of [`all`](Self::all).
+    pub(super) const fn index(self) -> usize {
         match self {
             Self::Root => 0,
             Self::Pelvis => 1,
@@ -257,7 +257,7 @@ impl fmt::Display for RigJoint {
 }
 
 impl SidedJoint {
-    /// All of them.
+    /// All sided joints.
     pub fn all() -> impl ExactSizeIterator<Item = Self> + Clone {
         SIDED.into_iter().map(|row| row.0)
     }
@@ -267,7 +267,7 @@ impl SidedJoint {
         RigJoint::Sided(self, side)
     }
 
-    /// The joint on the left and on the right.
+    /// The left and the right joint.
     pub const fn both(self) -> [RigJoint; 2] {
         [self.on(Side::Left), self.on(Side::Right)]
     }
@@ -277,14 +277,14 @@ impl SidedJoint {
         SIDED[self as usize].1[0]
     }
 
-    /// The finger that it is a joint of, and its number from the palm outwards, 1 to 3.
+    /// The finger that it belongs to and its number from the palm outwards, 1 to 3.
     pub fn finger(self) -> Option<(Finger, usize)> {
         let number = |finger: Finger| finger.joints().iter().position(|joint| *joint == self);
         Finger::ALL.into_iter().find_map(|finger| Some((finger, number(finger)? + 1)))
     }
 
-    /// The limb's joint that it shares the roll of; itself where it is no twist joint.
-    pub const fn limb(self) -> Self {
+    /// The joint whose bone a twist joint lies on; any other joint itself.
+    pub const fn main_joint(self) -> Self {
         match self {
             Self::UpperarmTwist01 | Self::UpperarmTwist02 => Self::Upperarm,
             Self::LowerarmTwist01 | Self::LowerarmTwist02 => Self::Lowerarm,
@@ -294,9 +294,9 @@ impl SidedJoint {
         }
     }
 
-    /// Whether it only shares the roll of a limb.
+    /// Whether it is a twist joint, which only takes part of a limb's roll.
     pub fn is_twist(self) -> bool {
-        self.limb() != self
+        self.main_joint() != self
     }
 }
 
@@ -323,19 +323,19 @@ impl Finger {
 }
 
 impl JointTree {
-    /// Where this joint of our rig stands among the joints, if it is one of them.
+    /// Index of this joint of the rig, if it is present.
     pub fn rig_joint(&self, joint: RigJoint) -> Option<usize> {
         self.find(joint.name())
     }
 }
 
 impl Skeleton {
-    /// Where this joint of our rig stands among the joints, if it is one of them.
+    /// Index of this joint of the rig, if it is present.
     pub fn rig_joint(&self, joint: RigJoint) -> Option<usize> {
         self.find(joint.name())
     }
 
-    /// Where this joint of our rig stands among the joints, of which it has to be one.
+    /// Index of this joint of the rig, which must be present.
     ///
     /// # Errors
     /// As [`require`](Self::require).
@@ -343,7 +343,7 @@ impl Skeleton {
         self.require(joint.name())
     }
 
-    /// What each joint is in our rig, by its name; `None` for joints of other names.
+    /// The joint of the rig that each joint is, by name; `None` for other names.
     pub fn rig_joints(&self) -> impl Iterator<Item = Option<RigJoint>> + '_ {
         self.names().iter().map(|name| RigJoint::from_name(name))
     }
@@ -355,11 +355,11 @@ mod tests {
 
     #[test]
     fn the_table_is_in_the_order_of_the_types() {
-        assert!(CENTRAL.iter().enumerate().all(|(place, row)| row.0.place() == place));
-        assert!(SIDED.iter().enumerate().all(|(place, row)| row.0 as usize == place));
+        assert!(CENTRAL.iter().enumerate().all(|(index, row)| row.0.index() == index));
+        assert!(SIDED.iter().enumerate().all(|(index, row)| row.0 as usize == index));
         assert_eq!(RigJoint::all().count(), 68);
-        for (place, joint) in RigJoint::all().enumerate() {
-            assert_eq!(joint.place(), place);
+        for (index, joint) in RigJoint::all().enumerate() {
+            assert_eq!(joint.index(), index);
             assert_eq!(RigJoint::from_name(joint.name()), Some(joint));
             assert_eq!(joint.side(), Side::of_joint_name(joint.name()), "{joint}");
             assert_eq!(joint.is_twist(), joint.name().contains("twist"), "{joint}");
@@ -370,8 +370,8 @@ mod tests {
 
     #[test]
     fn fingers_have_three_joints() {
-        for (place, finger) in Finger::ALL.into_iter().enumerate() {
-            assert_eq!(finger.index(), place);
+        for (index, finger) in Finger::ALL.into_iter().enumerate() {
+            assert_eq!(finger.index(), index);
             for (i, joint) in finger.joints().into_iter().enumerate() {
                 assert_eq!(joint.finger(), Some((finger, i + 1)));
                 assert!(joint.name().ends_with(&format!("_0{}", i + 1)), "{joint:?}");

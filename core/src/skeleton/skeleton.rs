@@ -1,4 +1,4 @@
-//! A skeleton: a joint hierarchy, and the pose it rests in.
+//! A skeleton: a joint tree and its rest pose.
 
 use std::sync::Arc;
 
@@ -8,13 +8,13 @@ use super::{JointTree, Pose, model_from_joints};
 use crate::math::{RigidTransform, Rotation, unit};
 use crate::{Error, Result};
 
-/// A joint hierarchy in the pose it rests in: of a body, of a character file, or of a motion file.
+/// A joint tree with its rest pose: of a body, a character file or a motion file.
 ///
 /// | What | Per joint | Space |
 /// |---|---|---|
 /// | [`rest_pose`](Self::rest_pose) | rotation and translation, `parent_from_joint` | parent; metres |
-/// | [`bind`](Self::bind) | matrix `model_from_joint` without scale, whose inverse files hold | model; metres |
-/// | [`ends`](Self::ends) | where the bone ends, if anything says so | joint; metres |
+/// | [`bind`](Self::bind) | matrix `model_from_joint` without scale; files store its inverse | model; metres |
+/// | [`ends`](Self::ends) | far end of the bone, where it is known | joint; metres |
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     tree: Arc<JointTree>,
@@ -23,8 +23,8 @@ pub struct Skeleton {
     ends: Vec<Option<Vec3>>,
 }
 
-/// The bind matrices are left out: they are the rest pose once more, and one that was read of a file differs from one that
-/// was multiplied out in its last bits.
+/// Bind matrices are not compared: they are the rest pose again, and those read from a file differ in their last bits from
+/// those computed by forward kinematics.
 impl PartialEq for Skeleton {
     fn eq(&self, other: &Self) -> bool {
         self.tree == other.tree && self.rest_pose == other.rest_pose && self.ends == other.ends
@@ -32,12 +32,12 @@ impl PartialEq for Skeleton {
 }
 
 impl Skeleton {
-    /// From parts, one entry per joint. `ends` are the far ends of bones in joint space, metres, where something says
-    /// so: end sites of BVH, bone lengths of our rig. Several joints may have no parent.
+    /// From one entry per joint: names, parents, `parent_from_joint` at rest, and `ends`, the far ends of bones in joint
+    /// space, metres, where they are known (end sites of BVH, bone lengths of the rig). Several joints may have no parent.
+    /// Rotations are normalised.
     ///
     /// # Errors
-    /// As [`JointTree::new`]; [`Error::Invalid`] when the lengths differ or a number is not finite. Rotations are
-    /// normalised.
+    /// As [`JointTree::new`]; [`Error::Invalid`] when the lengths differ, a number is not finite or a rotation is zero.
     pub fn new(
         names: Vec<String>,
         parents: Vec<Option<u32>>,
@@ -47,7 +47,7 @@ impl Skeleton {
         Self::from_rest_pose(Arc::new(JointTree::new(names, parents)?), locals, ends)
     }
 
-    /// As [`new`](Self::new), for a hierarchy that is there already.
+    /// As [`new`](Self::new), for an existing joint tree.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -63,8 +63,8 @@ impl Skeleton {
         Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
     }
 
-    /// From the bind pose, `model_from_joint` without scale, metres, which is the pose it rests in; `bone_lengths` are how
-    /// far bones reach along their joints' +Y axes, metres, where that is known.
+    /// From the bind pose, `model_from_joint` without scale, metres, which becomes the rest pose. `bone_lengths` are the
+    /// lengths of bones along their joints' +Y axes, metres, where they are known.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -92,7 +92,7 @@ impl Skeleton {
         Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
     }
 
-    /// Names and parents.
+    /// The joint tree: names and parents.
     pub fn tree(&self) -> &Arc<JointTree> {
         &self.tree
     }
@@ -102,27 +102,27 @@ impl Skeleton {
         self.tree.len()
     }
 
-    /// A skeleton is never empty.
+    /// Always false: a skeleton has at least one joint.
     pub fn is_empty(&self) -> bool {
         self.tree.is_empty()
     }
 
-    /// Names, unique.
+    /// Names, each unique.
     pub fn names(&self) -> &[String] {
         self.tree.names()
     }
 
-    /// Parents, which stand before their joints.
+    /// Index of each joint's parent, which is less than the joint's own; `None` for a root.
     pub fn parents(&self) -> &[Option<u32>] {
         self.tree.parents()
     }
 
-    /// The joint with this name.
+    /// Index of the joint with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.tree.find(name)
     }
 
-    /// The joint with this name, which has to be there.
+    /// Index of the joint with this name, which must exist.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the joint that is missing.
@@ -130,12 +130,12 @@ impl Skeleton {
         self.tree.require(name)
     }
 
-    /// The pose at rest: `parent_from_joint` of each joint, metres.
+    /// The rest pose: `parent_from_joint` of each joint, metres.
     pub fn rest_pose(&self) -> &Pose {
         &self.rest_pose
     }
 
-    /// The rotations at rest, `parent_from_joint`.
+    /// Rotations of the rest pose, `parent_from_joint`.
     pub fn rest_rotations(&self) -> impl Iterator<Item = Rotation> + '_ {
         self.rest_pose.locals.iter().map(|l| l.rotation)
     }
@@ -145,24 +145,24 @@ impl Skeleton {
         &self.ends
     }
 
-    /// How far a joint's bone reaches, metres, where that is known.
+    /// Length of a joint's bone, metres, where it is known.
     pub fn bone_length(&self, joint: usize) -> Option<f32> {
         self.ends.get(joint)?.map(|end| if end.x == 0.0 && end.z == 0.0 { end.y } else { end.length() })
     }
 
-    /// The bind pose: the matrix `model_from_joint` of each joint, without scale, metres. It is the rest pose, as exact as
-    /// a file has it, where [`model_from_joints`](Self::model_from_joints) rounds at every joint of a chain.
+    /// The bind pose: the matrix `model_from_joint` of each joint, without scale, metres. It equals the rest pose but is as
+    /// exact as its file, while [`model_from_joints`](Self::model_from_joints) rounds at every joint of a chain.
     pub fn bind(&self) -> &[Affine3A] {
         &self.bind
     }
 
-    /// Where the joints rest, by forward kinematics: `model_from_joint`.
+    /// The rest pose in model space by forward kinematics: `model_from_joint` of each joint, metres.
     pub fn model_from_joints(&self) -> Vec<RigidTransform> {
         self.rest_pose.model_from_joints(self.parents())
     }
 }
 
-/// Checks what stands beside a hierarchy, and brings rotations to unit length.
+/// Checks the arrays that accompany a joint tree and normalises rotations.
 fn checked(
     tree: &JointTree,
     mut locals: Vec<RigidTransform>,

@@ -1,9 +1,9 @@
-//! How much each vertex follows each joint.
+//! Skin weights: how much each vertex follows each joint.
 
 use crate::mesh::Subdivision;
 use crate::{Error, Result};
 
-/// Joints and weights per vertex, any number of them; weights sum to one.
+/// Any number of joints with weights per vertex; the weights of a vertex sum to one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinWeights {
     offsets: Vec<u32>,
@@ -11,25 +11,26 @@ pub struct SkinWeights {
     weights: Vec<f32>,
 }
 
-/// A fixed number of influences per vertex, as files and engines want them.
+/// A fixed number of influences per vertex, as files and engines use them.
 ///
 /// Vertex by vertex, weights descending and summing to one; an unused slot has joint 0 and weight 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Influences {
     /// Influences per vertex.
     pub per_vertex: usize,
-    /// Joints, `per_vertex` a vertex.
+    /// Joint indices, `per_vertex` for each vertex.
     pub joints: Vec<u16>,
-    /// Weights, `per_vertex` a vertex.
+    /// Weights, `per_vertex` for each vertex.
     pub weights: Vec<f32>,
 }
 
 impl SkinWeights {
-    /// From compressed rows; each row is normalised.
+    /// From compressed sparse rows, one per vertex: the entries of vertex v are `offsets[v]..offsets[v + 1]` of `joints` and
+    /// `weights`. Each row is normalised.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when rows are inconsistent, a joint is not one of `joint_count`, a weight is negative or
-    /// not finite, or a vertex follows nothing.
+    /// [`Error::Invalid`] when rows are inconsistent, a joint is not below `joint_count`, a weight is negative or not
+    /// finite, or the weights of a vertex sum to zero.
     pub fn new(
         offsets: Vec<u32>,
         joints: Vec<u16>,
@@ -68,7 +69,7 @@ impl SkinWeights {
         self.len() == 0
     }
 
-    /// Joints and weights of a vertex; nothing for a vertex that does not exist.
+    /// Joints and weights of a vertex; empty for a vertex that does not exist.
     pub fn of(&self, vertex: usize) -> impl Iterator<Item = (u16, f32)> + '_ {
         let range = match self.offsets.get(vertex..vertex + 2) {
             Some(row) => row[0] as usize..row[1] as usize,
@@ -77,12 +78,12 @@ impl SkinWeights {
         self.joints[range.clone()].iter().copied().zip(self.weights[range].iter().copied())
     }
 
-    /// The rows of a range of vertices.
+    /// The weights of a range of vertices.
     pub fn rows(&self, vertices: std::ops::Range<usize>) -> Self {
         self.collect(vertices)
     }
 
-    /// The rows of some vertices, in their order.
+    /// The weights of the given vertices, in their order.
     pub fn select(&self, vertices: &[u32]) -> Self {
         self.collect(vertices.iter().map(|v| *v as usize))
     }
@@ -99,10 +100,10 @@ impl SkinWeights {
         out
     }
 
-    /// Weights of the refined surface: weights are subdivided as positions are.
+    /// Weights of the refined surface: each joint's weight is subdivided by the stencils that subdivide positions.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when these are not the weights of the subdivision's cage.
+    /// [`Error::Invalid`] when the number of vertices is not that of the subdivision's cage.
     pub fn refine(&self, subdivision: &Subdivision) -> Result<Self> {
         let cage = subdivision.refined().vertex_count
             - subdivision.edges().len()

@@ -1,4 +1,4 @@
-//! Names and parents of joints: what a skeleton is before anybody says where its joints are.
+//! The joint tree: names and parents of joints, without positions.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::{Error, Result};
 /// The most joints that a skeleton may have.
 pub const MAX_JOINTS: usize = 4096;
 
-/// The joint hierarchy: names and parents, parents first. It is shared by all skeletons of one rig.
+/// Names and parents of joints, parents before their children. All skeletons of one rig share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointTree {
     names: Vec<String>,
@@ -15,11 +15,11 @@ pub struct JointTree {
 }
 
 impl JointTree {
-    /// A hierarchy from names and parents, one entry per joint. Several joints may have no parent.
+    /// A joint tree from names and parents, one entry per joint. Several joints may have no parent.
     ///
     /// # Errors
     /// [`Error::Invalid`] when there is no joint or more than [`MAX_JOINTS`], the lengths differ, a name is empty or
-    /// taken, or a parent does not stand before its joint.
+    /// used twice, or a parent does not come before its joint.
     pub fn new(names: Vec<String>, parents: Vec<Option<u32>>) -> Result<Self> {
         let fail = |message: String| Err(Error::invalid("skeleton", message));
         let count = names.len();
@@ -46,27 +46,27 @@ impl JointTree {
         self.names.len()
     }
 
-    /// A hierarchy is never empty.
+    /// Always false: a joint tree has at least one joint.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }
 
-    /// Names, unique.
+    /// Names, each unique.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Parents, which stand before their joints; `None` for a root.
+    /// Index of each joint's parent, which is less than the joint's own; `None` for a root.
     pub fn parents(&self) -> &[Option<u32>] {
         &self.parents
     }
 
-    /// The joint with this name.
+    /// Index of the joint with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|n| n == name)
     }
 
-    /// The joint with this name, which has to be there.
+    /// Index of the joint with this name, which must exist.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the joint that is missing.

@@ -1,19 +1,20 @@
-//! A bind pose as files hold it: below its parent, in `f32`.
+//! A bind pose as files store it: relative to the parent, in `f32`.
 //!
-//! A bind pose is a matrix of `f32` and a file's joint is a translation and a quaternion, so that writing and reading
-//! both round. What is here is what reading and writing again gives back: a body's joints are these from the start, and
-//! a motion comes onto a person and onto the file of it alike.
+//! A bind pose is a matrix of `f32`, but a file stores a translation and a quaternion, so that writing and reading both
+//! round. The transforms here are fixed points of writing and reading. Bodies have such joints from the start, so that
+//! retargeting to a body and to its file gives the same result.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A};
 
-/// Finest step of metres and of components of quaternions, 2⁻²⁶: a quarter of the rounding of `f32` near 1.
+/// Grid to which metres and components of quaternions are rounded, 2⁻²⁶: an eighth of the `f32` spacing above 1.
 const GRID: f64 = 1.0 / 67_108_864.0;
-/// Roundings after which a transform stops being rounded further; nearly all settle in two or three.
+/// Most iterations in search of a fixed point; nearly all transforms need two or three.
 const MAX_ROUNDINGS: usize = 64;
 
-/// A joint in its parent.
+/// A joint's transform relative to its parent, as a file stores it.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct ParentFromJoint {
+    /// Metres.
     pub(crate) translation: [f32; 3],
     /// Unit quaternion x, y, z, w.
     pub(crate) rotation: [f32; 4],
@@ -41,28 +42,28 @@ impl ParentFromJoint {
     }
 }
 
-/// A joint as it stands in a file.
+/// A joint as a file stores it.
 pub(crate) struct WrittenJoint {
     pub(crate) parent_from_joint: ParentFromJoint,
-    /// Product of the written transforms from the root down.
+    /// Product of the stored transforms from the root down.
     pub(crate) model_from_joint: DAffine3,
 }
 
-/// Splits every bind pose into a translation and a rotation below its parent. What rounding to `f32` moves a parent by,
-/// its children take back, so that errors do not add up along a chain.
+/// Splits every bind pose into a translation and a rotation relative to its parent as stored, so that children compensate
+/// for the rounding of their parents and errors do not accumulate along a chain.
 pub(crate) fn written_joints(joints: impl Iterator<Item = (Option<u32>, Affine3A)>) -> Vec<WrittenJoint> {
     let mut written: Vec<WrittenJoint> = Vec::with_capacity(joints.size_hint().0);
     for (parent, model_from_joint) in joints {
         let parent =
             parent.and_then(|p| written.get(p as usize)).map_or(DAffine3::IDENTITY, |p| p.model_from_joint);
-        let parent_from_joint = settled(&parent, model_from_joint);
+        let parent_from_joint = fixed_point(&parent, model_from_joint);
         let model_from_joint = parent * parent_from_joint.to_affine();
         written.push(WrittenJoint { parent_from_joint, model_from_joint });
     }
     written
 }
 
-/// Rounds a bind pose to what a file gives back of it.
+/// Rounds a bind pose so that writing it to a file and reading it changes nothing.
 pub(super) fn round_to_file(parents: &[Option<u32>], bind: &mut [Affine3A]) {
     let written = written_joints(parents.iter().copied().zip(bind.iter().copied()));
     for (bind, written) in bind.iter_mut().zip(&written) {
@@ -70,15 +71,14 @@ pub(super) fn round_to_file(parents: &[Option<u32>], bind: &mut [Affine3A]) {
     }
 }
 
-/// The transform that writing and reading by turns ends up with. A bind pose is a matrix of `f32` and a node is
-/// not, so either step rounds; written is what reading and writing again gives back, that a file survives it bit for
-/// bit. Where the two steps take turns between several transforms, the first in the order of their bits is taken.
-fn settled(parent: &DAffine3, model_from_joint: Affine3A) -> ParentFromJoint {
+/// Writes and reads a bind pose by turns until the stored transform no longer changes, so that a file survives reading and
+/// writing bit for bit. Where that ends in a cycle of several transforms, the first in the order of their bits is taken.
+fn fixed_point(parent: &DAffine3, model_from_joint: Affine3A) -> ParentFromJoint {
     let joint_from_model = parent.inverse();
-    let mut wanted = model_from_joint;
+    let mut read = model_from_joint;
     let mut seen: Vec<ParentFromJoint> = Vec::new();
     loop {
-        let node = ParentFromJoint::of(&(joint_from_model * widened(wanted)));
+        let node = ParentFromJoint::of(&(joint_from_model * widened(read)));
         if let Some(first) = seen.iter().position(|s| *s == node) {
             return seen[first..].iter().copied().min_by_key(|s| s.bits()).unwrap_or(node);
         }
@@ -86,11 +86,11 @@ fn settled(parent: &DAffine3, model_from_joint: Affine3A) -> ParentFromJoint {
             return node;
         }
         seen.push(node);
-        wanted = rounded(&(parent * node.to_affine()));
+        read = rounded(&(parent * node.to_affine()));
     }
 }
 
-/// A bind pose as the scene holds it.
+/// Rounds a bind pose to `f32`, as scenes hold it.
 pub(crate) fn rounded(transform: &DAffine3) -> Affine3A {
     let m = transform.matrix3;
     let columns = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.as_vec3().into());
@@ -108,8 +108,8 @@ fn widened(transform: Affine3A) -> DAffine3 {
     }
 }
 
-/// To `f32`, without the digits of small numbers that a bind pose, whose numbers are near 1, knows nothing of: they
-/// would be others each time.
+/// To `f32`, rounded to [`GRID`]: the finer digits of small numbers are lost in a bind pose, whose numbers are near 1, and
+/// would differ each time.
 fn on_grid(value: f64) -> f32 {
     plain((value / GRID).round() * GRID)
 }

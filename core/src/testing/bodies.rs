@@ -1,4 +1,4 @@
-//! Three very different bodies of our rig, made without the model: for tests.
+//! Three skeletons of the rig with very different proportions, made without the model.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use glam::Vec3;
 use crate::Side;
 use crate::skeleton::{BonePositions, JointTree, SidedJoint, Skeleton};
 
-/// A joint of the middle or the left: name, parent, head, tail, in shares of the height.
+/// A central or left joint: name, parent, head and tail as shares of the body's height.
 type Row = (&'static str, &'static str, [f32; 3], [f32; 3]);
 
-const MIDDLE: [Row; 7] = [
+const CENTRAL: [Row; 7] = [
     ("Root", "", [0., 0., 0.], [0., 0.1, 0.]),
     ("pelvis", "Root", [0., 0.53, 0.], [0., 0.575, -0.025]),
     ("spine_01", "pelvis", [0., 0.575, -0.025], [0., 0.615, -0.015]),
@@ -47,10 +47,10 @@ pub(crate) fn bodies() -> Vec<(&'static str, Arc<Skeleton>)> {
     .to_vec()
 }
 
-/// Legs stretched by `legs`, and what stands on them lifted; the upper body made as wide as `width`.
+/// Scales the legs by `legs`, lifts the upper body by what that adds, and scales its width by `width`.
 fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
     let lift = (legs.y - 1.0) * 0.515;
-    let place = |name: &str, [x, y, z]: [f32; 3]| {
+    let position = |name: &str, [x, y, z]: [f32; 3]| {
         let leg = LEG.iter().any(|joint| name.starts_with(joint.name()));
         let at = match (name, leg) {
             ("Root", _) => return Vec3::ZERO,
@@ -64,16 +64,16 @@ fn body(height: f32, legs: Vec3, width: f32) -> Skeleton {
         let mirror = |[x, y, z]: [f32; 3]| [-x, y, z];
         (name, parent, mirror(head), mirror(tail), Side::Right.joint_suffix())
     });
-    let middle = MIDDLE.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
+    let central = CENTRAL.map(|(name, parent, head, tail)| (name, parent, head, tail, ""));
     let (mut names, mut parents, mut shape) = (Vec::<String>::new(), Vec::new(), BonePositions::default());
-    for (name, parent, head, tail, side) in middle.into_iter().chain(left).chain(right) {
+    for (name, parent, head, tail, side) in central.into_iter().chain(left).chain(right) {
         let found = [format!("{parent}{side}"), parent.to_owned()]
             .iter()
             .find_map(|p| names.iter().position(|n| n == p));
         parents.push(found.map(|p| p as u32));
         names.push(format!("{name}{side}"));
-        shape.heads.push(place(name, head));
-        shape.tails.push(if name == "Root" { Vec3::Y } else { place(name, tail) });
+        shape.heads.push(position(name, head));
+        shape.tails.push(if name == "Root" { Vec3::Y } else { position(name, tail) });
     }
     shape.skeleton(&Arc::new(JointTree::new(names, parents).unwrap())).unwrap()
 }

@@ -8,7 +8,7 @@ use crate::clip::{Clip, TranslationTrack};
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::Skeleton;
 
-/// A root that walks ahead, 3 m/s and bobbing, and a child that swings; 30 frames a second. `phase` shifts the swing.
+/// A root that moves forward at 3 m/s and bobs, and a child that swings; 30 frames a second. `phase` shifts the swing.
 pub(crate) fn swing(name: &str, phase: f32, frames: usize) -> Clip {
     let step = RigidTransform { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
     let names = ["root", "child"].map(String::from).to_vec();

@@ -1,4 +1,4 @@
-//! What tests of several rooms share: small bodies, people, clips and scenes that need no model file.
+//! Fixtures for tests of several rooms: small bodies, skeletons, clips and scenes that need no model file.
 
 pub(crate) mod bodies;
 pub(crate) mod clips;

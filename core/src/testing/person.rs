@@ -1,4 +1,4 @@
-//! A person for tests: our rig on round numbers, and the same person as other programs would describe it.
+//! A skeleton of the full rig with round numbers, a clip of it, and the same clip as other programs would write it.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::clip::{Clip, TranslationTrack};
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{BonePositions, JointTree, RigJoint, SidedJoint, Skeleton, model_from_joints};
 
-/// Name, parent and place of the joints in the middle.
+/// Central joints: name, parent, position in metres.
 const CENTRAL: [(&str, &str, [f32; 3]); 8] = [
     ("Root", "", [0.0, 0.0, 0.0]),
     ("pelvis", "Root", [0.0, 0.93, 0.0]),
@@ -21,7 +21,7 @@ const CENTRAL: [(&str, &str, [f32; 3]); 8] = [
     ("jaw", "head", [0.0, 1.59, 0.05]),
 ];
 
-/// And of those on the left.
+/// Left joints: name, parent, position in metres.
 const LEFT: [(&str, &str, [f32; 3]); 30] = [
     ("eye", "head", [0.03, 1.63, 0.1]),
     ("clavicle", "spine_03", [0.03, 1.4, 0.02]),
@@ -55,7 +55,7 @@ const LEFT: [(&str, &str, [f32; 3]); 30] = [
     ("ball", "foot", [0.19, 0.01, 0.115]),
 ];
 
-/// Where a bone without a joint at its far end points, and how far.
+/// The far end of a bone that ends in no joint.
 fn tail(name: &str, head: Vec3) -> Vec3 {
     let side = Side::of_joint_name(name).map_or(1.0, Side::sign);
     head + match name {
@@ -84,7 +84,7 @@ pub(crate) fn person() -> Arc<Skeleton> {
     let parents: Vec<Option<u32>> = joints.iter().map(|(_, p, _)| index(p).map(|p| p as u32)).collect();
     let next = |name: &str| -> Option<Vec3> {
         let limb = match RigJoint::from_name(name).unwrap() {
-            RigJoint::Sided(joint, side) => joint.limb().on(side).name(),
+            RigJoint::Sided(joint, side) => joint.main_joint().on(side).name(),
             joint => joint.name(),
         };
         let main = |child: &str| {
@@ -104,24 +104,24 @@ pub(crate) fn person() -> Arc<Skeleton> {
     Arc::new(shape.skeleton(&Arc::new(tree)).unwrap())
 }
 
-/// A pose by turns of joints about their own axes, degrees.
-pub(crate) fn posed(rest: &Skeleton, turns: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
+/// The rest pose with joints rotated by scaled axes in their own space, degrees.
+pub(crate) fn posed(rest: &Skeleton, rotations: &[(&str, [f32; 3])]) -> Vec<RigidTransform> {
     let mut locals = rest.rest_pose().locals.clone();
-    for (name, turn) in turns {
-        let turn = Vec3::from_array(*turn).map(f32::to_radians);
-        locals[rest.find(name).unwrap()].rotation *= Rotation::from_scaled_axis(turn);
+    for (name, axis) in rotations {
+        let axis = Vec3::from_array(*axis).map(f32::to_radians);
+        locals[rest.find(name).unwrap()].rotation *= Rotation::from_scaled_axis(axis);
     }
     locals
 }
 
-/// Somebody who walks about, waves with the left arm and nods; elbows and knees only fold.
+/// A clip of 30 frames a second that travels, waves with the left arm and nods; elbows and knees only bend about X.
 pub(crate) fn motion(rest: &Arc<Skeleton>, frames: usize) -> Clip {
     let mut rotations = Vec::new();
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for frame in 0..frames {
         let t = frame as f32 * 0.2;
         let (s, c) = libm::sincosf(t);
-        let turns = [
+        let joint_rotations = [
             ("pelvis", [4.0 * s, 60.0 + 10.0 * t, 3.0 * c]),
             ("spine_01", [8.0 * s, 4.0 * c, 2.0]),
             ("spine_02", [3.0 * c, 6.0 * s, 0.0]),
@@ -145,32 +145,37 @@ pub(crate) fn motion(rest: &Arc<Skeleton>, frames: usize) -> Clip {
             ("calf_r", [-45.0 - 20.0 * c, 0.0, 0.0]),
             ("foot_r", [-8.0 * c, 0.0, 0.0]),
         ];
-        rotations.extend(posed(rest, &turns).iter().map(|local| local.rotation));
-        places.push(Vec3::new(0.3 * s, 0.9 + 0.03 * c, 0.5 * t));
+        rotations.extend(posed(rest, &joint_rotations).iter().map(|local| local.rotation));
+        positions.push(Vec3::new(0.3 * s, 0.9 + 0.03 * c, 0.5 * t));
     }
-    let track = TranslationTrack { joint: rest.rig_joint(RigJoint::Pelvis).unwrap() as u32, values: places };
+    let track =
+        TranslationTrack { joint: rest.rig_joint(RigJoint::Pelvis).unwrap() as u32, values: positions };
     Clip::new("motion".into(), rest.clone(), 30.0, rotations, vec![track]).unwrap()
 }
 
-/// The same motion as another program would write it: `rename` gives names (`None` drops a leaf), `rest` the pose it
-/// rests in (locals of our person), `facing` turns that, `frames` turns every joint's own axes, and all is `scale` times
-/// as large.
+/// How another program writes a clip of [`person`].
 pub(crate) struct Style<'a> {
+    /// New names; `None` drops a joint without children.
     pub(crate) rename: &'a dyn Fn(&str) -> Option<String>,
+    /// The rest pose, `parent_from_joint` of [`person`]'s joints.
     pub(crate) rest: Vec<RigidTransform>,
+    /// Rotation of the rest pose about +Y, radians.
     pub(crate) facing: f32,
+    /// Whether every joint's own axes are rotated.
     pub(crate) frames: bool,
+    /// Scale of all lengths.
     pub(crate) scale: f32,
 }
 
+/// The clip in another style, with the same motion in model space but for the scale.
 pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let ours = clip.skeleton();
     let kept: Vec<usize> = (0..ours.len()).filter(|&j| (style.rename)(&ours.names()[j]).is_some()).collect();
-    let place = |j: u32| kept.iter().position(|&k| k == j as usize).map(|k| k as u32);
-    let parents: Vec<Option<u32>> = kept.iter().map(|&j| ours.parents()[j].and_then(place)).collect();
+    let index = |j: u32| kept.iter().position(|&k| k == j as usize).map(|k| k as u32);
+    let parents: Vec<Option<u32>> = kept.iter().map(|&j| ours.parents()[j].and_then(index)).collect();
     let axes = |j: usize| {
-        let turn = Vec3::new(1.3 * j as f32, 0.7 - j as f32, 0.4 * j as f32);
-        if style.frames { Rotation::from_scaled_axis(turn) } else { Rotation::IDENTITY }
+        let axis = Vec3::new(1.3 * j as f32, 0.7 - j as f32, 0.4 * j as f32);
+        if style.frames { Rotation::from_scaled_axis(axis) } else { Rotation::IDENTITY }
     };
     let locals_of = |pose: &[RigidTransform], facing: Rotation| -> Vec<RigidTransform> {
         let mut model = Vec::new();
@@ -191,7 +196,7 @@ pub(crate) fn restyled(clip: &Clip, style: &Style) -> Clip {
     let facing = Rotation::from_rotation_y(style.facing);
     let rest = Skeleton::new(names, parents.clone(), locals_of(&style.rest, facing), ends).unwrap();
     let mut rotations = Vec::new();
-    let pelvis = place(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
+    let pelvis = index(ours.rig_joint(RigJoint::Pelvis).unwrap() as u32).unwrap();
     let mut values = Vec::new();
     for frame in 0..clip.frame_count() {
         let locals = locals_of(&clip.pose(frame).locals, Rotation::IDENTITY);

@@ -1,4 +1,4 @@
-//! A small asymmetric character for the writers' tests: a bent sleeve of quads with a texture seam, and a thumb.
+//! A small asymmetric character for the writers' tests: a bent sleeve of quads with a texture seam, and a nail of triangles.
 
 use std::sync::Arc;
 
@@ -12,13 +12,13 @@ use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v}
 /// Sides of the sleeve.
 const SIDES: u32 = 5;
 
-/// Three joints with rotations of their own, a sleeve of 3 × 5 vertices with a seam, a static-looking cap of
-/// triangles without texture coordinates.
+/// Three rotated joints, a sleeve of 3 × 5 vertices with a texture seam, and one triangle without texture coordinates on the
+/// last joint.
 pub(crate) fn arm(influences: usize) -> Scene {
     sleeve(influences, 3)
 }
 
-/// The same with this many rings, for tests of size.
+/// The same with this many rings of vertices, for tests of large files.
 pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
     let place = |axis: Vec3, angle: f32, at: [f32; 3]| {
         Affine3A::from_rotation_translation(
@@ -56,23 +56,25 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
     }
 }
 
-/// Three frames of every joint of a scene turning about an axis of its own, the root wandering.
+/// Three frames in which every joint of a scene rotates about its own axis and the root moves.
 pub(crate) fn bent(scene: &Scene) -> Clip {
     let rest = Arc::new(scene.skeleton(str::to_owned).unwrap());
-    let turn = |frame: usize, joint: usize| {
+    let rotation = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
         Rotation::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)
     };
     let rotations = (0..3)
-        .flat_map(|f| rest.rest_rotations().enumerate().map(move |(j, q)| q * turn(f, j)).collect::<Vec<_>>())
+        .flat_map(|f| {
+            rest.rest_rotations().enumerate().map(move |(j, q)| q * rotation(f, j)).collect::<Vec<_>>()
+        })
         .collect();
     let start = rest.rest_pose().locals[0].translation;
     let values = (0..3).map(|f| start + Vec3::new(0.1, -0.02, 0.3) * f as f32).collect();
     Clip::new("bent".into(), rest, 25.0, rotations, vec![TranslationTrack { joint: 0, values }]).unwrap()
 }
 
-/// The scene with one mesh more that has two morph targets: a cushion of two quads with a texture seam between them. Where
-/// the scene has clips, the targets have weights over the first; one more clip, of joints at rest, moves the second alone.
+/// The scene with another mesh that has two morph targets: a cushion of two quads with a texture seam between them. If the
+/// scene has clips, the first animates both targets, and a clip of the rest pose is added that animates the second alone.
 pub(crate) fn bulging(mut scene: Scene) -> Scene {
     let mesh = scene.meshes.len() as u32;
     scene.meshes.push(cushion(scene.meshes[0].influences_per_vertex));
@@ -144,8 +146,8 @@ fn tube(influences: usize, rings: u32) -> SceneMesh {
     for ring in 0..rings {
         let t = ring as f32 / (rings - 1) as f32;
         for side in 0..SIDES {
-            let turn = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
-            let (c, s) = (libm::cos(turn) as f32, libm::sin(turn) as f32);
+            let angle = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
+            let (c, s) = (libm::cos(angle) as f32, libm::sin(angle) as f32);
             let radius = 0.05 + 0.01 * t + 0.003 * side as f32;
             mesh.positions.push([0.1 + 0.5 * t, 1.2 + radius * c, 0.1 * t * t - 0.03 + radius * s]);
             mesh.normals.push([0.0, c, s]);
@@ -153,7 +155,7 @@ fn tube(influences: usize, rings: u32) -> SceneMesh {
             weights[..3].copy_from_slice(&[1.0 - t, t * 0.7, t * 0.3]);
             push_influences(&mut mesh, weights, influences);
         }
-        // One texture column more than sides: the seam.
+        // One texture column more than sides, for the seam.
         for column in 0..=SIDES {
             mesh.uvs.push(flip_v([column as f32 / SIDES as f32, 0.1 + 0.8 * t]));
         }
@@ -185,7 +187,7 @@ fn cap(influences: usize) -> SceneMesh {
     mesh
 }
 
-/// Appends weights per joint as sorted slots; unused slots carry a joint index on purpose.
+/// Appends the largest weights in descending order; slots of weight 0 have a joint other than 0 on purpose.
 fn push_influences(mesh: &mut SceneMesh, weights: [f32; 8], influences: usize) {
     let mut slots: Vec<_> = weights.iter().enumerate().map(|(joint, w)| (joint as u16, *w)).collect();
     slots.sort_by(|a, b| b.1.total_cmp(&a.1));

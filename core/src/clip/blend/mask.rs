@@ -1,24 +1,24 @@
-//! How much of a blend each joint takes.
+//! Weights of a blend per joint.
 
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
-/// How much each joint takes part: 0 not at all, 1 fully.
+/// One weight per joint for a blend: 0 excludes the joint, 1 includes it fully.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMask {
     weights: Vec<f32>,
 }
 
 impl JointMask {
-    /// Every joint.
+    /// Weight 1 for every joint.
     pub fn all(rest: &Skeleton) -> Self {
         Self { weights: vec![1.0; rest.len()] }
     }
 
-    /// A share of each joint.
+    /// A weight for each joint.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when there is not one per joint, or one is not in 0..=1.
+    /// [`Error::Invalid`] when the number of weights is not that of the joints, or one is not in 0..=1.
     pub fn of_weights(rest: &Skeleton, weights: &[f32]) -> Result<Self> {
         if weights.len() != rest.len() {
             let message = format!("expected {} joints, got {}", rest.len(), weights.len());
@@ -31,7 +31,7 @@ impl JointMask {
         Ok(Self { weights: weights.to_vec() })
     }
 
-    /// The joints below and including those named: `spine_01` is the upper body, `pelvis` everything that moves.
+    /// Weight 1 for the named joints and all below them, 0 for the others: `spine_01` selects the upper body.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming a joint that is missing.
@@ -48,7 +48,7 @@ impl JointMask {
         Ok(Self { weights })
     }
 
-    /// The share of a joint; 0 for one that does not exist.
+    /// The weight of a joint; 0 for one that does not exist.
     pub fn weight(&self, joint: usize) -> f32 {
         self.weights.get(joint).copied().unwrap_or(0.0)
     }

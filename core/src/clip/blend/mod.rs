@@ -1,4 +1,4 @@
-//! Clips made of several: mixed, faded from one to the next, or added on top.
+//! Combining clips: blends, crossfades and additive layers.
 
 mod mask;
 mod pose;
@@ -14,26 +14,26 @@ use crate::{Error, Result};
 pub use mask::JointMask;
 pub use pose::{Layer, add_pose, blend_pose, blend_poses};
 
-/// A clip between two, at the rate and of the length of the first: `a` at weight 0, `b` at 1. When `b` is shorter its
-/// last frame is held; make both equally long and in step first, with [`resample`](super::resample), when they walk.
+/// Interpolates two clips, `a` at weight 0, `b` at 1, at the rate and of the length of `a`. If `b` is shorter its last frame
+/// is held. Walks should have the same length and phase.
 ///
 /// # Errors
-/// [`Error::Invalid`] when the clips are of different skeletons, [`Error::Request`] when the weight is not in 0..=1.
+/// [`Error::Invalid`] when the clips have different skeletons, [`Error::Request`] when the weight is not in 0..=1.
 pub fn blend(a: &Clip, b: &Clip, weight: f32, mask: Option<&JointMask>) -> Result<Clip> {
     same_skeleton(a, b)?;
     in_unit("weight", weight)?;
     let mask = mask.cloned().unwrap_or_else(|| JointMask::all(a.skeleton()));
-    over(a, |seconds, pose, scratch| {
+    map_frames(a, |seconds, pose, scratch| {
         Sampler::new(b, Wrap::Once).sample_into(seconds, scratch);
         blend_pose(pose, scratch, weight, &mask);
     })
 }
 
-/// A clip of any number of clips, mixed by [`blend_poses`] frame by frame, at the rate and of the length of the first. The
-/// last frame of a shorter one is held. Unlike [`blend`], which goes from one clip to another, no layer comes before another.
+/// Blends any number of clips frame by frame with [`blend_poses`], at the rate and of the length of the first. The last frame
+/// of a shorter one is held. Unlike in [`blend`], the weights are relative and the order of the layers does not matter.
 ///
 /// # Errors
-/// [`Error::Request`] when there is no layer or a weight is negative or not finite, [`Error::Invalid`] when the clips are of
+/// [`Error::Request`] when there is no layer or a weight is negative or not finite, [`Error::Invalid`] when the clips have
 /// different skeletons.
 pub fn blend_layers(layers: &[Layer<'_, Clip>]) -> Result<Clip> {
     let Some(first) = layers.first().map(|layer| layer.of) else {
@@ -47,7 +47,7 @@ pub fn blend_layers(layers: &[Layer<'_, Clip>]) -> Result<Clip> {
         }
     }
     let mut sampled = vec![Pose::default(); layers.len()];
-    over(first, |seconds, pose, _| {
+    map_frames(first, |seconds, pose, _| {
         for (layer, sampled) in layers.iter().zip(&mut sampled) {
             Sampler::new(layer.of, Wrap::Once).sample_into(seconds, sampled);
         }
@@ -60,8 +60,8 @@ pub fn blend_layers(layers: &[Layer<'_, Clip>]) -> Result<Clip> {
     })
 }
 
-/// One clip after the other, with `seconds` in which the end of `a` turns into the beginning of `b`. The second clip is
-/// moved along the floor so that it goes on where the first arrives.
+/// Plays `b` after `a`, blending the last `seconds` of `a` into the beginning of `b`, at the rate of `a`. `b` is moved along
+/// the floor to where `a` is when the blend begins.
 ///
 /// # Errors
 /// As [`blend`], and [`Error::Request`] when the fade is negative or longer than one of the clips.
@@ -74,10 +74,10 @@ pub fn crossfade(a: &Clip, b: &Clip, seconds: f64) -> Result<Clip> {
     let start = a.duration() - seconds;
     let rate = a.frames_per_second();
     let frames = libm::floor((start + b.duration()) * rate + 1e-6) as usize + 1;
-    let meeting = Sampler::new(a, Wrap::Once).sample(start);
+    let pose_at_start = Sampler::new(a, Wrap::Once).sample(start);
     let moves: Vec<(u32, glam::Vec3)> = b
         .top_tracks()
-        .map(|t| (t.joint, (meeting.locals[t.joint as usize].translation - t.values[0]).with_y(0.0)))
+        .map(|t| (t.joint, (pose_at_start.locals[t.joint as usize].translation - t.values[0]).with_y(0.0)))
         .collect();
     let mut mixed = Pose::default();
     let mask = JointMask::all(a.skeleton());
@@ -97,11 +97,11 @@ pub fn crossfade(a: &Clip, b: &Clip, seconds: f64) -> Result<Clip> {
     clip_of_poses(a.name(), a.skeleton(), rate, poses)
 }
 
-/// A clip with a layer on it: what `layer` differs from `reference` by is added to `base`, at the rate and of the
-/// length of `base`; a shorter layer starts anew.
+/// Adds the difference between `layer` and the pose `reference` to `base`, at the rate and of the length of `base`; a shorter
+/// layer repeats.
 ///
 /// # Errors
-/// [`Error::Invalid`] when the clips are of different skeletons or the reference has another number of joints,
+/// [`Error::Invalid`] when the clips have different skeletons or the reference has another number of joints,
 /// [`Error::Request`] when the weight is not in 0..=1.
 pub fn additive(
     base: &Clip,
@@ -120,14 +120,14 @@ pub fn additive(
         ));
     }
     let mask = mask.cloned().unwrap_or_else(|| JointMask::all(base.skeleton()));
-    over(base, |seconds, pose, scratch| {
+    map_frames(base, |seconds, pose, scratch| {
         Sampler::new(layer, Wrap::Loop).sample_into(seconds, scratch);
         add_pose(pose, scratch, reference, weight, &mask);
     })
 }
 
-/// The frames of a clip, each changed with a scratch pose beside it.
-fn over(clip: &Clip, mut change: impl FnMut(f64, &mut Pose, &mut Pose)) -> Result<Clip> {
+/// Changes every frame of a clip; `change` gets the time in seconds, the pose, and a scratch pose to reuse.
+fn map_frames(clip: &Clip, mut change: impl FnMut(f64, &mut Pose, &mut Pose)) -> Result<Clip> {
     let mut scratch = Pose::default();
     let poses = (0..clip.frame_count()).map(|frame| {
         let mut pose = clip.pose(frame);

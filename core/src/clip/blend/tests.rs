@@ -5,7 +5,7 @@ use crate::math::{RigidTransform, Rotation};
 use crate::testing::clips::swing;
 
 #[test]
-fn half_a_blend_is_half_way() {
+fn a_blend_of_one_half_is_half_way() {
     let (a, b) = (swing("a", 0.0, 11), swing("b", 1.0, 11));
     let half = blend(&a, &b, 0.5, None).unwrap();
     for frame in 0..11 {
@@ -17,7 +17,7 @@ fn half_a_blend_is_half_way() {
 }
 
 #[test]
-fn a_mask_keeps_what_it_does_not_cover() {
+fn masked_out_joints_keep_the_first_clip() {
     let (a, b) = (swing("a", 0.0, 11), swing("b", 1.0, 11));
     let mask = JointMask::below(a.skeleton(), &["child"]).unwrap();
     let mixed = blend(&a, &b, 1.0, Some(&mask)).unwrap();
@@ -27,16 +27,16 @@ fn a_mask_keeps_what_it_does_not_cover() {
     let mixed = blend(&a, &b, 1.0, Some(&half)).unwrap();
     let wanted = a.rotations(10)[1].slerp(b.rotations(10)[1], 0.5);
     assert!(mixed.rotations(10)[1].dot(wanted) > 1.0 - 1e-6 && mixed.rotations(10)[0] == a.rotations(10)[0]);
-    for (weights, said) in
+    for (weights, message) in
         [(&[1.0][..], "expected 2 joints, got 1"), (&[0.0, 1.5], "`child`"), (&[f32::NAN, 0.0], "NaN")]
     {
-        assert!(JointMask::of_weights(a.skeleton(), weights).unwrap_err().to_string().contains(said));
+        assert!(JointMask::of_weights(a.skeleton(), weights).unwrap_err().to_string().contains(message));
     }
     assert!(JointMask::below(a.skeleton(), &["tail"]).unwrap_err().to_string().contains("`tail`"));
 }
 
 #[test]
-fn what_is_added_is_the_difference_to_the_reference() {
+fn an_additive_layer_adds_its_difference_to_the_reference() {
     let (a, b) = (swing("a", 0.3, 11), swing("b", 1.0, 11));
     let same = additive(&a, &b, &b.pose(0), 0.0, None).unwrap();
     assert!(same.rotations(9)[1].dot(a.rotations(9)[1]) > 1.0 - 1e-6);
@@ -47,7 +47,7 @@ fn what_is_added_is_the_difference_to_the_reference() {
 }
 
 #[test]
-fn a_crossfade_starts_as_the_first_and_goes_on_where_it_was() {
+fn a_crossfade_starts_with_the_first_clip_and_continues_at_its_position() {
     let (a, b) = (swing("a", 0.2, 31), swing("b", 1.0, 31));
     let both = crossfade(&a, &b, 0.4).unwrap();
     assert_eq!(both.frame_count(), 49);
@@ -60,11 +60,11 @@ fn a_crossfade_starts_as_the_first_and_goes_on_where_it_was() {
 }
 
 #[test]
-fn layers_are_the_mean_by_their_weights_in_any_order() {
+fn layers_blend_to_their_weighted_mean_in_any_order() {
     let (a, b, c) = (swing("a", 0.0, 11), swing("b", 0.6, 11), swing("c", 1.2, 11));
     let layer = |of, weight| Layer { of, weight, mask: None };
     let three = blend_layers(&[layer(&a, 2.0), layer(&b, 2.0), layer(&c, 2.0)]).unwrap();
-    let turned = blend_layers(&[layer(&c, 1.0), layer(&a, 1.0), layer(&b, 1.0)]).unwrap();
+    let reordered = blend_layers(&[layer(&c, 1.0), layer(&a, 1.0), layer(&b, 1.0)]).unwrap();
     let rotated = |angle| Pose {
         locals: vec![RigidTransform {
             rotation: Rotation::from_rotation_x(angle),
@@ -77,7 +77,7 @@ fn layers_are_the_mean_by_their_weights_in_any_order() {
     assert!(mean.locals[0].rotation.abs_diff_eq(middle.locals[0].rotation, 1e-6));
     assert!(mean.locals[0].translation.distance(Vec3::X * 0.6) < 1e-6);
     for frame in 0..11 {
-        assert!(three.rotations(frame)[1].abs_diff_eq(turned.rotations(frame)[1], 1e-6));
+        assert!(three.rotations(frame)[1].abs_diff_eq(reordered.rotations(frame)[1], 1e-6));
     }
     let alone = blend_layers(&[layer(&c, 0.3), layer(&a, 0.0)]).unwrap();
     assert!(alone.rotations(9)[1].dot(c.rotations(9)[1]).abs() > 1.0 - 1e-6);
@@ -100,7 +100,7 @@ fn opposite_quaternions_of_one_rotation_do_not_cancel() {
 }
 
 #[test]
-fn joints_have_weights_of_their_own_and_what_vanishes_goes_to_rest() {
+fn masks_weight_joints_and_vanishing_weights_blend_to_rest() {
     let (a, b) = (swing("a", 0.4, 11), swing("b", 1.0, 11));
     let rest = a.skeleton().rest_pose();
     let child = JointMask::below(a.skeleton(), &["child"]).unwrap();
@@ -126,7 +126,7 @@ fn joints_have_weights_of_their_own_and_what_vanishes_goes_to_rest() {
 }
 
 #[test]
-fn layers_that_cannot_be_mixed_are_refused() {
+fn layers_that_cannot_be_blended_are_refused() {
     let a = swing("a", 0.4, 11);
     let error = |layers: &[Layer<'_, Clip>]| blend_layers(layers).unwrap_err().to_string();
     assert!(error(&[]).contains("expected at least one, got none"));

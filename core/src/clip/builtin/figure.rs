@@ -1,4 +1,4 @@
-//! A body of our rig that takes stances in the words of a body: arms hang, feet roll, a back bends.
+//! Poses a body of the rig from anatomical parameters: arms lowered, feet rolled, spine bent.
 
 use std::sync::Arc;
 
@@ -10,30 +10,30 @@ use crate::pose::ik::Reach;
 use crate::skeleton::{Finger, Pose, RigJoint, SidedJoint, Skeleton, model_from_joints};
 use crate::{Error, Result, Side};
 
-/// What of a leg may be used, so that a knee never locks.
+/// Largest extension of a leg, as a share of its length, so that knees never lock.
 const STRETCH: f32 = 0.992;
 
-/// An arm, angles in degrees. All zero is the T-pose.
+/// Parameters of an arm, degrees. All zero is the T-pose.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Arm {
-    /// Down from level: 90 hangs.
+    /// Down from horizontal; 90 hangs.
     pub(super) lowered: f32,
-    /// Then forward about the axis through both shoulders.
+    /// Then forwards about the axis through both shoulders.
     pub(super) forward: f32,
-    /// Before both, about the bone: outward lifts a bent forearm.
+    /// Before both, outward rotation about the bone, which lifts a bent forearm.
     pub(super) outward: f32,
     /// Elbow flexion.
     pub(super) elbow: f32,
-    /// Wrist: to the thumb's side, and towards the palm.
+    /// Wrist: radial deviation, flexion.
     pub(super) wrist: Vec2,
-    /// How much fingers are curled beyond rest.
+    /// Curl of each finger joint beyond rest.
     pub(super) curl: f32,
-    /// Collar bone, upwards.
+    /// Clavicle, upwards.
     pub(super) shrug: f32,
 }
 
 impl Arm {
-    /// Hangs at the side, elbow slightly bent, fingers relaxed.
+    /// At the side, elbow slightly bent, fingers relaxed.
     pub(super) const HANGING: Self = Self {
         lowered: 79.0,
         forward: 3.0,
@@ -45,31 +45,31 @@ impl Arm {
     };
 }
 
-/// A foot: where its sole is moved from rest, and how it rolls.
+/// Parameters of a foot, relative to rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Foot {
-    /// Metres from the place at rest.
+    /// Displacement from rest in model space, metres.
     pub(super) shift: Vec3,
-    /// Degrees: above 0 the heel is raised over the ball, the toes stay flat; below, the toes over the heel.
+    /// Degrees: positive raises the heel about the ball with the toes flat, negative raises the toes about the heel.
     pub(super) roll: f32,
-    /// Degrees that the toes point outwards more than at rest.
+    /// Outward rotation of the foot about the vertical, degrees.
     pub(super) toe_out: f32,
 }
 
-/// A whole body, angles in degrees; arms and feet left and right.
+/// Parameters of a whole body, angles in degrees; arms and feet are left, right.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stance {
-    /// Root translation, metres.
+    /// Translation of the root, metres.
     pub(super) root: Vec3,
-    /// Pelvis from rest, metres.
+    /// Displacement of the pelvis from rest, metres.
     pub(super) pelvis: Vec3,
-    /// How far thighs are turned so that knees point outwards.
+    /// Outward rotation of the thighs, with the knees.
     pub(super) knees_out: f32,
-    /// Pelvis about X (forward), Y (to the left), Z (to the right) in model space.
-    pub(super) pelvis_turn: Vec3,
-    /// The same for the spine, shared by its joints.
+    /// Rotation of the pelvis about X (forward lean), Y (to the left), Z (lean to the right) in model space.
+    pub(super) pelvis_rotation: Vec3,
+    /// The same for the spine, divided among its joints.
     pub(super) spine: Vec3,
-    /// The same for neck and head.
+    /// The same for neck and head, divided among them.
     pub(super) head: Vec3,
     pub(super) arms: [Arm; 2],
     pub(super) feet: [Foot; 2],
@@ -80,12 +80,12 @@ struct ArmJoints {
     upper: usize,
     lower: usize,
     hand: usize,
-    /// Shares of the upper arm's twist that helper joints give back: full at the shoulder, half on the way.
-    helpers: Vec<(usize, f32)>,
+    /// Twist joints of the upper arm and the factor of its twist that each applies: −1 at the shoulder, −½ half-way.
+    twists: Vec<(usize, f32)>,
     fingers: Vec<usize>,
 }
 
-/// A skeleton at rest with its joints found and its proportions.
+/// A skeleton with the indices of its joints and its proportions.
 pub(super) struct Figure {
     pub(super) rest: Arc<Skeleton>,
     model: Vec<RigidTransform>,
@@ -97,7 +97,7 @@ pub(super) struct Figure {
     legs: [Leg; 2],
     /// Length of a leg from hip to ankle, metres.
     pub(super) leg_length: f32,
-    /// Lengths of thigh and shin.
+    /// Lengths of thigh and shin, metres.
     pub(super) leg_bones: [f32; 2],
 }
 
@@ -106,7 +106,7 @@ impl Figure {
         let joint = |joint: RigJoint| rest.require_rig_joint(joint);
         let arm = |side: Side| -> Result<ArmJoints> {
             let of = |part: SidedJoint| joint(part.on(side));
-            let helpers = [(SidedJoint::UpperarmTwist01, -1.0), (SidedJoint::UpperarmTwist02, -0.5)];
+            let twists = [(SidedJoint::UpperarmTwist01, -1.0), (SidedJoint::UpperarmTwist02, -0.5)];
             let is_finger = |joint: RigJoint| {
                 joint.side() == Some(side)
                     && joint.finger().is_some_and(|(finger, _)| finger != Finger::Thumb)
@@ -117,7 +117,7 @@ impl Figure {
                 upper: of(SidedJoint::Upperarm)?,
                 lower: of(SidedJoint::Lowerarm)?,
                 hand: of(SidedJoint::Hand)?,
-                helpers: helpers
+                twists: twists
                     .iter()
                     .filter_map(|(part, share)| Some((rest.rig_joint(part.on(side))?, *share)))
                     .collect(),
@@ -147,7 +147,7 @@ impl Figure {
         })
     }
 
-    /// Where a foot is moved to stand at `share` of the way from under the hip (0) to its place at rest (1), toes level.
+    /// Both feet flat on the floor, at `share` of the way from below the hip (0) to their rest position (1).
     pub(super) fn standing(&self, share: f32) -> [Foot; 2] {
         self.legs.map(|leg| {
             let [hip, ankle] = [leg.limb.upper, leg.limb.end].map(|j| self.model[j].translation.x);
@@ -155,9 +155,9 @@ impl Figure {
         })
     }
 
-    /// How much the pelvis would have to come down for legs to reach their feet with a slightly bent knee, metres;
-    /// below 0 when there is room.
-    pub(super) fn too_high(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
+    /// How far the pelvis has to come down for the legs of `feet` to reach the floor without locking a knee, metres; negative
+    /// when they reach.
+    pub(super) fn required_drop(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
         let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         let mut model = Vec::new();
@@ -173,9 +173,9 @@ impl Figure {
         .fold(f32::NEG_INFINITY, f32::max)
     }
 
-    /// The stance with the pelvis just low enough for both legs.
-    pub(super) fn settled(&self, mut stance: Stance) -> Stance {
-        stance.pelvis.y -= self.too_high(&stance, 0..2).max(0.0);
+    /// Lowers the pelvis as far as both legs need to reach their feet.
+    pub(super) fn within_reach(&self, mut stance: Stance) -> Stance {
+        stance.pelvis.y -= self.required_drop(&stance, 0..2).max(0.0);
         stance
     }
 
@@ -191,11 +191,11 @@ impl Figure {
         for (f, leg) in self.legs.iter().enumerate() {
             let mut target = self.foot_goal(f, &stance.feet[f]);
             target.translation += stance.root;
-            // Bent on its own hinge, so that it is the knee that says where the knee goes.
+            // Bend the knee about its hinge first, as inverse kinematics keeps the plane in which the leg bends.
             let outwards = -Side::ALL[f].sign() * stance.knees_out.to_radians();
             pose.locals[leg.limb.upper].rotation *= Rotation::from_rotation_y(outwards);
             pose.locals[leg.limb.lower].rotation *= Rotation::from_rotation_x(-0.5);
-            leg.limb.reach(&mut pose, leg.above(&model), &Reach::to(target));
+            leg.limb.reach(&mut pose, leg.model_from_parent(&model), &Reach::to(target));
             let toes = Rotation::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
             pose.locals[leg.ball].rotation *= toes;
         }
@@ -205,13 +205,13 @@ impl Figure {
     fn set_trunk(&self, stance: &Stance, pose: &mut Pose) {
         pose.locals[self.root].translation += stance.root;
         let local = &mut pose.locals[self.pelvis];
-        let above =
+        let parent =
             self.rest.parents()[self.pelvis].map_or(Rotation::IDENTITY, |p| self.model[p as usize].rotation);
-        let to_parent = above.conjugate();
+        let to_parent = parent.conjugate();
         local.translation += to_parent * stance.pelvis;
-        local.rotation = to_parent * euler(stance.pelvis_turn) * above * local.rotation;
-        for (joints, turn) in [(&self.spine[..], stance.spine), (&self.neck[..], stance.head)] {
-            let share = euler(turn / joints.len() as f32);
+        local.rotation = to_parent * euler(stance.pelvis_rotation) * parent * local.rotation;
+        for (joints, rotation) in [(&self.spine[..], stance.spine), (&self.neck[..], stance.head)] {
+            let share = euler(rotation / joints.len() as f32);
             for joint in joints {
                 pose.locals[*joint].rotation *= share;
             }
@@ -222,38 +222,38 @@ impl Figure {
         let x = |degrees: f32| Rotation::from_rotation_x(degrees.to_radians());
         let y = |degrees: f32| Rotation::from_rotation_y(side.sign() * degrees.to_radians());
         let z = |degrees: f32| Rotation::from_rotation_z(side.sign() * degrees.to_radians());
-        let mut turn = |joint: usize, by: Rotation| pose.locals[joint].rotation *= by;
-        turn(joints.clavicle, z(arm.shrug));
-        turn(joints.upper, y(-arm.forward) * z(-arm.lowered - arm.shrug) * y(-arm.outward));
-        turn(joints.lower, x(arm.elbow));
-        turn(joints.hand, x(arm.wrist.x) * z(-arm.wrist.y));
-        for (joint, share) in &joints.helpers {
-            turn(*joint, y(-arm.outward * share));
+        let mut rotate = |joint: usize, by: Rotation| pose.locals[joint].rotation *= by;
+        rotate(joints.clavicle, z(arm.shrug));
+        rotate(joints.upper, y(-arm.forward) * z(-arm.lowered - arm.shrug) * y(-arm.outward));
+        rotate(joints.lower, x(arm.elbow));
+        rotate(joints.hand, x(arm.wrist.x) * z(-arm.wrist.y));
+        for (joint, share) in &joints.twists {
+            rotate(*joint, y(-arm.outward * share));
         }
         for joint in &joints.fingers {
-            turn(*joint, z(-arm.curl));
+            rotate(*joint, z(-arm.curl));
         }
     }
 
-    /// `model_from_foot`, without the root's way.
+    /// `model_from_joint` of the foot, without root motion.
     fn foot_goal(&self, f: usize, foot: &Foot) -> RigidTransform {
         let leg = &self.legs[f];
         let (ankle, ball) = (self.model[leg.limb.end], self.model[leg.ball]);
         let heel = ankle.translation + ankle.rotation * leg.heel;
         let pivot = if foot.roll > 0.0 { ball.translation } else { heel };
         let toe_out = Rotation::from_rotation_y(Side::ALL[f].sign() * foot.toe_out.to_radians());
-        let turn = toe_out * Rotation::from_rotation_x(foot.roll.to_radians());
-        // Turned about the middle of the foot, rolled about its pivot.
+        let rotation = toe_out * Rotation::from_rotation_x(foot.roll.to_radians());
+        // Rotate about the middle of the foot, roll about the pivot.
         let middle = (0.5 * (heel + ball.translation)).with_y(0.0);
         let rolled = pivot + Rotation::from_rotation_x(foot.roll.to_radians()) * (ankle.translation - pivot);
         RigidTransform {
-            rotation: turn * ankle.rotation,
+            rotation: rotation * ankle.rotation,
             translation: middle + toe_out * (rolled - middle) + foot.shift,
         }
     }
 
-    /// Turns joints of the pose about their own axes, degrees as for the left; right joints are mirrored.
-    pub(super) fn turn(&self, pose: &mut Pose, joint: RigJoint, x: f32, y: f32, z: f32) {
+    /// Rotates a joint about its own axes, degrees, as for the left; right joints are mirrored.
+    pub(super) fn rotate(&self, pose: &mut Pose, joint: RigJoint, x: f32, y: f32, z: f32) {
         let sign = joint.side().map_or(1.0, Side::sign);
         if let Some(joint) = self.rest.rig_joint(joint) {
             pose.locals[joint].rotation *= euler(Vec3::new(x, sign * y, sign * z));
@@ -261,7 +261,7 @@ impl Figure {
     }
 }
 
-/// About Y, then about the new X, then about the new Z; degrees.
+/// Rotation about Y, then the new X, then the new Z; degrees.
 fn euler(degrees: Vec3) -> Rotation {
     let [x, y, z] = degrees.to_array().map(f32::to_radians);
     Rotation::from_euler(glam::EulerRot::YXZ, y, x, z)

@@ -1,8 +1,7 @@
-//! Clips made by code for any body of our rig, so that there is something to play at once.
+//! Procedural clips for any body of the rig, so that there is something to play at once.
 //!
-//! Lengths are shares of the body's own: stride and pace from the leg, stance from the hips. Feet stand on the floor,
-//! joints stay within their limits, and all but `range_of_motion`, `squat` and `wave` loop by construction; those begin
-//! and end in the same pose, so that they loop as well.
+//! Lengths scale with the body: stride and speed with the leg, stance with the hips. Feet stand on the floor, joints stay
+//! within their limits, and every clip loops.
 
 mod figure;
 mod idle;
@@ -23,21 +22,21 @@ use figure::Figure;
 /// Names of the clips, as [`builtin`] takes them.
 pub const BUILTIN: [&str; 5] = ["idle", "walk", "wave", "squat", "range_of_motion"];
 
-/// Frames a second.
+/// Frames per second.
 const RATE: f64 = 30.0;
 
-/// A clip made by code for a body of our rig, at 30 frames a second:
+/// A procedural clip for a body of the rig, at 30 frames per second:
 /// - `idle` stands, breathes and shifts its weight;
-/// - `walk` is one stride of two steps ahead, with the way on the root's translation;
+/// - `walk` is one stride of two steps forwards, with root motion on the root joint;
 /// - `wave` greets with the right hand;
 /// - `squat` goes down and comes up, the arms stretched forward;
-/// - `range_of_motion` turns joint after joint through much of its range, for judging how the skin follows.
+/// - `range_of_motion` takes joint after joint through much of its range, for judging the skinning.
 ///
-/// The last frame is the first again, but for the way that was walked.
+/// The last pose equals the first but for root motion.
 ///
 /// # Errors
-/// [`Error::Request`] when the name is not one of [`BUILTIN`], [`Error::Invalid`] naming a joint of our rig that is
-/// missing or has no length.
+/// [`Error::Request`] when the name is not one of [`BUILTIN`], [`Error::Invalid`] naming a joint of the rig that is missing,
+/// or when a leg has no length.
 pub fn builtin(name: &str, rest: &Arc<Skeleton>) -> Result<Clip> {
     let figure = Figure::new(rest)?;
     let poses: Vec<Pose> = match name {
@@ -54,7 +53,7 @@ pub fn builtin(name: &str, rest: &Arc<Skeleton>) -> Result<Clip> {
     clip_of_poses(name, rest, RATE, poses)
 }
 
-/// Straight between points (time, value) in order, with level ends at each; the ends are held.
+/// Interpolates keys (time, value), in order of time, by smoothstep; the first and the last value are held.
 fn keyed(keys: &[(f32, f32)], at: f32) -> f32 {
     for pair in keys.windows(2) {
         let [(from, a), (to, b)] = [pair[0], pair[1]];

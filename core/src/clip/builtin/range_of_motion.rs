@@ -1,4 +1,4 @@
-//! Joint after joint through much of its range, from the T-pose.
+//! Joint after joint is taken through much of its range, from the T-pose.
 
 use super::RATE;
 use super::figure::Figure;
@@ -9,18 +9,18 @@ use crate::skeleton::{Pose, RigJoint, SidedJoint};
 /// Seconds from one key to the next.
 const STEP: f32 = 0.7;
 
-/// What turns in an exercise.
+/// What an exercise rotates.
 #[derive(Clone, Copy)]
 enum Exercised {
-    Middle(RigJoint),
+    Central(RigJoint),
     /// Both sides together.
     Both(SidedJoint),
 }
-use Exercised::{Both, Middle};
+use Exercised::{Both, Central};
 
-/// Turns of joints about X, Y, Z in degrees, as for the left, one after the other; both sides move together.
+/// Rotations of joints about X, Y and Z in degrees, one after the other, as for the left; both sides move together.
 struct Exercise {
-    /// Joints and the share of the turn that each takes.
+    /// Joints and the share of the rotation that each takes.
     joints: &'static [(Exercised, f32)],
     keys: &'static [[f32; 3]],
 }
@@ -30,11 +30,11 @@ const fn exercise(joints: &'static [(Exercised, f32)], keys: &'static [[f32; 3]]
 }
 
 const SPINE: &[(Exercised, f32)] = &[
-    (Middle(RigJoint::Spine01), 0.34),
-    (Middle(RigJoint::Spine02), 0.33),
-    (Middle(RigJoint::Spine03), 0.33),
+    (Central(RigJoint::Spine01), 0.34),
+    (Central(RigJoint::Spine02), 0.33),
+    (Central(RigJoint::Spine03), 0.33),
 ];
-const NECK: &[(Exercised, f32)] = &[(Middle(RigJoint::Neck01), 0.5), (Middle(RigJoint::Head), 0.5)];
+const NECK: &[(Exercised, f32)] = &[(Central(RigJoint::Neck01), 0.5), (Central(RigJoint::Head), 0.5)];
 const FINGERS: &[(Exercised, f32)] = &[
     (Both(SidedJoint::Index01), 1.0),
     (Both(SidedJoint::Index02), 1.0),
@@ -57,7 +57,7 @@ const UPPER_BODY: &[Exercise] = &[
         NECK,
         &[[45., 0., 0.], [-45., 0., 0.], [0., 65., 0.], [0., -65., 0.], [0., 0., 35.], [0., 0., -35.]],
     ),
-    exercise(&[(Middle(RigJoint::Jaw), 1.0)], &[[-20., 0., 0.]]),
+    exercise(&[(Central(RigJoint::Jaw), 1.0)], &[[-20., 0., 0.]]),
     exercise(&[(Both(SidedJoint::Eye), 1.0)], &[[20., 0., 0.], [-20., 0., 0.]]),
     exercise(
         SPINE,
@@ -79,7 +79,7 @@ const UPPER_BODY: &[Exercise] = &[
     exercise(FINGERS, &[[0., 0., -75.], [0., 0., 10.]]),
 ];
 
-/// Of one leg: hip X, hip Y (twist), hip Z, knee flexion, ankle, toes. Before and after comes [`lifted`].
+/// Keys of one leg, degrees: hip X, hip Y (twist), hip Z, knee flexion, ankle, toes. [`lifted`] precedes and follows them.
 const LEG: &[[f32; 6]] = &[
     [100., 0., 0., 130., 0., 0.],
     [70., 0., 55., 90., 0., 0.],
@@ -89,10 +89,10 @@ const LEG: &[[f32; 6]] = &[
     [60., 0., 0., 90., -40., 50.],
     [-15., 0., 0., 100., 0., -25.],
 ];
-/// Knee flexion, degrees, at which the foot is high enough to move freely.
+/// Knee flexion at which the foot is high enough to move freely, degrees.
 const LIFTED: f32 = 75.0;
 
-/// The leg with its foot straight above its place, level, for a knee flexion: feet do not slide as they leave the floor.
+/// The key with this knee flexion and the foot level and straight above where it stood, so that it lifts without sliding.
 fn lifted(figure: &Figure, knee: f32) -> [f32; 6] {
     let [thigh, shin] = figure.leg_bones;
     let flexion = knee.to_radians();
@@ -105,18 +105,18 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
     let share = |frame: usize| smoothstep(frame as f32 / frames as f32);
     let mut poses = vec![figure.rest.rest_pose().clone()];
     for exercise in UPPER_BODY {
-        let home = [0.0; 3];
-        let stops: Vec<[f32; 3]> = [&[home][..], exercise.keys, &[home]].concat();
+        let at_rest = [0.0; 3];
+        let stops: Vec<[f32; 3]> = [&[at_rest][..], exercise.keys, &[at_rest]].concat();
         for pair in stops.windows(2) {
             poses.extend((1..=frames).map(|frame| {
                 let mut pose = figure.rest.rest_pose().clone();
                 let [x, y, z] =
                     std::array::from_fn(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * share(frame));
                 for (joint, part) in exercise.joints {
-                    let turn = |joint| figure.turn(&mut pose, joint, x * part, y * part, z * part);
+                    let rotate = |joint| figure.rotate(&mut pose, joint, x * part, y * part, z * part);
                     match *joint {
-                        Middle(joint) => [joint].into_iter().for_each(turn),
-                        Both(joint) => joint.both().into_iter().for_each(turn),
+                        Central(joint) => [joint].into_iter().for_each(rotate),
+                        Both(joint) => joint.both().into_iter().for_each(rotate),
                     }
                 }
                 pose
@@ -133,10 +133,10 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
                 let on_floor = i == 0 || i + 2 == stops.len();
                 let at = if on_floor { lifted(figure, mix(3)) } else { std::array::from_fn(mix) };
                 let [hip_x, hip_y, hip_z, knee, ankle, toes] = at;
-                figure.turn(&mut pose, SidedJoint::Thigh.on(side), hip_x, hip_y, hip_z);
-                figure.turn(&mut pose, SidedJoint::Calf.on(side), -knee, 0.0, 0.0);
-                figure.turn(&mut pose, SidedJoint::Foot.on(side), ankle, 0.0, 0.0);
-                figure.turn(&mut pose, SidedJoint::Ball.on(side), toes, 0.0, 0.0);
+                figure.rotate(&mut pose, SidedJoint::Thigh.on(side), hip_x, hip_y, hip_z);
+                figure.rotate(&mut pose, SidedJoint::Calf.on(side), -knee, 0.0, 0.0);
+                figure.rotate(&mut pose, SidedJoint::Foot.on(side), ankle, 0.0, 0.0);
+                figure.rotate(&mut pose, SidedJoint::Ball.on(side), toes, 0.0, 0.0);
                 pose
             }));
         }

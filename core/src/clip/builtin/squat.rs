@@ -7,9 +7,9 @@ use super::{RATE, keyed};
 use crate::skeleton::Pose;
 
 const SECONDS: f32 = 3.6;
-/// How far shins lean forward at the bottom, degrees.
+/// Forward lean of the shins at the bottom, degrees.
 const SHIN: f32 = 30.0;
-/// How far thighs are above level at the bottom, degrees.
+/// Angle of the thighs above level at the bottom, degrees.
 const THIGH: f32 = 8.0;
 
 pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
@@ -18,15 +18,15 @@ pub(super) fn poses(figure: &Figure) -> Vec<Pose> {
         .map(|f| {
             let keys = [(0.2, 0.0), (1.6, 1.0), (2.0, 1.0), (3.4, 0.0)];
             let depth = keyed(&[&[(0.0, 0.0)][..], &keys].concat(), f as f32 / RATE as f32);
-            figure.pose(&figure.settled(stance(figure, depth)))
+            figure.pose(&figure.within_reach(stance(figure, depth)))
         })
         .collect()
 }
 
-/// The stance at a depth of 0 to 1.
+/// The stance at a depth from 0, standing, to 1, the bottom.
 fn stance(figure: &Figure, depth: f32) -> Stance {
     let [thigh, shin] = figure.leg_bones;
-    // Ankle to hip in the plane of the leg: forward, up.
+    // From ankle to hip in the plane of the leg: forward, up; metres.
     let hip = |depth: f32| {
         let (shin_angle, thigh_angle) =
             ((90.0 - SHIN * depth).to_radians(), (90.0 + (90.0 - THIGH) * depth).to_radians());
@@ -46,7 +46,7 @@ fn stance(figure: &Figure, depth: f32) -> Stance {
     feet.iter_mut().for_each(|foot| foot.toe_out = 10.0);
     Stance {
         pelvis: Vec3::new(0.0, moved.y - 0.004 * figure.leg_length, moved.x),
-        pelvis_turn: Vec3::X * mix(0.0, 28.0),
+        pelvis_rotation: Vec3::X * mix(0.0, 28.0),
         knees_out: 24.0 * depth,
         spine: Vec3::X * mix(0.0, 14.0),
         head: Vec3::X * mix(0.0, -30.0),

@@ -1,8 +1,8 @@
-//! Rotations whose every bit is the same on every processor.
+//! Rotations with the same bits on every processor.
 //!
-//! glam's `f32` quaternion has one implementation for SSE2, one for NEON and a scalar one; they sum in different orders and the
-//! second fuses products with sums, so that motion made with it differs between machines in its last bits. This type
-//! computes in scalars, each operation rounded once, in the order that glam uses on x86-64.
+//! glam's `f32` quaternion has an SSE2, a NEON and a scalar implementation. They sum in different orders, and NEON fuses
+//! multiplications with additions, so that results differ between machines in their last bits. This type computes in
+//! scalars, rounds every operation, and keeps the order that glam uses on x86-64.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
@@ -10,18 +10,18 @@ use std::ops::{Mul, MulAssign, Neg};
 
 use glam::{DQuat, EulerRot, Mat3, Quat, Vec3};
 
-/// A rotation in space, as a unit quaternion: `x i + y j + z k + w`, right-handed. A quaternion and its negative are the same
+/// A rotation in space as a unit quaternion `x i + y j + z k + w`, right-handed. A quaternion and its negative are the same
 /// rotation.
 ///
-/// `a * b` is `a` after `b`; `a * v` turns the vector `v`. Constructors expect finite numbers and unit vectors; nothing is
-/// normalised but where it is said.
+/// `a * b` applies `b`, then `a`; `a * v` rotates the vector `v`. Constructors expect finite numbers and unit vectors; no
+/// method normalises its result unless it says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
-    /// Of the axis, times the sine of half the angle.
+    /// X of the axis times the sine of half the angle.
     pub x: f32,
-    /// Of the axis, times the sine of half the angle.
+    /// Y of the axis times the sine of half the angle.
     pub y: f32,
-    /// Of the axis, times the sine of half the angle.
+    /// Z of the axis times the sine of half the angle.
     pub z: f32,
     /// The cosine of half the angle.
     pub w: f32,
@@ -46,39 +46,39 @@ impl Rotation {
         [self.x, self.y, self.z, self.w]
     }
 
-    /// About +X, radians.
+    /// Rotation about +X, radians.
     pub fn from_rotation_x(angle: f32) -> Self {
         let (sin, cos) = libm::sincosf(angle * 0.5);
         Self::from_xyzw(sin, 0.0, 0.0, cos)
     }
 
-    /// About +Y, radians.
+    /// Rotation about +Y, radians.
     pub fn from_rotation_y(angle: f32) -> Self {
         let (sin, cos) = libm::sincosf(angle * 0.5);
         Self::from_xyzw(0.0, sin, 0.0, cos)
     }
 
-    /// About +Z, radians.
+    /// Rotation about +Z, radians.
     pub fn from_rotation_z(angle: f32) -> Self {
         let (sin, cos) = libm::sincosf(angle * 0.5);
         Self::from_xyzw(0.0, 0.0, sin, cos)
     }
 
-    /// About a unit axis, radians.
+    /// Rotation about a unit axis, radians.
     pub fn from_axis_angle(axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = libm::sincosf(angle * 0.5);
         let v = axis * sin;
         Self::from_xyzw(v.x, v.y, v.z, cos)
     }
 
-    /// About an axis whose length is the angle, radians.
+    /// Rotation about the direction of `v` by its length, radians.
     pub fn from_scaled_axis(v: Vec3) -> Self {
         let angle = v.length();
         if angle == 0.0 { Self::IDENTITY } else { Self::from_axis_angle(v / angle, angle) }
     }
 
-    /// The shortest rotation that takes one unit vector to another; half a turn about any axis across them when they are
-    /// opposite.
+    /// The shortest rotation that takes one unit vector to another, normalised; for opposite vectors, half a turn about any
+    /// axis at a right angle to them.
     pub fn from_rotation_arc(from: Vec3, to: Vec3) -> Self {
         const PARALLEL: f32 = 1.0 - 2.0 * f32::EPSILON;
         let cos = from.dot(to);
@@ -92,19 +92,19 @@ impl Rotation {
         }
     }
 
-    /// Three angles about the axes that `order` names, radians.
+    /// Rotation by three angles about the axes of `order`, radians.
     pub fn from_euler(order: EulerRot, a: f32, b: f32, c: f32) -> Self {
-        // Scalar in glam on every processor.
+        // glam computes this in scalars on every processor.
         Quat::from_euler(order, a, b, c).into()
     }
 
-    /// Of an orthonormal, right-handed matrix.
+    /// The rotation of an orthonormal, right-handed matrix.
     pub fn from_mat3(matrix: &Mat3) -> Self {
-        // Scalar in glam on every processor.
+        // glam computes this in scalars on every processor.
         Quat::from_mat3(matrix).into()
     }
 
-    /// The axis times the angle, radians; the angle is from 0 to 2π.
+    /// The axis times the angle, radians; the angle is in 0..=2π.
     pub fn to_scaled_axis(self) -> Vec3 {
         let v = self.vector();
         let sin = v.length();
@@ -116,12 +116,12 @@ impl Rotation {
         Vec3::new(self.x, self.y, self.z)
     }
 
-    /// The rotation back.
+    /// The inverse of a unit quaternion.
     pub fn conjugate(self) -> Self {
         Self::from_xyzw(-self.x, -self.y, -self.z, self.w)
     }
 
-    /// Sum of the products of the components: the cosine of half the angle between two rotations, or its negative.
+    /// Dot product of the components: the cosine of half the angle between two rotations, or its negative.
     pub fn dot(self, other: Self) -> f32 {
         (self.x * other.x + self.z * other.z) + (self.y * other.y + self.w * other.w)
     }
@@ -131,33 +131,33 @@ impl Rotation {
         self.dot(self)
     }
 
-    /// At unit length; not finite when all components are zero.
+    /// The quaternion scaled to unit length; not finite when all components are zero.
     pub fn normalize(self) -> Self {
         let length = self.length_squared().sqrt();
         Self::from_xyzw(self.x / length, self.y / length, self.z / length, self.w / length)
     }
 
-    /// Whether all components are.
+    /// Whether all components are finite.
     pub fn is_finite(self) -> bool {
         self.to_array().iter().all(|c| c.is_finite())
     }
 
-    /// Whether no component differs by more than this. `q` and `-q` differ, although they are the same rotation.
+    /// Whether no component differs by more than `tolerance`. `q` and `-q` differ, although they are the same rotation.
     pub fn abs_diff_eq(self, other: Self, tolerance: f32) -> bool {
         self.to_array().iter().zip(other.to_array()).all(|(a, b)| (a - b).abs() <= tolerance)
     }
 
-    /// The angle from one to the other, radians, 0 to π; to about 1e-3 near 0.
+    /// Angle between two rotations, radians, 0 to π; near 0 it is accurate to about 1e-3 only.
     pub fn angle_between(self, other: Self) -> f32 {
         arc_cosine(self.dot(other).abs()) * 2.0
     }
 
-    /// From `self` at 0 to `end` at 1, by the shorter way at constant speed.
+    /// Spherical linear interpolation along the shorter arc, from `self` at `t` = 0 to `end` at 1.
     pub fn slerp(self, end: Self, t: f32) -> Self {
         let cos = self.dot(end);
         let (end, cos) = if cos < 0.0 { (-end, -cos) } else { (end, cos) };
         if cos > 1.0 - f32::EPSILON {
-            // The sine of the angle would be too near to zero to divide by.
+            // The sine of the angle is too close to zero to divide by.
             return self.sum(1.0 - t, end, t).normalize();
         }
         let angle = arc_cosine(cos);
@@ -166,7 +166,7 @@ impl Rotation {
         Self::from_xyzw(sum.x / whole, sum.y / whole, sum.z / whole, sum.w / whole)
     }
 
-    /// `self · a + other · b`, by component: not of unit length.
+    /// `self · a + other · b` by component, not normalised.
     pub(crate) fn sum(self, a: f32, other: Self, b: f32) -> Self {
         Self::from_xyzw(
             self.x * a + other.x * b,
@@ -209,7 +209,7 @@ impl Mul<Vec3> for Rotation {
 impl Neg for Rotation {
     type Output = Self;
 
-    /// The same rotation, as the opposite quaternion.
+    /// The same rotation as the opposite quaternion.
     fn neg(self) -> Self {
         Self::from_xyzw(-self.x, -self.y, -self.z, -self.w)
     }
@@ -253,8 +253,8 @@ impl fmt::Display for Rotation {
     }
 }
 
-/// The arc cosine of a number from −1 to 1, in radians to about 1e-7: a minimax polynomial of degree 7, that of DirectXMath's
-/// `XMScalarACos`.
+/// The arc cosine of a number from −1 to 1, in radians, accurate to about 1e-7: the minimax polynomial of degree 7 of
+/// DirectXMath's `XMScalarACos`.
 fn arc_cosine(cos: f32) -> f32 {
     #[expect(clippy::approx_constant, reason = "a coefficient, which happens to be near π/2")]
     const COEFFICIENTS: [f32; 8] = [
@@ -272,7 +272,7 @@ fn arc_cosine(cos: f32) -> f32 {
     if cos >= 0.0 { angle } else { PI - angle }
 }
 
-/// The sine of an angle in radians, to about 1e-7: a minimax polynomial of degree 11, that of DirectXMath's `XMVectorSin`.
+/// The sine of an angle in radians, accurate to about 1e-7: the minimax polynomial of degree 11 of DirectXMath's `XMVectorSin`.
 fn sine(angle: f32) -> f32 {
     const COEFFICIENTS: [f32; 6] =
         [-2.388_985_9e-8, 2.752_556_2e-6, -0.000_198_408_74, 0.008_333_331, -0.166_666_67, 1.0];
@@ -282,7 +282,7 @@ fn sine(angle: f32) -> f32 {
     horner(&COEFFICIENTS, x * x) * x
 }
 
-/// A polynomial, highest power first.
+/// Evaluates a polynomial, highest power first, by Horner's scheme.
 fn horner(coefficients: &[f32], x: f32) -> f32 {
     coefficients[1..].iter().fold(coefficients[0], |sum, c| sum * x + c)
 }

@@ -4,8 +4,8 @@ use sha2::{Digest, Sha256};
 use super::Rotation;
 use crate::random::Random;
 
-/// Two rotations, a vector of metres and a share from 0 to 1. Every fourth pair is so near that interpolation is linear, or
-/// on the longer way round.
+/// Two random rotations, a vector, and an interpolation parameter from 0 to 1. Of eight pairs one is so close that slerp
+/// interpolates linearly, and one is close with opposite signs.
 fn case(random: &mut Random, number: usize) -> (Rotation, Rotation, Vec3, f32) {
     let mut component = || random.normal() as f32;
     let a = Rotation::from_xyzw(component(), component(), component(), component()).normalize();
@@ -19,7 +19,7 @@ fn case(random: &mut Random, number: usize) -> (Rotation, Rotation, Vec3, f32) {
     (a, b, v, random.uniform() as f32)
 }
 
-/// Everything that glam computes in another order on another processor, as bits.
+/// The bits of everything that glam computes in an order that depends on the processor.
 fn results(a: Rotation, b: Rotation, v: Vec3, t: f32) -> Vec<u32> {
     let raw = Rotation::from_xyzw(a.x * 3.0, a.y * 3.0, a.z * 3.0, a.w * 3.0);
     let arc =
@@ -43,10 +43,10 @@ fn ten_thousand_results_are_these_on_every_processor() {
     assert_eq!(hash, "e69e84608a3e29bcbcff68a9bf3a08d2711f5c123e4be09cf5f6cadf77cc613d");
 }
 
-/// Where glam uses SSE2 without fused products it is the same to the last bit, which is what files were made with.
+/// The goldens have the bits of glam's SSE2 code without fused multiplication and addition.
 #[cfg(all(target_arch = "x86_64", not(target_feature = "fma")))]
 #[test]
-fn as_glam_on_x86_64() {
+fn bits_equal_those_of_glam_on_x86_64() {
     use glam::{EulerRot, Quat};
     let bits = |q: Quat| q.to_array().map(f32::to_bits);
     let mut random = Random::new(7, 0);

@@ -1,16 +1,17 @@
-//! How far the joints of our rig may turn.
+//! Joint limits: how far the joints of the rig may rotate.
 //!
 //! The ranges start from the clinical tables (American Academy of Orthopaedic Surgeons, *Joint Motion: Method of
 //! Measuring and Recording*, 1965; American Medical Association, *Guides to the Evaluation of Permanent Impairment*):
 //! knee 0–150° flexion, elbow 0–150°, hip 120° flexion, 30° extension, 45° abduction, 45° rotation, shoulder 180°
-//! flexion, 60° extension, ankle 20° up, 50° down, wrist 80° and 70°, neck 45° to each side and 60–80° of turn. They
-//! are widened to passive range, for two reasons: athletes and dancers reach it, and one joint often has to do what
-//! several share in the body, such as the whole bend of a back that a motion file gives to one joint.
+//! flexion, 60° extension, ankle 20° dorsiflexion, 50° plantar flexion, wrist 80° flexion, 70° extension, neck 45° lateral
+//! flexion, 60–80° rotation. They are widened to passive range, for two reasons: athletes and dancers reach it, and one
+//! joint of a motion file often does what several share in the body, such as the whole bend of a back. Jaw, eyes and
+//! clavicles, which the tables lack, are set by eye.
 //!
-//! Angles are about the joint's own axes in its rest frame (see [`Skeleton::bind`](crate::skeleton::Skeleton::bind)): +Y
-//! along the bone, +Z to the front, and count from the T-pose. For every joint +X carries the bone to where Z leans: a
-//! head nods, an elbow flexes, a hip flexes, a foot is lifted; a knee flexes about −X. For left limbs +Z carries an
-//! arm up and a leg outwards; right limbs are mirror images.
+//! Angles count from the T-pose, about the joint's own axes at rest (see [`Skeleton::bind`](crate::skeleton::Skeleton::bind)):
+//! +Y along the bone, +Z mostly to the front. A positive angle about X swings the bone towards +Z: it nods the head, flexes
+//! elbow and hip and lifts the foot, and extends the knee. On the left a positive angle about Z raises the arm and abducts
+//! the leg; the right is the mirror image.
 
 use std::f32::consts::{PI, TAU};
 
@@ -21,22 +22,22 @@ use crate::Side;
 use crate::math::Rotation;
 use crate::skeleton::{Pose, RigJoint, SidedJoint, Skeleton};
 
-/// What the limits leave alone, radians: the rounding of a clamped rotation in f32, so that clamping twice is
-/// clamping once.
+/// Excess that is ignored, radians: the rounding error of a clamped rotation in `f32`, so that clamping again changes
+/// nothing.
 const ROUNDING: f32 = 2e-5;
-/// How far past half a turn from the middle of its range a twist stays at the end of the range that it left by, radians
-/// (60°).
-const PAST_HALF: f32 = 1.05;
-/// How fast a twist goes over to the other end of its range when it must, radians a second (600°): as fast as wrists do.
-const GOING_OVER: f32 = 10.5;
+/// Hysteresis of the twist, radians (60°): how far beyond half a turn from the middle of its range it still clamps to the
+/// end by which it left the range.
+const TWIST_HYSTERESIS: f32 = 1.05;
+/// How fast a clamped twist crosses to the other end of its range, radians a second (600°): the speed of a wrist.
+const CROSSING_SPEED: f32 = 10.5;
 
-/// How far a joint in the middle or on the left may turn, degrees.
+/// Limits of a central or left joint, degrees, each least and most.
 struct Ranges {
-    /// About X: least, most.
+    /// Swing about X.
     x: [f32; 2],
-    /// About Z: least, most.
+    /// Swing about Z.
     z: [f32; 2],
-    /// About the bone: least, most.
+    /// Twist about the bone.
     twist: [f32; 2],
 }
 
@@ -44,12 +45,7 @@ const fn ranges(x: [f32; 2], z: [f32; 2], twist: [f32; 2]) -> Option<Ranges> {
     Some(Ranges { x, z, twist })
 }
 
-/// From the clinical ranges of active motion of the American Academy of Orthopaedic Surgeons (*Joint Motion: Method of
-/// Measuring and Recording*, 1965) and the American Medical Association (*Guides to the Evaluation of Permanent
-/// Impairment*), widened to passive range and to what one joint of a motion file does for several of a body; jaw, eyes and
-/// clavicles, of which those say nothing, by eye.
-///
-/// `None` for joints that turn freely: the root, the pelvis, twist joints.
+/// The limits of a joint; `None` for joints that rotate freely: the root, the pelvis, twist joints.
 fn ranges_of(joint: RigJoint) -> Option<Ranges> {
     match joint {
         RigJoint::Root | RigJoint::Pelvis => None,
@@ -68,9 +64,9 @@ fn ranges_of_sided(joint: SidedJoint) -> Option<Ranges> {
     match joint {
         J::Eye => ranges([-50., 50.], [-55., 55.], [-15., 15.]),
         J::Clavicle => ranges([-35., 45.], [-25., 50.], [-50., 50.]),
-        // From SHOULDER_CENTRE: to across the chest and behind, to overhead and hanging.
+        // From SHOULDER_CENTRE: across the chest and behind; overhead and hanging.
         J::Upperarm => ranges([-125., 120.], [-125., 125.], [-125., 125.]),
-        // The palm rests downwards, which is nearly full pronation; it may turn until it faces up and behind.
+        // At rest the palm faces down, which is nearly full pronation; supination takes it to nearly facing up.
         J::Lowerarm => ranges([-15., 160.], [-15., 15.], [-170., 60.]),
         J::Hand => ranges([-55., 45.], [-95., 95.], [-170., 60.]),
         J::Thumb01 => ranges([-60., 60.], [-60., 60.], [-60., 60.]),
@@ -96,16 +92,16 @@ const FINGER_SPREAD: [f32; 2] = [-30., 30.];
 const KNUCKLE: [f32; 2] = [-100., 60.];
 const FINGER_TWIST: [f32; 2] = [-30., 30.];
 
-/// Where a left shoulder's range has its middle, swing about X and Z: half forward and a little down.
+/// Middle of the left shoulder's range, swing about X and Z, degrees: half forward and a little down.
 const SHOULDER_CENTRE: [f32; 2] = [45., -15.];
-/// A swing is never farther from its middle than this.
+/// Longest swing of a shoulder from its centre and of a hip from rest, in any direction, degrees.
 const SHOULDER_CONE: f32 = 128.;
 const HIP_CONE: f32 = 150.;
 
-/// How far one joint may turn, radians, from [`centre`](Self::centre).
+/// How far one joint may rotate, radians, counted from [`centre`](Self::centre).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimit {
-    /// Swing about X and Z that the ranges count from.
+    /// The swing about X and Z, from rest, at which the ranges are zero.
     pub centre: Vec2,
     /// Least and most swing about X.
     pub swing_x: [f32; 2],
@@ -118,9 +114,9 @@ pub struct JointLimit {
 }
 
 impl JointLimit {
-    /// The nearest swing and twist within, and how far off that is: the larger of the two. The nearest twist is the
-    /// shorter way round, but goes on from the one `before`.
-    fn within(&self, given: SwingTwist, before: &mut TwistBefore) -> (SwingTwist, f32) {
+    /// The nearest swing and twist within the limits, and the larger of their distances to the given ones. Twist is clamped
+    /// to the nearer end of its range, continuing from `history`.
+    fn within(&self, given: SwingTwist, history: &mut TwistState) -> (SwingTwist, f32) {
         let inside = Vec2::new(
             given.swing.x.clamp(self.swing_x[0], self.swing_x[1]),
             given.swing.y.clamp(self.swing_z[0], self.swing_z[1]),
@@ -128,19 +124,19 @@ impl JointLimit {
         .clamp_length_max(self.cone);
         let middle = 0.5 * (self.twist[0] + self.twist[1]);
         let half = 0.5 * (self.twist[1] - self.twist[0]);
-        let (off, kept) = before.go_on(given.twist - middle, half);
-        let excess = inside.distance(given.swing).max(libm::fabsf(off - kept));
-        (SwingTwist { swing: inside, twist: middle + kept }, excess)
+        let (offset, clamped) = history.clamp_next(given.twist - middle, half);
+        let excess = inside.distance(given.swing).max(libm::fabsf(offset - clamped));
+        (SwingTwist { swing: inside, twist: middle + clamped }, excess)
     }
 
-    /// The nearest rotation from rest within, and how far off that is; nothing when it is within.
-    fn clamped(&self, from_rest: Rotation, before: &mut TwistBefore) -> Option<(Rotation, f32)> {
+    /// The nearest rotation from rest within the limits, and the excess of the given one, radians; `None` when it is within.
+    fn clamped(&self, from_rest: Rotation, history: &mut TwistState) -> Option<(Rotation, f32)> {
         let centre = Rotation::from_scaled_axis(Vec3::new(self.centre.x, 0.0, self.centre.y));
-        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), before);
+        let (inside, excess) = self.within(SwingTwist::of(centre.conjugate() * from_rest), history);
         (excess > ROUNDING).then(|| (centre * inside.rotation(), excess))
     }
 
-    /// The mirror image, for the other side.
+    /// The limit of the same joint on the other side.
     fn mirrored(self) -> Self {
         let flip = |[least, most]: [f32; 2]| [-most, -least];
         Self {
@@ -151,7 +147,7 @@ impl JointLimit {
         }
     }
 
-    /// The limit of a joint of our rig; `None` when it turns freely.
+    /// The limit of a joint of the rig; `None` when it rotates freely.
     fn of(joint: RigJoint) -> Option<Self> {
         let Ranges { x, z, twist } = ranges_of(joint)?;
         let range = |r: [f32; 2]| r.map(f32::to_radians);
@@ -167,43 +163,44 @@ impl JointLimit {
     }
 }
 
-/// How a joint was twisted in the frame before.
+/// The twist of a joint in the previous frame.
 #[derive(Clone, Copy, Debug, Default)]
-struct TwistBefore {
-    /// From the middle of its range, radians: as given, past half a turn if it got there bit by bit, and as kept.
+struct TwistState {
+    /// Angles from the middle of the range, radians: the input, unwound so that it is continuous over frames, and the
+    /// clamped one.
     last: Option<(f32, f32)>,
-    /// The farthest that it may go from there to the other end of its range.
-    fastest: f32,
+    /// Largest step of the clamped twist in a frame, unless the input makes a larger one, radians.
+    max_step: f32,
 }
 
-impl TwistBefore {
-    /// The next twist, as given and kept within `half` of the middle of its range.
-    fn go_on(&mut self, given: f32, half: f32) -> (f32, f32) {
-        let near = |place: f32| given + TAU * libm::roundf((place - given) / TAU);
-        let mut off = near(0.0);
-        let mut kept = off.clamp(-half, half);
-        if let Some((off_before, kept_before)) = self.last {
-            let unwound = near(off_before);
-            if libm::fabsf(unwound) < PI + PAST_HALF {
-                off = unwound;
+impl TwistState {
+    /// Unwinds the next twist, `given` as an angle from the middle of its range, and clamps it to ±`half`.
+    fn clamp_next(&mut self, given: f32, half: f32) -> (f32, f32) {
+        let near = |angle: f32| given + TAU * libm::roundf((angle - given) / TAU);
+        let mut offset = near(0.0);
+        let mut clamped = offset.clamp(-half, half);
+        if let Some((last_offset, last_clamped)) = self.last {
+            let unwound = near(last_offset);
+            if libm::fabsf(unwound) < PI + TWIST_HYSTERESIS {
+                offset = unwound;
             }
-            let fastest = libm::fabsf(unwound - off_before).max(self.fastest);
-            kept = off.clamp(-half, half).clamp(kept_before - fastest, kept_before + fastest);
+            let step = libm::fabsf(unwound - last_offset).max(self.max_step);
+            clamped = offset.clamp(-half, half).clamp(last_clamped - step, last_clamped + step);
         }
-        self.last = Some((off, kept));
-        (off, kept)
+        self.last = Some((offset, clamped));
+        (offset, clamped)
     }
 }
 
-/// How the joints of a clip were twisted in the frame before: see [`JointLimits::clamp_after`].
+/// The twists of all joints in the previous frame of a clip: see [`JointLimits::clamp_next`].
 #[derive(Clone, Debug, Default)]
-pub struct TwistsBefore(Vec<TwistBefore>);
+pub struct TwistHistory(Vec<TwistState>);
 
-impl TwistsBefore {
-    /// Before the first frame.
-    pub fn first(limits: &JointLimits, frames_per_second: f64) -> Self {
-        let before = TwistBefore { last: None, fastest: GOING_OVER / frames_per_second as f32 };
-        Self(vec![before; limits.limits.len()])
+impl TwistHistory {
+    /// The history before the first frame.
+    pub fn new(limits: &JointLimits, frames_per_second: f64) -> Self {
+        let state = TwistState { last: None, max_step: CROSSING_SPEED / frames_per_second as f32 };
+        Self(vec![state; limits.limits.len()])
     }
 }
 
@@ -214,12 +211,12 @@ pub struct JointLimits {
 }
 
 impl JointLimits {
-    /// Those of the joints that bear our rig's names; joints of other names turn freely.
+    /// The limits of the joints that have names of the rig; joints with other names rotate freely.
     pub fn of_rig(rest: &Skeleton) -> Self {
         Self { limits: rest.rig_joints().map(|joint| JointLimit::of(joint?)).collect() }
     }
 
-    /// The same limits, each `by` radians wider in every direction.
+    /// The same limits, `by` radians wider in every direction.
     pub fn widened(mut self, by: f32) -> Self {
         for limit in self.limits.iter_mut().flatten() {
             for range in [&mut limit.swing_x, &mut limit.swing_z, &mut limit.twist] {
@@ -230,54 +227,54 @@ impl JointLimits {
         self
     }
 
-    /// The limit of a joint; `None` when it turns freely.
+    /// The limit of a joint; `None` when it rotates freely or does not exist.
     pub fn get(&self, joint: usize) -> Option<&JointLimit> {
         self.limits.get(joint)?.as_ref()
     }
 
-    /// Brings every joint within its limits, to the nearest swing and the nearest twist. A pose within them is not
-    /// touched. Continuous but for half turns away from the middle of a joint's range, where the nearest changes.
+    /// Clamps every joint to its limits: to the nearest swing and the nearest twist. A pose within the limits is not changed.
+    /// Continuous, except where a twist is half a turn from the middle of its range and the nearer end changes.
     pub fn clamp(&self, rest: &Skeleton, pose: &mut Pose) {
         for joint in 0..self.limits.len() {
             self.clamp_joint(rest, pose, joint);
         }
     }
 
-    /// As [`clamp`](Self::clamp), frame after frame of a clip: a joint that twists on past half a turn from the middle
-    /// of its range stays at the end that it left by, and goes over to the other in time, instead of jumping to and fro.
-    pub fn clamp_after(&self, rest: &Skeleton, pose: &mut Pose, before: &mut TwistsBefore) {
-        for (joint, before) in before.0.iter_mut().enumerate() {
-            self.clamp_one(rest, pose, joint, before);
+    /// As [`clamp`](Self::clamp), for the next frame of a clip: a twist that goes past half a turn from the middle of its
+    /// range stays at the end by which it left and then crosses at a limited speed, instead of jumping between the ends.
+    pub fn clamp_next(&self, rest: &Skeleton, pose: &mut Pose, history: &mut TwistHistory) {
+        for (joint, state) in history.0.iter_mut().enumerate() {
+            self.clamp_one(rest, pose, joint, state);
         }
     }
 
-    /// Brings one joint within its limits; whether it had to be moved.
+    /// Clamps one joint to its limits; returns whether it changed.
     pub fn clamp_joint(&self, rest: &Skeleton, pose: &mut Pose, joint: usize) -> bool {
-        self.clamp_one(rest, pose, joint, &mut TwistBefore::default())
+        self.clamp_one(rest, pose, joint, &mut TwistState::default())
     }
 
-    fn clamp_one(&self, rest: &Skeleton, pose: &mut Pose, joint: usize, before: &mut TwistBefore) -> bool {
+    fn clamp_one(&self, rest: &Skeleton, pose: &mut Pose, joint: usize, state: &mut TwistState) -> bool {
         let (Some(limit), Some(rest), Some(local)) =
             (self.get(joint), rest.rest_pose().locals.get(joint), pose.locals.get_mut(joint))
         else {
             return false;
         };
-        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation, before) else {
+        let Some((inside, _)) = limit.clamped(rest.rotation.conjugate() * local.rotation, state) else {
             return false;
         };
         local.rotation = (rest.rotation * inside).normalize();
         true
     }
 
-    /// Radians beyond the limit, a joint each: 0 within.
+    /// How far each joint is beyond its limits, radians; 0 when it is within them or has none.
     pub fn excess(&self, rest: &Skeleton, pose: &Pose) -> Vec<f32> {
         let from_rest = rest.rest_pose().locals.iter().zip(&pose.locals);
         self.limits
             .iter()
             .zip(from_rest)
             .map(|(limit, (rest, local))| {
-                let turned = rest.rotation.conjugate() * local.rotation;
-                let clamped = limit.and_then(|limit| limit.clamped(turned, &mut TwistBefore::default()));
+                let rotation = rest.rotation.conjugate() * local.rotation;
+                let clamped = limit.and_then(|limit| limit.clamped(rotation, &mut TwistState::default()));
                 clamped.map_or(0.0, |(_, excess)| excess)
             })
             .collect()

@@ -15,23 +15,23 @@ const NAMES: [&str; 8] = [
 ];
 
 fn rest() -> Skeleton {
-    let turned = RigidTransform { rotation: Rotation::from_rotation_x(0.4), translation: Vec3::Y };
+    let local = RigidTransform { rotation: Rotation::from_rotation_x(0.4), translation: Vec3::Y };
     let names = NAMES.map(String::from).to_vec();
     let parents = (0..NAMES.len() as u32).map(|j| j.checked_sub(1)).collect();
-    Skeleton::new(names, parents, vec![turned; NAMES.len()], vec![None; NAMES.len()]).unwrap()
+    Skeleton::new(names, parents, vec![local; NAMES.len()], vec![None; NAMES.len()]).unwrap()
 }
 
-/// Degrees beyond the limit when one joint is turned from rest about its own axes.
+/// Degrees beyond the limit when one joint is rotated from rest about its own axes.
 fn beyond(joint: &str, x: f32, y: f32, z: f32) -> f32 {
     let rest = rest();
     let mut pose = rest.rest_pose().clone();
-    let turn = Vec3::new(x, y, z).map(f32::to_radians);
-    pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_scaled_axis(turn);
+    let rotation = Vec3::new(x, y, z).map(f32::to_radians);
+    pose.locals[rest.find(joint).unwrap()].rotation *= Rotation::from_scaled_axis(rotation);
     JointLimits::of_rig(&rest).excess(&rest, &pose).into_iter().sum::<f32>().to_degrees()
 }
 
 #[test]
-fn limbs_bend_the_way_they_do() {
+fn limbs_bend_in_their_anatomical_directions() {
     assert_eq!(beyond("calf_l", -140.0, 0.0, 0.0), 0.0, "a knee flexes");
     assert!((beyond("calf_l", 40.0, 0.0, 0.0) - 28.0).abs() < 0.01, "and does not bend forwards");
     assert_eq!(beyond("lowerarm_r", 140.0, 0.0, 0.0), 0.0, "an elbow flexes");
@@ -53,22 +53,22 @@ fn right_is_the_mirror_image_of_left() {
 }
 
 #[test]
-fn twist_is_clamped_the_shorter_way_round() {
+fn twist_is_clamped_to_the_nearer_end() {
     // −170 to 60: 175 is nearer to −170 than to 60.
     assert!((beyond("lowerarm_l", 0.0, 175.0, 0.0) - 15.0).abs() < 0.01);
     assert!((beyond("lowerarm_l", 0.0, 90.0, 0.0) - 30.0).abs() < 0.01);
 }
 
-/// The twist that a forearm keeps, frame by frame at 30 frames a second, whose twist is given; degrees.
-fn kept(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
+/// The clamped twist of a forearm for each of these twists, frame by frame at 30 frames a second; degrees.
+fn clamped_twists(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
     let rest = rest();
     let limits = JointLimits::of_rig(&rest);
-    let mut before = TwistsBefore::first(&limits, 30.0);
+    let mut history = TwistHistory::new(&limits, 30.0);
     let joint = rest.find("lowerarm_l").unwrap();
     let frame = |twist: f32| {
         let mut pose = rest.rest_pose().clone();
         pose.locals[joint].rotation *= Rotation::from_rotation_y(twist.to_radians());
-        limits.clamp_after(&rest, &mut pose, &mut before);
+        limits.clamp_next(&rest, &mut pose, &mut history);
         assert!(limits.excess(&rest, &pose).iter().all(|e| *e == 0.0));
         let kept = rest.rest_pose().locals[joint].rotation.conjugate() * pose.locals[joint].rotation;
         SwingTwist::of(kept).twist.to_degrees()
@@ -77,35 +77,35 @@ fn kept(twists: impl IntoIterator<Item = f32>) -> Vec<f32> {
 }
 
 #[test]
-fn a_twist_past_half_a_turn_stays_at_its_end() {
+fn a_twist_past_half_a_turn_stays_clamped_to_the_same_end() {
     // −170 to 60: half a turn from the middle is at 125.
-    let there_and_back: Vec<f32> = kept((40..160).chain((40..160).rev()).map(|d| d as f32));
+    let there_and_back: Vec<f32> = clamped_twists((40..160).chain((40..160).rev()).map(|d| d as f32));
     assert!(there_and_back.iter().all(|t| (39.9..60.1).contains(t)), "{there_and_back:?}");
 }
 
 #[test]
-fn a_twist_that_goes_all_the_way_round_crosses_its_range_in_time() {
-    let round = kept((0..=360).step_by(5).map(|d| d as f32));
+fn a_full_turn_crosses_the_range_at_a_limited_speed() {
+    let round = clamped_twists((0..=360).step_by(5).map(|d| d as f32));
     let steps = round.windows(2).map(|w| (w[1] - w[0]).abs());
     assert!(steps.fold(0.0, f32::max) < 21.0, "{round:?}");
     assert!(round.iter().any(|t| *t < -120.0) && round.last().unwrap().abs() < 0.1, "{round:?}");
-    // A range that is not left is followed at any speed.
-    let inside = kept([0.0, -100.0, 50.0]);
+    // Within its range a twist is followed at any speed.
+    let inside = clamped_twists([0.0, -100.0, 50.0]);
     assert!(inside.iter().zip([0.0, -100.0, 50.0]).all(|(a, b)| (a - b).abs() < 0.01), "{inside:?}");
 }
 
 proptest! {
     #[test]
     fn clamping_twice_is_clamping_once_and_ends_within(
-        turns in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0), NAMES.len()),
+        rotations in prop::collection::vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0), NAMES.len()),
     ) {
         let rest = rest();
         let limits = JointLimits::of_rig(&rest);
         let mut pose = rest.rest_pose().clone();
-        for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(turns) {
-            let turn = Rotation::from_xyzw(x, y, z, w);
-            prop_assume!(turn.length_squared() > 1e-3);
-            local.rotation *= turn.normalize();
+        for (local, (x, y, z, w)) in pose.locals.iter_mut().zip(rotations) {
+            let rotation = Rotation::from_xyzw(x, y, z, w);
+            prop_assume!(rotation.length_squared() > 1e-3);
+            local.rotation *= rotation.normalize();
         }
         let given = pose.clone();
         let before = limits.excess(&rest, &pose);
@@ -138,7 +138,7 @@ proptest! {
         for joint in [rest.find("calf_l").unwrap(), rest.find("index_02_r").unwrap()] {
             let a = clamped(Vec2::new(x, z), y, joint);
             let b = clamped(Vec2::new(x + dx, z + dz), y + dy, joint);
-            // Swing and twist each move by at most their step; near a half turn of swing the coordinates stretch.
+            // Swing and twist each change by at most their step, but swing coordinates stretch near half a turn.
             prop_assert!(a.angle_between(b) < 0.08, "{}", a.angle_between(b));
         }
     }

@@ -1,4 +1,4 @@
-//! When heels and balls of feet stand on the floor.
+//! Detection of foot contacts.
 
 use glam::Vec3;
 
@@ -8,12 +8,12 @@ use crate::Result;
 use crate::clip::Clip;
 use crate::pose::{Leg, Sole};
 
-/// A point of the sole that can carry a foot.
+/// A point of the sole on which a foot can stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootPoint {
-    /// Behind the ankle.
+    /// The back end of the heel.
     Heel,
-    /// Under the ball joint.
+    /// The skin below the ball joint.
     Ball,
 }
 
@@ -26,13 +26,13 @@ impl FootPoint {
     }
 }
 
-/// How many times faster than a standing point one is that jumps from one frame to the next.
+/// A point that is this many times faster between two frames than a standing one may be is a capture error.
 const JUMP: f32 = 6.0;
 
-/// A point stands on the floor in the frames `start..end`.
+/// A contact: a point stands on the floor in the frames `start..end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
-    /// Which.
+    /// The point of the sole.
     pub point: FootPoint,
     /// First frame.
     pub start: usize,
@@ -43,18 +43,18 @@ pub struct Contact {
 /// The contacts of a clip.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contacts {
-    /// Left and right, in the order of time, heels before balls.
+    /// Left, right; of each the contacts of the heel in order of time, then those of the ball.
     pub feet: [Vec<Contact>; 2],
-    /// The height of the floor that they were found on, metres.
+    /// Height of the floor above which they were found, metres.
     pub floor: f32,
 }
 
-/// Finds when heels and balls are low and slow, with hysteresis. Positions are averaged over a twentieth of a second
-/// to each side before speeds are taken, so that the noise of a capture does not end a contact. A clip that walks on
-/// the spot has no contacts, as its feet slide.
+/// Finds when heels and balls are low and slow, with hysteresis. Positions are averaged over 0.05 s to each side before
+/// speeds are taken, so that capture noise does not end a contact. A clip that walks in place has no contacts, as its feet
+/// slide.
 ///
 /// # Errors
-/// [`Error`](crate::Error) naming a joint of the legs that is missing or an option out of range.
+/// [`Error`](crate::Error) naming a missing joint of the legs or an option out of range.
 pub fn contacts(clip: &Clip, options: &FeetOptions) -> Result<Contacts> {
     options.check()?;
     let legs = Leg::both(clip.skeleton())?;
@@ -74,8 +74,8 @@ pub fn contacts(clip: &Clip, options: &FeetOptions) -> Result<Contacts> {
     Ok(Contacts { feet, floor })
 }
 
-/// The floor under the feet: somebody who walks, turns or stands has a foot on it nearly always, so it is a low
-/// percentile over the frames of the height of the lower foot.
+/// Height of the floor: a body that walks, turns or stands nearly always has a foot on it, so it is the 20th percentile of the
+/// lower foot's height over the frames.
 fn floor_of(tracks: &[Vec<Sole>; 2]) -> f32 {
     let mut heights: Vec<f32> = tracks[0]
         .iter()
@@ -87,20 +87,20 @@ fn floor_of(tracks: &[Vec<Sole>; 2]) -> f32 {
 }
 
 fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) -> Vec<Contact> {
-    let places = smoothed(track, point, libm::roundf(0.05 * rate) as usize);
-    let mut touching = Vec::with_capacity(places.len());
+    let positions = smoothed(track, point, libm::roundf(0.05 * rate) as usize);
+    let mut touching = Vec::with_capacity(positions.len());
     let mut on = false;
-    for frame in 0..places.len() {
-        let (before, after) = (frame.saturating_sub(1), (frame + 1).min(places.len() - 1));
+    for frame in 0..positions.len() {
+        let (before, after) = (frame.saturating_sub(1), (frame + 1).min(positions.len() - 1));
         let seconds = (after - before).max(1) as f32 / rate;
-        let speed = places[before].distance(places[after]) / seconds;
+        let speed = positions[before].distance(positions[after]) / seconds;
         let slack = if on { 1.25 } else { 1.0 };
-        on = places[frame].y < options.height * slack && speed < options.speed * slack;
+        on = positions[frame].y < options.height * slack && speed < options.speed * slack;
         touching.push(on);
     }
     let shortest = (libm::roundf(options.shortest * rate) as usize).clamp(1, track.len().max(1));
     fill_gaps(&mut touching, shortest);
-    // What the averages hide: a fault of the capture throws the point away and back.
+    // Averages hide capture errors that throw the point away and back.
     for (frame, pair) in track.windows(2).enumerate() {
         if point.of(&pair[0]).distance(point.of(&pair[1])) * rate > JUMP * options.speed {
             touching[frame..frame + 2].fill(false);
@@ -108,7 +108,7 @@ fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) 
     }
     let mut found = Vec::new();
     for (start, end) in runs(&touching) {
-        split(&places, start, end, options.stray, shortest, |start, end| {
+        split(&positions, start, end, options.stray, shortest, |start, end| {
             if end - start >= shortest {
                 found.push(Contact { point, start, end });
             }
@@ -117,7 +117,7 @@ fn of_point(track: &[Sole], point: FootPoint, rate: f32, options: &FeetOptions) 
     found
 }
 
-/// Means over `radius` frames to each side, fewer at the ends.
+/// Moving averages over `radius` frames to each side, fewer at the ends.
 fn smoothed(track: &[Sole], point: FootPoint, radius: usize) -> Vec<Vec3> {
     (0..track.len())
         .map(|frame| {
@@ -128,7 +128,7 @@ fn smoothed(track: &[Sole], point: FootPoint, radius: usize) -> Vec<Vec3> {
         .collect()
 }
 
-/// Runs of true frames.
+/// Runs of true values, as `start..end`.
 pub(super) fn runs(frames: &[bool]) -> Vec<(usize, usize)> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     for (frame, _) in frames.iter().enumerate().filter(|(_, on)| **on) {
@@ -140,7 +140,7 @@ pub(super) fn runs(frames: &[bool]) -> Vec<(usize, usize)> {
     found
 }
 
-/// Fills gaps between two true runs that are shorter than `shortest`.
+/// Fills gaps between true runs that are shorter than `shortest` frames.
 fn fill_gaps(frames: &mut [bool], shortest: usize) {
     for pair in runs(frames).windows(2) {
         if pair[1].0 - pair[0].1 < shortest {
@@ -149,10 +149,10 @@ fn fill_gaps(frames: &mut [bool], shortest: usize) {
     }
 }
 
-/// Cuts a run where the point has strayed too far from where the contact began, with `gap` frames between the parts
-/// in which the foot may move on.
+/// Splits a run where the point is farther than `stray` from where the contact began, with `gap` frames between the parts in
+/// which the foot may move on.
 fn split(
-    places: &[Vec3],
+    positions: &[Vec3],
     start: usize,
     end: usize,
     stray: f32,
@@ -161,8 +161,8 @@ fn split(
 ) {
     let mut first = start;
     while first < end {
-        let home = places[first].with_y(0.0);
-        match (first..end).find(|f| places[*f].with_y(0.0).distance(home) > stray) {
+        let start_position = positions[first].with_y(0.0);
+        match (first..end).find(|f| positions[*f].with_y(0.0).distance(start_position) > stray) {
             Some(cut) => {
                 part(first, cut);
                 first = cut + gap;

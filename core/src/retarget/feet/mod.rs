@@ -1,12 +1,12 @@
-//! Feet on the floor: when they touch it, how far they slide, and how to hold them.
+//! Foot contact: finding contacts with the floor, measuring foot sliding, and planting feet.
 //!
-//! Each foot has three points on its sole: heel, ball and tip of the toes. [`contacts`] finds when heels and balls
-//! stand still on the floor, [`measure`] says how far they slide meanwhile and how deep they sink, and [`plant`] holds
-//! them in place (Kovar, Schreiner, Gleicher, "Footskate cleanup for motion capture editing", SCA 2002): the sole is
-//! moved rigidly so that what touches stays where it is and rolls without slipping, the pelvis sinks a little where a
-//! leg is too short, and two-bone inverse kinematics bends the leg.
+//! The sole of a foot has three points: heel, ball and tip of the toes. [`contacts()`] finds when heels and balls stand still
+//! on the floor, [`measure`] tells how far they slide meanwhile and how deep they sink into it, and [`plant()`] holds them in
+//! place (Kovar, Schreiner, Gleicher, "Footskate cleanup for motion capture editing", SCA 2002): the sole is moved rigidly
+//! so that what touches the floor stays in place and rolls without slipping, the pelvis is lowered a little where a leg is
+//! too short, and two-bone inverse kinematics bends the leg.
 //!
-//! All of it is about clips of our rig. The floor is y = 0 in model space.
+//! Clips are of the rig. The floor is y = 0 in model space.
 
 mod contacts;
 mod hold;
@@ -23,24 +23,24 @@ pub use contacts::{Contact, Contacts, FootPoint, contacts};
 
 pub use plant::{plant, plant_loop};
 
-/// How contacts are found and feet are held.
+/// How contacts are found and feet are planted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeetOptions {
-    /// A point touches the floor below this height, metres; until it is a quarter higher.
+    /// A point touches the floor when it is below this height, metres, and until it is a quarter higher.
     pub height: f32,
-    /// A point stands still below this speed, metres a second; until it is a quarter faster.
+    /// A point stands still when it is slower than this, metres per second, and until it is a quarter faster.
     pub speed: f32,
-    /// Contacts that are shorter are none, and shorter gaps between contacts neither, seconds.
+    /// Shorter contacts, and shorter gaps between contacts, are ignored, seconds.
     pub shortest: f32,
-    /// A contact that has slid this far ends, metres: the foot is put down anew.
+    /// A contact ends when its point is this far from where it began, metres; a new one may follow.
     pub stray: f32,
-    /// Before and after a contact a foot leaves its own way for the place it is held at, seconds.
+    /// How long before and after a contact a foot blends between its own motion and where it is held, seconds.
     pub blend: f32,
-    /// How deep a point may sink under the floor, metres.
+    /// How deep a point may sink into the floor, metres.
     pub depth: f32,
-    /// The farthest that the pelvis sinks so that a leg can reach, metres.
+    /// How far the pelvis may be lowered so that a leg can reach, metres.
     pub pelvis_drop: f32,
-    /// Find the floor from the feet and put the clip on it; otherwise the floor is at 0.
+    /// Whether to estimate the height of the floor from the feet and move the clip onto it; otherwise it is 0.
     pub find_floor: bool,
 }
 
@@ -79,37 +79,37 @@ impl FeetOptions {
     }
 }
 
-/// How well the feet of a clip stand, left and right.
+/// How well the feet of a clip stand; left, right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct FeetMeasure {
     /// Number of contacts of heels and balls.
     pub contacts: [usize; 2],
-    /// The longest path over the floor of the place of the sole that touches, within one contact, metres; a sole that rolls
-    /// without slipping has none.
+    /// The longest path along the floor that the touching part of the sole slides in one contact, metres; 0 when it rolls
+    /// without slipping.
     pub worst_slide: [f32; 2],
-    /// That path, mean over the contacts.
+    /// The mean of that path over the contacts, metres.
     pub mean_slide: [f32; 2],
-    /// How far the lowest point of a sole is under the floor, over all frames, metres; 0 when none is.
+    /// How deep the lowest of heel, ball and tip is below the floor in any frame, metres; 0 when none is.
     pub deepest: [f32; 2],
 }
 
-/// What [`plant`] found and did.
+/// The result of [`plant()`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct FeetReport {
-    /// Height of the floor in the clip that came in, metres; it is at 0 in the one that goes out.
+    /// Height of the floor in the input, metres; it is 0 in the output.
     pub floor: f32,
-    /// The clip that came in, moved to the floor.
+    /// The input, relative to its floor.
     pub before: FeetMeasure,
-    /// The clip that goes out, at the same contacts.
+    /// The output, at the same contacts.
     pub after: FeetMeasure,
-    /// The farthest that the pelvis sank, metres.
+    /// The most that the pelvis was lowered in any frame, metres.
     pub pelvis_drop: f32,
-    /// The contacts: their frames are those of both clips, their floor that of the one that came in.
+    /// The contacts: their frames are those of both clips, their floor is that of the input.
     #[serde(skip)]
     pub contacts: Contacts,
 }
 
-/// Measures a clip at contacts that were found on it or on the clip that it was made of.
+/// Measures the feet of a clip at contacts that were found in it or in the clip from which it was made.
 ///
 /// # Errors
 /// [`Error::Invalid`] when a joint of the legs is missing or a contact is beyond the last frame.
@@ -134,7 +134,7 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
     Ok(out)
 }
 
-/// The poses of a clip, one after the other, in one buffer.
+/// Visits the poses of a clip in order, in one buffer.
 fn for_each_pose(clip: &Clip, mut visit: impl FnMut(usize, &Pose)) {
     let mut pose = Pose::default();
     for frame in 0..clip.frame_count() {

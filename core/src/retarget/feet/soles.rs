@@ -1,11 +1,11 @@
-//! Where the soles of a clip are, frame by frame.
+//! Positions of the soles in every frame of a clip.
 
 use super::for_each_pose;
 use crate::clip::Clip;
 use crate::pose::{Leg, Sole};
 use crate::skeleton::{Pose, model_from_joints};
 
-/// The soles of a clip, left and right, frame by frame, over a floor.
+/// The soles of a clip, left and right, one per frame, with heights above `floor`.
 pub(crate) fn tracks(clip: &Clip, legs: &[Leg; 2], floor: f32) -> [Vec<Sole>; 2] {
     let mut tracks = [Vec::with_capacity(clip.frame_count()), Vec::with_capacity(clip.frame_count())];
     let mut model = Vec::new();

@@ -1,4 +1,4 @@
-//! Which joint of a motion file drives which joint of ours: by name, by shape, or by the user's word.
+//! Joint matching: which joint of a motion file drives which joint of the rig, by name, by geometry, or by the user's mapping.
 
 mod geometry;
 mod names;
@@ -20,7 +20,7 @@ use crate::skeleton::humanoid::{humanoid_bones, native_name};
 use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
-/// What a source must have.
+/// Joints that a source must have.
 const REQUIRED: [RigJoint; 5] = [
     RigJoint::Pelvis,
     SidedJoint::Thigh.on(Side::Left),
@@ -28,11 +28,11 @@ const REQUIRED: [RigJoint; 5] = [
     SidedJoint::Calf.on(Side::Left),
     SidedJoint::Calf.on(Side::Right),
 ];
-/// Our spine and our neck, upwards.
+/// The spine and the neck of the rig, upwards.
 pub(super) const SPINE: [RigJoint; 3] = [RigJoint::Spine01, RigJoint::Spine02, RigJoint::Spine03];
 pub(super) const NECK: [RigJoint; 1] = [RigJoint::Neck01];
 
-/// The joints of a source skeleton that drive ours.
+/// The joints of a source skeleton that drive those of the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMap {
     sources: BTreeMap<Slot, usize>,
@@ -41,17 +41,17 @@ pub struct JointMap {
     report: JointMapReport,
 }
 
-/// How a pair was found.
+/// How a match was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MatchedBy {
-    /// By its name in the vocabulary.
+    /// By name, in the vocabulary of the report.
     Name,
     /// By hierarchy and rest pose.
     Geometry,
     /// By the user's mapping.
     Mapping,
-    /// It stands in the spine or the neck, which are transferred as a whole.
+    /// By its position in the spine or the neck, which are transferred as a whole.
     Chain,
 }
 
@@ -60,37 +60,37 @@ pub enum MatchedBy {
 pub struct JointMatch {
     /// Name in the source.
     pub source: String,
-    /// Name in our rig: of a joint, or `hand_tip_l` for what only says where a hand points. Joints of a spine or neck
-    /// with more joints than ours name the first of ours.
+    /// Name in the rig: of a joint, or `hand_tip_l` for a joint that only gives the direction of a hand. Where a spine or
+    /// neck has more joints than the rig's, several have the same target.
     pub target: String,
     /// How it was found.
     pub by: MatchedBy,
 }
 
-/// What became of every joint.
+/// The result of matching for every joint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct JointMapReport {
-    /// The vocabulary of the names, when joints were matched by name.
+    /// The vocabulary of the names; `None` when no joint was matched by name.
     pub vocabulary: Option<String>,
-    /// The pairs, in the order of the source.
+    /// The matches, in the order of the source.
     pub matched: Vec<JointMatch>,
-    /// Source joints above or between matched ones: their motion arrives in the next matched joint below; and twist
-    /// joints of our rig, which are set anew.
+    /// Source joints above or between matched ones, whose motion reaches the next matched joint below, and joints with names
+    /// of twist joints, which are recomputed.
     pub passed_on: Vec<String>,
     /// Source joints whose motion is lost.
     pub unmatched: Vec<String>,
-    /// Joints of ours that nothing drives: they rest, follow their parents, or share the motion of spine and neck.
+    /// Humanoid joints of the rig without a source: they stay at rest or share the motion of spine and neck.
     pub without_source: Vec<String>,
 }
 
 impl JointMap {
-    /// Finds the pairs. The vocabulary with the most matches speaks first; what it does not name is looked for by
-    /// hierarchy and rest pose, and that comes first when names do not even give pelvis, thighs and calves.
-    /// `overrides` win over both: source joint to our joint, or to `None` for a joint that shall drive nothing.
+    /// Matches the joints of a source. Names in the vocabulary with the most matches come first, then hierarchy and rest pose
+    /// for what is left; the other way round when names do not give pelvis, thighs and calves. `overrides` take precedence
+    /// over both: source joint to joint of the rig, or to `None` for a joint that is to drive nothing.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when `overrides` names a joint that does not exist, with those most like it, or when pelvis,
-    /// thighs or calves are not found, with their names.
+    /// [`Error::Invalid`] when `overrides` names a joint that does not exist (with similar names) or maps two to one, or when
+    /// pelvis, thighs or calves are not found, naming them.
     pub fn find(source: &Skeleton, overrides: &Overrides) -> Result<Self> {
         let (mapped, nothing) = overrides::check(source, overrides)?;
         let mut taken = vec![false; source.len()];
@@ -134,12 +134,12 @@ impl JointMap {
         Ok(builder.finish(any_named.then(|| vocabulary.to_owned()), &nothing))
     }
 
-    /// The source joint that drives this joint of ours.
+    /// Index of the source joint that drives this joint of the rig.
     pub fn source_of(&self, ours: RigJoint) -> Option<usize> {
         self.source_for(Slot::Joint(ours))
     }
 
-    /// The source joint for this slot.
+    /// Index of the source joint for this slot.
     pub(super) fn source_for(&self, slot: Slot) -> Option<usize> {
         self.sources.get(&slot).copied()
     }
@@ -159,7 +159,7 @@ impl JointMap {
         &self.neck
     }
 
-    /// What became of every joint.
+    /// The result of matching for every joint.
     pub fn report(&self) -> &JointMapReport {
         &self.report
     }
@@ -172,19 +172,19 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Adds pairs whose joints are both free.
+    /// Adds matches whose joints are both free.
     fn add(&mut self, found: BTreeMap<Slot, usize>, by: MatchedBy) {
         for (ours, joint) in found {
-            // A guess by shape must not contradict what is known above it.
-            let known = by != MatchedBy::Geometry || self.fits(ours, joint);
-            if known && !self.taken[joint] && !self.pairs.contains_key(&ours) {
+            // A match by geometry must not contradict the matches above it.
+            let consistent = by != MatchedBy::Geometry || self.fits(ours, joint);
+            if consistent && !self.taken[joint] && !self.pairs.contains_key(&ours) {
                 self.taken[joint] = true;
                 self.pairs.insert(ours, (joint, by));
             }
         }
     }
 
-    /// Whether the nearest matched joint above is on the same side or in the middle.
+    /// Whether the nearest matched joint above is not on the other side of the body.
     fn fits(&self, ours: Slot, joint: usize) -> bool {
         let Some(above) = self.ancestors(joint).find_map(|j| self.ours_of(j)) else { return true };
         above.side().is_none_or(|side| ours.side() != Some(side.mirrored()))
@@ -194,7 +194,7 @@ impl Builder<'_> {
         self.pairs.iter().find(|(_, (j, _))| *j == joint).map(|(ours, _)| *ours)
     }
 
-    /// From the joint's parent upwards.
+    /// The joint's ancestors, from its parent upwards.
     fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         let parents = self.source.parents();
         std::iter::successors(parents[joint], |&p| parents[p as usize]).map(|p| p as usize)
@@ -204,7 +204,8 @@ impl Builder<'_> {
         self.pairs.get(&Slot::Joint(ours)).map(|pair| pair.0)
     }
 
-    /// The joints strictly between pelvis and head (or what stands for it), upwards, in spine and neck.
+    /// Spine and neck: the joints strictly between pelvis and head, upwards. Without a head the path ends at the topmost match
+    /// of neck, arms or spine.
     fn chains(&self, nothing: &[usize]) -> (Vec<usize>, Vec<usize>) {
         let pelvis = self.joint(RigJoint::Pelvis);
         let [[a, b], [c, d]] = [SidedJoint::Clavicle, SidedJoint::Upperarm].map(SidedJoint::both);
@@ -219,15 +220,15 @@ impl Builder<'_> {
             path.push(joint);
         }
         path.retain(|joint| !nothing.contains(joint) && self.ours_of(*joint).and_then(Slot::side).is_none());
-        // The neck begins at the joint so called, or above the last joint that an arm hangs from.
+        // The neck begins at the joint matched as such, or above the last joint from which an arm branches.
         let named = self.joint(RigJoint::Neck01).and_then(|neck| path.iter().position(|j| *j == neck));
-        let hung = || {
+        let above_arms = || {
             let last = |ours| {
                 self.ancestors(self.joint(ours)?).find_map(|above| path.iter().position(|j| *j == above))
             };
             arms.into_iter().filter_map(last).max().map(|at| at + 1)
         };
-        let neck = path.split_off(named.or_else(hung).unwrap_or(path.len()));
+        let neck = path.split_off(named.or_else(above_arms).unwrap_or(path.len()));
         (path, neck)
     }
 
@@ -238,7 +239,7 @@ impl Builder<'_> {
                 if self.taken[joint] {
                     continue;
                 }
-                // The joint of ours at the same place in the chain.
+                // The joint of the rig at the same position in the chain.
                 let at = if chain.len() > ours.len() { i * ours.len() / chain.len() } else { i };
                 let free = (at..ours.len()).find(|&k| self.joint(ours[k]).is_none());
                 self.taken[joint] = true;

@@ -1,15 +1,15 @@
-//! Names of joints in other programs, as tables: which joint of ours each one drives.
+//! Tables of joint names in other programs and the joint of the rig that each drives.
 //!
-//! Names are compared without namespace, prefix, case and separators. Five vocabularies are those that
-//! [`rig::humanoid`](crate::skeleton::humanoid) writes; the others are only read:
-//! - **CMU ASF**: the Carnegie Mellon motion capture database's own skeleton. Its `lwrist` turns the forearm two thirds
-//!   down its length, and the wrist that bends is `lhand`.
+//! Names are compared without namespace, common prefix, case and separators. Five vocabularies are those of
+//! [`skeleton::humanoid`](crate::skeleton::humanoid), which can also be written; the others are only read:
+//! - **CMU ASF**: the Carnegie Mellon motion capture database's own skeleton. Its `lwrist` rolls the forearm two thirds
+//!   down its length; the wrist that bends is `lhand`.
 //! - **cgspeed**: B. Hahne's BVH conversion of that database. The wrist that bends is `LeftFingerBase`, and
 //!   `LeftHandIndex1` stands for all fingers.
-//! - **MotionBuilder**: its template names, as in FAIR's and many other BVH files.
+//! - **MotionBuilder**: the names of its template, also in FAIR's and many other BVH files.
 //! - **Biovision**: the names of the first BVH files, such as `LeftKnee`.
 //! - **SMPL**, SMPL-H, SMPL-X: names of the published models, whose `left_foot` is the ball of the foot.
-//! - **Rokoko**, **Xsens**, **3ds Max Biped**, **Daz**, **VRoid**, **Rigify**: as these programs export.
+//! - **Rokoko**, **Xsens**, **3ds Max Biped**, **Daz**, **VRoid**, **Rigify**: names that these programs export.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -17,29 +17,29 @@ use super::Slot;
 use crate::Side;
 use crate::skeleton::humanoid::humanoid_bones;
 
-/// A vocabulary: what a source may drive and the names for it, the best first.
+/// A vocabulary: slots with their names, the preferred name first.
 pub(super) struct Vocabulary {
     pub(super) name: &'static str,
     pub(super) rows: Vec<(Slot, Vec<String>)>,
 }
 
-/// A vocabulary as it is written down: rows `ours=theirs|theirs…`, a star for the side.
-struct Written {
+/// Source text of a vocabulary: rows `ours=theirs|theirs…`, with `*` for the side.
+struct VocabularyText {
     name: &'static str,
     sides: [&'static str; 2],
     central: &'static str,
     sided: &'static str,
 }
 
-const WRITTEN: [Written; 12] = [
-    Written {
+const TEXTS: [VocabularyText; 12] = [
+    VocabularyText {
         name: "CMU ASF",
         sides: ["l", "r"],
         central: "pelvis=root|hips spine_01=lowerback neck_01=lowerneck|neck head=head",
         sided: "thigh=*femur calf=*tibia foot=*foot ball=*toes clavicle=*clavicle upperarm=*humerus \
                 lowerarm=*radius hand=*hand|*wrist hand_tip=*fingers thumb_01=*thumb",
     },
-    Written {
+    VocabularyText {
         name: "MotionBuilder",
         sides: ["left", "right"],
         central: "pelvis=hips spine_01=spine spine_02=spine1 spine_03=spine2 neck_01=neck head=head jaw=jaw",
@@ -51,21 +51,21 @@ const WRITTEN: [Written; 12] = [
                 ring_01=*handring1 ring_02=*handring2 ring_03=*handring3 \
                 pinky_01=*handpinky1 pinky_02=*handpinky2 pinky_03=*handpinky3",
     },
-    Written {
+    VocabularyText {
         name: "cgspeed",
         sides: ["left", "right"],
         central: "pelvis=hips spine_01=lowerback spine_02=spine spine_03=spine1 neck_01=neck head=head",
         sided: "thigh=*upleg calf=*leg foot=*foot ball=*toebase clavicle=*shoulder upperarm=*arm \
                 lowerarm=*forearm hand=*fingerbase hand_tip=*handindex1 thumb_01=*thumb",
     },
-    Written {
+    VocabularyText {
         name: "Biovision",
         sides: ["left", "right"],
         central: "pelvis=hips spine_01=lowerback|chest neck_01=neck head=head",
         sided: "thigh=*hip calf=*knee foot=*ankle ball=*toe clavicle=*collar upperarm=*shoulder|*uparm \
                 lowerarm=*elbow|*lowarm hand=*wrist|*hand hand_tip=*fingers",
     },
-    Written {
+    VocabularyText {
         name: "SMPL",
         sides: ["left", "right"],
         central: "pelvis=pelvis spine_01=spine1 neck_01=neck head=head jaw=jaw",
@@ -75,14 +75,14 @@ const WRITTEN: [Written; 12] = [
                 index_03=*index3 middle_01=*middle1 middle_02=*middle2 middle_03=*middle3 ring_01=*ring1 \
                 ring_02=*ring2 ring_03=*ring3 pinky_01=*pinky1 pinky_02=*pinky2 pinky_03=*pinky3",
     },
-    Written {
+    VocabularyText {
         name: "SMPL in Maya",
         sides: ["l", "r"],
         central: "pelvis=pelvis spine_01=spine1 neck_01=neck head=head",
         sided: "thigh=*hip calf=*knee foot=*ankle ball=*foot clavicle=*collar upperarm=*shoulder \
                 lowerarm=*elbow hand=*wrist hand_tip=*hand",
     },
-    Written {
+    VocabularyText {
         name: "Rokoko",
         sides: ["left", "right"],
         central: "pelvis=hips spine_01=spine1|spine neck_01=neck head=head",
@@ -96,7 +96,7 @@ const WRITTEN: [Written; 12] = [
                 ring_03=*finger4distal pinky_01=*finger5proximal \
                 pinky_02=*finger5medial|*finger5intermediate pinky_03=*finger5distal",
     },
-    Written {
+    VocabularyText {
         name: "Xsens",
         sides: ["left", "right"],
         central: "pelvis=hips|pelvis spine_01=chest|l5 neck_01=neck head=head",
@@ -104,7 +104,7 @@ const WRITTEN: [Written; 12] = [
                 clavicle=*collar|*shoulder upperarm=*upperarm|*shoulder lowerarm=*forearm|*elbow \
                 hand=*hand|*wrist",
     },
-    Written {
+    VocabularyText {
         name: "3ds Max Biped",
         sides: ["l", "r"],
         central: "pelvis=pelvis spine_01=spine neck_01=neck head=head",
@@ -114,7 +114,7 @@ const WRITTEN: [Written; 12] = [
                 middle_02=*finger21 middle_03=*finger22 ring_01=*finger3 ring_02=*finger31 \
                 ring_03=*finger32 pinky_01=*finger4 pinky_02=*finger41 pinky_03=*finger42",
     },
-    Written {
+    VocabularyText {
         name: "Daz",
         sides: ["l", "r"],
         central: "pelvis=pelvis|hip spine_01=abdomenlower|abdomen neck_01=necklower|neck head=head",
@@ -124,7 +124,7 @@ const WRITTEN: [Written; 12] = [
                 index_03=*index3 middle_01=*mid1 middle_02=*mid2 middle_03=*mid3 ring_01=*ring1 \
                 ring_02=*ring2 ring_03=*ring3 pinky_01=*pinky1 pinky_02=*pinky2 pinky_03=*pinky3",
     },
-    Written {
+    VocabularyText {
         name: "VRoid",
         sides: ["l", "r"],
         central: "pelvis=chips spine_01=cspine neck_01=cneck head=chead",
@@ -134,7 +134,7 @@ const WRITTEN: [Written; 12] = [
                 middle_02=*middle2 middle_03=*middle3 ring_01=*ring1 ring_02=*ring2 ring_03=*ring3 \
                 pinky_01=*little1 pinky_02=*little2 pinky_03=*little3",
     },
-    Written {
+    VocabularyText {
         name: "Rigify",
         sides: ["l", "r"],
         central: "pelvis=spine spine_01=spine001 neck_01=spine004 head=spine006",
@@ -146,7 +146,7 @@ const WRITTEN: [Written; 12] = [
     },
 ];
 
-/// Every vocabulary, ours first: of several with the same number of matches the first counts.
+/// All vocabularies, the rig's own first: of several with equally many matches the first is taken.
 pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
     let bones = humanoid_bones();
     let column = |name, of: fn(usize) -> &'static str| Vocabulary {
@@ -164,12 +164,12 @@ pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
         column("VRM", |b| &humanoid_bones()[b].vrm),
         column("Blender", |b| &humanoid_bones()[b].blender),
     ];
-    all.extend(WRITTEN.iter().map(Written::read));
+    all.extend(TEXTS.iter().map(VocabularyText::parse));
     all
 });
 
-impl Written {
-    fn read(&self) -> Vocabulary {
+impl VocabularyText {
+    fn parse(&self) -> Vocabulary {
         let mut rows = Vec::new();
         for (ours, theirs) in self.central.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
             let names = theirs.split('|').map(str::to_owned).collect();
@@ -186,13 +186,13 @@ impl Written {
     }
 }
 
-/// A name without namespace, case and separators.
+/// A name without namespace and separators, in lower case.
 fn plain(name: &str) -> String {
     let name = name.rsplit([':', '|']).next().unwrap_or(name);
     name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// The names of a skeleton made comparable: namespaces go, and so does a first word that most names share, such as
+/// The names of a skeleton, normalised for comparison: as [`plain`], and without a prefix that most of them share, such as
 /// `Bip01 ` or `DEF-`.
 pub(super) fn comparable(names: &[String]) -> Vec<String> {
     let local: Vec<&str> = names.iter().map(|n| n.rsplit([':', '|']).next().unwrap_or(n)).collect();
@@ -203,13 +203,13 @@ pub(super) fn comparable(names: &[String]) -> Vec<String> {
         }
     }
     let most = counts.into_iter().filter(|(_, n)| n * 5 >= names.len() * 3 && names.len() > 2);
-    // The longest of those that most names share.
+    // The longest prefix that most names share.
     let prefix = most.max_by_key(|(prefix, _)| prefix.len()).map_or("", |(prefix, _)| prefix);
     local.iter().map(|name| plain(name.strip_prefix(prefix).unwrap_or(name))).collect()
 }
 
-/// The vocabulary that names the most joints and what it names: our joint to source joint. `taken` are source joints
-/// that somebody else spoke for. Of two source joints with one name the first counts.
+/// The vocabulary that matches the most joints, with its matches. Source joints in `taken` are skipped. Of two source joints
+/// with the same normalised name the first is used.
 pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<Slot, usize>) {
     let mut index = BTreeMap::new();
     for (joint, name) in comparable(names).into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The user's own word about joints: a JSON object `{"source joint": "native joint" | null}`.
+//! The user's joint mapping: a JSON object `{"source joint": "native joint" | null}`.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -6,36 +6,36 @@ use super::Slot;
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
-/// Source joint to our joint, or to nothing where it shall drive nothing.
+/// From source joint to joint of the rig, or to `None` for a joint that is to drive nothing; both by name.
 pub type Overrides = BTreeMap<String, Option<String>>;
 
-/// Reads a mapping file; `path` is only for messages.
+/// Parses the text of a mapping file; `path` is only used in messages.
 ///
 /// # Errors
-/// [`Error::File`] when it is no JSON object of names and nulls, with line and column.
+/// [`Error::File`] with line and column when it is not a JSON object of names and nulls.
 pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
     serde_json::from_str(json).map_err(|e| {
         Error::file(path, format!(r#"expected {{"source joint": "joint of ours" or null}}: {e}"#))
     })
 }
 
-/// Checks both sides: our joint to source joint, and source joints that shall drive nothing.
+/// Resolves the names of a mapping: source joints by slot, and source joints that are to drive nothing.
 pub(super) fn check(source: &Skeleton, overrides: &Overrides) -> Result<(BTreeMap<Slot, usize>, Vec<usize>)> {
     let fail = |message| Err(Error::invalid("joint mapping", message));
     let mut mapped = BTreeMap::new();
     let mut nothing = Vec::new();
     for (theirs, ours) in overrides {
         let Some(joint) = source.find(theirs) else {
-            let near = near(theirs, source.names().iter().map(String::as_str));
-            return fail(format!("the clip has no joint `{theirs}`: did you mean {near}?"));
+            let similar = similar(theirs, source.names().iter().map(String::as_str));
+            return fail(format!("the clip has no joint `{theirs}`: did you mean {similar}?"));
         };
         let Some(ours) = ours else {
             nothing.push(joint);
             continue;
         };
         let Some(slot) = Slot::from_name(ours) else {
-            let near = near(ours, Slot::all().map(Slot::name));
-            return fail(format!("`{theirs}`: our rig has no joint `{ours}`: did you mean {near}?"));
+            let similar = similar(ours, Slot::all().map(Slot::name));
+            return fail(format!("`{theirs}`: our rig has no joint `{ours}`: did you mean {similar}?"));
         };
         if let Some(other) = mapped.insert(slot, joint) {
             let other = &source.names()[other];
@@ -45,8 +45,8 @@ pub(super) fn check(source: &Skeleton, overrides: &Overrides) -> Result<(BTreeMa
     Ok((mapped, nothing))
 }
 
-/// The up to three names most like this one.
-fn near<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> String {
+/// Up to three names that are most similar to this one, for messages.
+fn similar<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> String {
     let wanted = name.to_lowercase();
     let mut list: Vec<(usize, &str)> =
         candidates.map(|c| (crate::error::edit_distance(&wanted, &c.to_lowercase()), c)).collect();

@@ -1,4 +1,4 @@
-//! What a source joint may drive.
+//! The targets of joint matching.
 
 use std::cmp::Ordering;
 
@@ -6,23 +6,23 @@ use crate::Side;
 use crate::skeleton::RigJoint;
 use crate::skeleton::humanoid::humanoid_bones;
 
-/// What a source joint may drive: a joint of our rig, or the direction of a hand. In the order of their names.
+/// What a source joint can drive: a joint of the rig or the direction of a hand. Ordered by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Slot {
-    /// A joint of our rig.
+    /// A joint of the rig.
     Joint(RigJoint),
-    /// Where a hand points, for sources whose fingers are one joint: no joint of ours, a direction.
+    /// The direction of a hand, for sources whose fingers are one joint; the rig has no such joint.
     HandTip(Side),
 }
 
 impl Slot {
-    /// All that a source may drive: the humanoid bones and the tips of the hands.
+    /// All slots: the humanoid bones and the tips of the hands.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         let joints = humanoid_bones().iter().map(|bone| Self::Joint(bone.joint));
         joints.chain(Side::ALL.map(Self::HandTip))
     }
 
-    /// The slot of this name, such as `hand_l` or `hand_tip_l`.
+    /// The slot with this name, such as `hand_l` or `hand_tip_l`.
     pub(super) fn from_name(name: &str) -> Option<Self> {
         Self::all().find(|slot| slot.name() == name)
     }
@@ -36,7 +36,7 @@ impl Slot {
         }
     }
 
-    /// The side that it is on; `None` in the middle.
+    /// Its side; `None` for a central joint.
     pub(super) fn side(self) -> Option<Side> {
         match self {
             Self::Joint(joint) => joint.side(),

@@ -2,7 +2,7 @@ use super::*;
 use crate::math::RigidTransform;
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
-/// A skeleton whose names alone matter: a tree that is no person.
+/// A chain with these names, whose geometry is not that of a person.
 fn named(names: &[&str]) -> Skeleton {
     let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
     let parents = (0..names.len() as u32).map(|j| j.checked_sub(1)).collect();
@@ -156,7 +156,7 @@ fn scrambled(name: &str) -> Option<String> {
 }
 
 #[test]
-fn a_person_without_names_is_known_by_its_shape() {
+fn a_person_with_unknown_names_is_matched_by_geometry() {
     let rest = person();
     let clip = motion(&rest, 1);
     let a_pose = posed(&rest, &[("upperarm_l", [0.0, 0.0, -60.0]), ("upperarm_r", [0.0, 0.0, 60.0])]);
@@ -166,9 +166,9 @@ fn a_person_without_names_is_known_by_its_shape() {
         let map = JointMap::find(source.skeleton(), &BTreeMap::new()).unwrap();
         let mut wrong = Vec::new();
         for (joint, name) in rest.names().iter().enumerate() {
-            // Eyes and jaw look like any leaf of the head; the spine is a chain.
-            let hidden = ["Root", "twist", "eye", "jaw", "spine_02", "spine_03"];
-            if !hidden.iter().any(|part| name.contains(part)) && source_of(&map, name) != Some(joint) {
+            // Eyes and jaw look like any leaf of the head; joints of the spine are matched as a chain.
+            let undetectable = ["Root", "twist", "eye", "jaw", "spine_02", "spine_03"];
+            if !undetectable.iter().any(|part| name.contains(part)) && source_of(&map, name) != Some(joint) {
                 wrong.push(name);
             }
         }
@@ -178,12 +178,12 @@ fn a_person_without_names_is_known_by_its_shape() {
         assert_eq!(map.report().passed_on.len(), 1, "the root above the pelvis");
         let everything = map.report();
         let count = everything.matched.len() + everything.passed_on.len() + everything.unmatched.len();
-        assert_eq!(count, rest.len(), "every joint is spoken of");
+        assert_eq!(count, rest.len(), "every joint is reported");
     }
 }
 
 #[test]
-fn names_fill_in_what_they_do_not_say_by_shape() {
+fn geometry_fills_in_what_names_do_not_give() {
     let rest = person();
     let style = Style {
         rename: &|name| if name.starts_with("hand") { scrambled(name) } else { Some(name.to_owned()) },
@@ -201,7 +201,7 @@ fn names_fill_in_what_they_do_not_say_by_shape() {
 }
 
 #[test]
-fn chains_take_whatever_stands_between() {
+fn spine_and_neck_take_all_joints_between_pelvis_and_head() {
     let names = "Hips LHipJoint LeftUpLeg LeftLeg RHipJoint RightUpLeg RightLeg LowerBack Spine Spine1 Spine2 Neck \
                  Neck1 Head LeftShoulder LeftArm";
     let names: Vec<String> = names.split_ascii_whitespace().map(str::to_owned).collect();
@@ -219,7 +219,7 @@ fn chains_take_whatever_stands_between() {
 }
 
 #[test]
-fn the_users_word_counts() {
+fn the_users_mapping_takes_precedence() {
     let names = "hub legA shinA legB shinB LeftArm";
     let rest = named(&names.split(' ').collect::<Vec<_>>());
     let none = JointMap::find(&rest, &BTreeMap::new()).unwrap_err().to_string();

@@ -1,12 +1,13 @@
-//! Whole lists of joints, as programs write them: every joint drives what it should, and nothing else does.
+//! Complete joint lists of other programs: every joint drives the right joint of the rig, and no other does.
 
 use std::collections::BTreeMap;
 
 use super::*;
 use crate::math::RigidTransform;
 
-/// A vocabulary, what stands for the sides, and lines of chains: `A > B C` hangs B under A and C under B. Behind `=` stands
-/// our joint; a joint with `~` shares the motion of spine or neck; any other drives nothing. A star is the side.
+/// Name of the vocabulary, words for left and right, and chains, one per line: in `A > B C`, B is a child of A and C of B.
+/// `=` precedes the joint of the rig that it drives; `~` marks a joint that shares the motion of spine or neck; others drive
+/// nothing. `*` is the side.
 type List = (&'static str, [&'static str; 2], &'static str);
 
 const MIXAMO: List = ("Mixamo", ["Left", "Right"], "
@@ -72,7 +73,7 @@ const SMPL_X: List = (
 ",
 );
 
-/// VRM 1.0: a thumb begins with its metacarpal.
+/// VRM 1.0, whose thumb begins with its metacarpal.
 const VRM: List = (
     "VRM",
     ["left", "right"],
@@ -90,7 +91,7 @@ const VRM: List = (
 ",
 );
 
-/// Unity, and VRM 0: the same bones of a thumb are called proximal, intermediate and distal.
+/// Unity and VRM 0, which call the same bones of a thumb proximal, intermediate and distal.
 const UNITY: List = (
     "Unity",
     ["Left", "Right"],
@@ -156,22 +157,22 @@ const UNREAL_5: List = (
 ",
 );
 
-/// What a joint of a list is there for.
+/// What a joint of a list does.
 #[derive(Debug)]
-enum Part {
+enum Role {
     Drives(String),
     Shares,
     Nothing,
 }
 
-/// The joints of a list: name, parent, part.
-fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Part)> {
-    let mut found: Vec<(String, Option<u32>, Part)> = Vec::new();
+/// The joints of a list: name, parent, role.
+fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Role)> {
+    let mut found: Vec<(String, Option<u32>, Role)> = Vec::new();
     for line in lines.lines().filter(|line| !line.trim().is_empty()) {
         let both = Side::ALL.map(|side| (sides[side.index()], side.joint_suffix()));
         for (side, ending) in if line.contains('*') { &both[..] } else { &[("", "")] } {
             let line = line.replace('*', side);
-            let place = |found: &[(String, Option<u32>, Part)], name: &str| {
+            let place = |found: &[(String, Option<u32>, Role)], name: &str| {
                 found.iter().position(|j| j.0 == name.trim()).map(|j| j as u32)
             };
             let (mut above, chain) = match line.split_once(" > ") {
@@ -179,13 +180,13 @@ fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Part)> {
                 None => (found.len().checked_sub(1).map(|j| j as u32), line.as_str()),
             };
             for word in chain.split_whitespace() {
-                let (name, part) = match word.split_once('=') {
-                    Some((name, ours)) => (name, Part::Drives(format!("{ours}{ending}"))),
-                    None if word.ends_with('~') => (word.trim_end_matches('~'), Part::Shares),
-                    None => (word, Part::Nothing),
+                let (name, role) = match word.split_once('=') {
+                    Some((name, ours)) => (name, Role::Drives(format!("{ours}{ending}"))),
+                    None if word.ends_with('~') => (word.trim_end_matches('~'), Role::Shares),
+                    None => (word, Role::Nothing),
                 };
                 if place(&found, name).is_none() {
-                    found.push((name.to_owned(), above, part));
+                    found.push((name.to_owned(), above, role));
                 }
                 above = place(&found, name);
             }
@@ -209,14 +210,14 @@ fn every_joint_of_every_program_drives_what_it_should() {
         let map = JointMap::find(&rest.unwrap(), &BTreeMap::new()).unwrap();
         assert_eq!(map.report().vocabulary.as_deref(), Some(list.0));
         let driven: BTreeMap<usize, &str> = map.sources.iter().map(|(ours, j)| (*j, ours.name())).collect();
-        for (joint, (name, _, part)) in joints.iter().enumerate() {
+        for (joint, (name, _, role)) in joints.iter().enumerate() {
             let shares = map.spine().contains(&joint) || map.neck().contains(&joint);
-            match part {
-                Part::Drives(ours) => {
+            match role {
+                Role::Drives(ours) => {
                     assert_eq!(driven.get(&joint), Some(&ours.as_str()), "{}: {name}", list.0);
                 }
-                Part::Shares => assert!(shares, "{}: {name}", list.0),
-                Part::Nothing => {
+                Role::Shares => assert!(shares, "{}: {name}", list.0),
+                Role::Nothing => {
                     assert!(
                         !driven.contains_key(&joint) && !shares,
                         "{}: {name} {:?}",

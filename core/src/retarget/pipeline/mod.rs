@@ -1,4 +1,4 @@
-//! The whole way of a motion onto a body of ours: matched, retargeted, limited, feet on the floor; and how well it went.
+//! The retargeting pipeline: matching joints, transferring poses, clamping to joint limits, planting feet, and a report.
 
 use std::sync::Arc;
 
@@ -8,29 +8,29 @@ use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
 use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error, worst_jump};
 use crate::clip::{Clip, in_place, looped, resample};
-use crate::pose::limits::{JointLimits, TwistsBefore};
+use crate::pose::limits::{JointLimits, TwistHistory};
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
-/// Over how long the end of a looped clip goes over into its beginning, seconds; at most a third of the clip.
+/// How long the end of a looped clip blends into its beginning, seconds; at most a third of the clip.
 const LOOP_BLEND: f64 = 0.3;
 
-/// How a motion comes onto a body.
+/// How to retarget a motion to a body.
 #[derive(Clone, Debug)]
 pub struct RetargetOptions {
-    /// The user's own word about joints.
+    /// The user's joint mapping, which overrides what is found.
     pub mapping: Overrides,
-    /// How poses are carried over.
+    /// How poses are transferred.
     pub transfer: TransferOptions,
-    /// Whether joints are kept within what people's joints do.
+    /// Whether joints are clamped to anatomical limits.
     pub limits: bool,
-    /// How feet are held on the floor; `None` leaves them where the motion puts them.
+    /// How feet are planted on the floor; `None` leaves them where the motion puts them.
     pub feet: Option<FeetOptions>,
-    /// Frames per second of the result; `None`, those of the motion.
+    /// Frames per second of the result; `None` keeps those of the motion.
     pub frames_per_second: Option<f64>,
-    /// Whether motion over the ground is left out.
+    /// Whether root motion is removed.
     pub in_place: bool,
-    /// Whether the end is made to meet the beginning.
+    /// Whether the clip is made to loop.
     pub looped: bool,
 }
 
@@ -48,7 +48,7 @@ impl Default for RetargetOptions {
     }
 }
 
-/// How well one clip came onto the body.
+/// Quality of one retargeted clip.
 #[derive(Clone, Debug, Serialize)]
 pub struct ClipReport {
     /// Name of the clip.
@@ -57,34 +57,34 @@ pub struct ClipReport {
     pub frames: usize,
     /// Frames per second.
     pub frames_per_second: f64,
-    /// Between bones of the motion and of the body, degrees.
+    /// Angles between bones of the motion and of the body.
     pub direction: DirectionError,
-    /// How far a joint turns beyond its limits at most, degrees.
+    /// Largest excess of a joint beyond its limits, degrees.
     pub beyond_limits: f64,
-    /// The joint that does.
+    /// The joint with that excess; `None` when there is none.
     pub beyond_limits_joint: Option<String>,
-    /// The farthest that a limb turns in one frame beyond the motion.
+    /// The largest rotation of a limb in one frame beyond that in the motion.
     pub jump: Jump,
-    /// What was done about the feet, before motion over the ground was left out; `None` where nothing was asked for.
+    /// How feet were planted, measured before root motion was removed; `None` when they were not planted.
     pub feet: Option<FeetReport>,
 }
 
-/// How a motion came onto a body.
+/// What retargeting a motion found and did.
 #[derive(Clone, Debug, Serialize)]
 pub struct RetargetReport {
-    /// Which joint drives which.
+    /// Which source joint drives which joint of the rig.
     pub joints: JointMapReport,
-    /// The ratio of leg lengths, by which ways and heights are scaled.
+    /// Scale of root motion and heights: the ratio of leg lengths, unless given.
     pub scale: f32,
     /// One per clip.
     pub clips: Vec<ClipReport>,
 }
 
-/// Retargets every clip of a motion, which share a rest pose, to a body; `target` is the body's
-/// own skeleton, see [`Body::skeleton`](crate::Body::skeleton).
+/// Retargets all clips of a motion, which share one skeleton, to a body; `target` is the body's own skeleton, see
+/// [`Body::skeleton`](crate::Body::skeleton).
 ///
 /// # Errors
-/// As [`JointMap::find`], [`Retargeter::new`] and [`plant`].
+/// [`Error::Invalid`] without clips; as [`JointMap::find`], [`Retargeter::new`], [`resample`] and [`plant`].
 pub fn retarget(
     sources: &[Clip],
     target: &Arc<Skeleton>,
@@ -93,12 +93,12 @@ pub fn retarget(
     let Some(first) = sources.first() else {
         return Err(Error::invalid("motion", "expected at least one clip, got none"));
     };
-    let mut way = Way::new(first.skeleton(), target, options)?;
-    let clips = sources.iter().map(|source| way.bring(source)).collect::<Result<_>>()?;
-    Ok((clips, way.report))
+    let mut pipeline = Pipeline::new(first.skeleton(), target, options)?;
+    let clips = sources.iter().map(|source| pipeline.run(source)).collect::<Result<_>>()?;
+    Ok((clips, pipeline.report))
 }
 
-/// Brings one clip onto a body, as [`retarget`] does with every clip of a motion.
+/// Retargets one clip to a body, as [`retarget`] does with every clip of a motion.
 ///
 /// # Errors
 /// As [`retarget`].
@@ -107,23 +107,23 @@ pub fn retarget_clip(
     target: &Arc<Skeleton>,
     options: &RetargetOptions,
 ) -> Result<(Clip, RetargetReport)> {
-    let mut way = Way::new(source.skeleton(), target, options)?;
-    let clip = way.bring(source)?;
-    Ok((clip, way.report))
+    let mut pipeline = Pipeline::new(source.skeleton(), target, options)?;
+    let clip = pipeline.run(source)?;
+    Ok((clip, pipeline.report))
 }
 
-/// The way from one skeleton to a body.
-struct Way<'a> {
+/// Everything that depends on the two skeletons alone, and the report.
+struct Pipeline<'a> {
     target: &'a Arc<Skeleton>,
     options: &'a RetargetOptions,
     map: JointMap,
     retargeter: Retargeter,
     limits: JointLimits,
-    /// Of the clips that went it.
+    /// Of the clips so far.
     report: RetargetReport,
 }
 
-impl<'a> Way<'a> {
+impl<'a> Pipeline<'a> {
     fn new(source: &Skeleton, target: &'a Arc<Skeleton>, options: &'a RetargetOptions) -> Result<Self> {
         let map = JointMap::find(source, &options.mapping)?;
         let retargeter = Retargeter::new(source, target.clone(), &map, &options.transfer)?;
@@ -133,28 +133,28 @@ impl<'a> Way<'a> {
         Ok(Self { target, options, map, retargeter, limits, report })
     }
 
-    fn bring(&mut self, source: &Clip) -> Result<Clip> {
+    fn run(&mut self, source: &Clip) -> Result<Clip> {
         let Self { target, options, map, retargeter, limits, report } = self;
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
-        let mut twists = TwistsBefore::first(limits, source.frames_per_second());
+        let mut twists = TwistHistory::new(limits, source.frames_per_second());
         let mut clip = retargeter.retarget_with(source, |_, pose| {
             if options.limits {
-                limits.clamp_after(target, pose, &mut twists);
+                limits.clamp_next(target, pose, &mut twists);
             }
         })?;
-        let as_it_came = options.looped.then(|| clip.clone());
+        let unplanted = options.looped.then(|| clip.clone());
         let mut feet = None;
         if let Some(options) = &options.feet {
             let (planted, found) = plant(&clip, options)?;
             (clip, feet) = (planted, Some(found));
         }
-        // Both compare with the motion as it was, so before its end is bent to its beginning.
+        // Both compare with the source, so they are measured before looping changes the clip.
         let direction = direction_error(source, &clip, map);
         let jump = worst_jump(source, &clip, map);
-        if let Some(came) = as_it_came {
-            // Feet are held after the bend, or they would slide in it.
-            clip = looped(&came, LOOP_BLEND.min(came.duration() / 3.0))?;
+        if let Some(unplanted) = unplanted {
+            // Feet are planted after the blend, as it would make them slide.
+            clip = looped(&unplanted, LOOP_BLEND.min(unplanted.duration() / 3.0))?;
             if let Some(options) = &options.feet {
                 let (planted, found) = plant_loop(&clip, options)?;
                 (clip, feet) = (planted, Some(found));
@@ -178,8 +178,8 @@ impl<'a> Way<'a> {
     }
 }
 
-/// The farthest beyond its limits that a joint turns in any frame of a clip of our rig, radians, and which joint; 0 and
-/// none when all stay within.
+/// The largest excess of a joint beyond its limits in any frame of a clip of the rig, radians, and the index of the joint; 0
+/// and `None` when all stay within them.
 pub fn worst_limit_excess(limits: &JointLimits, clip: &Clip) -> (f32, Option<usize>) {
     let mut worst = (0.0, None);
     for frame in 0..clip.frame_count() {

@@ -8,8 +8,8 @@ use crate::math::{RigidTransform, Rotation};
 use crate::retarget::feet::measure;
 use crate::testing::bodies::bodies;
 
-/// Where a joint is over the floor, frame by frame.
-fn way(clip: &Clip, joint: &str) -> Vec<Vec3> {
+/// Position of a joint along the floor, frame by frame.
+fn path(clip: &Clip, joint: &str) -> Vec<Vec3> {
     let rest = clip.skeleton();
     let joint = rest.find(joint).unwrap();
     (0..clip.frame_count())
@@ -17,7 +17,7 @@ fn way(clip: &Clip, joint: &str) -> Vec<Vec3> {
         .collect()
 }
 
-/// Two strides of the short body that favour a leg, whose end does not meet their beginning.
+/// Two strides of the short body with a limp, whose end does not match their beginning, and the skeleton of the tall body.
 fn limp() -> (Clip, Arc<Skeleton>) {
     let all = bodies();
     let walk = builtin("walk", &all[0].1).unwrap();
@@ -47,27 +47,27 @@ fn run(source: &Clip, target: &Arc<Skeleton>, options: &RetargetOptions) -> (Cli
 }
 
 #[test]
-fn a_looped_clip_meets_and_its_feet_stand() {
+fn a_looped_clip_closes_and_its_feet_stay_planted() {
     let (motion, target) = limp();
     let (open, _) = run(&motion, &target, &RetargetOptions::default());
     let (closed, quality) =
         run(&motion, &target, &RetargetOptions { looped: true, ..RetargetOptions::default() });
     let gap = |clip: &Clip| {
         let [first, last] = [0, clip.frame_count() - 1].map(|frame| clip.pose(frame));
-        // Exact near none, where an arc cosine is not.
-        let turn = |(a, b): (&RigidTransform, &RigidTransform)| {
+        // Exact near zero, unlike an arc cosine.
+        let angle = |(a, b): (&RigidTransform, &RigidTransform)| {
             2.0 * libm::asinf((a.rotation.conjugate() * b.rotation).vector().length().min(1.0))
         };
-        let turns = first.locals.iter().zip(&last.locals).map(turn);
-        turns.fold(0.0, f32::max)
+        let angles = first.locals.iter().zip(&last.locals).map(angle);
+        angles.fold(0.0, f32::max)
     };
     assert!(gap(&open) > 0.05, "nothing to close: {}", gap(&open));
     // Rounding of f32.
     assert!(gap(&closed) < 1e-5, "{}", gap(&closed));
-    let pelvis = way(&closed, "pelvis");
+    let pelvis = path(&closed, "pelvis");
     assert!(pelvis[0].distance(pelvis[pelvis.len() - 1]) > 1.0, "it still travels");
 
-    // The report speaks of the clip that comes out, not of the one before it was bent.
+    // The report is of the looped clip, not of the one before looping.
     let feet = quality.feet.unwrap();
     let found =
         measure(&closed, &crate::retarget::feet::Contacts { floor: 0.0, ..feet.contacts.clone() }).unwrap();
@@ -75,7 +75,7 @@ fn a_looped_clip_meets_and_its_feet_stand() {
     assert!(feet.after.contacts.iter().all(|n| *n >= 2), "{feet:?}");
     assert!(feet.after.worst_slide.iter().all(|slide| *slide < 0.01), "{feet:?}");
     assert!(feet.after.deepest.iter().all(|depth| *depth < 0.01), "{feet:?}");
-    // Nor does it pop where one turn goes over into the next.
+    // Nor does it pop from one cycle to the next.
     let step = |a: usize, b: usize| {
         let pairs = closed.rotations(a).iter().zip(closed.rotations(b));
         pairs.map(|(a, b)| a.angle_between(*b)).fold(0.0, f32::max)
@@ -86,16 +86,16 @@ fn a_looped_clip_meets_and_its_feet_stand() {
 }
 
 #[test]
-fn in_place_the_body_stays_over_where_it_starts() {
+fn in_place_the_body_stays_where_it_starts() {
     let (motion, target) = limp();
     let (walks, _) = run(&motion, &target, &RetargetOptions::default());
     let (stays, _) = run(&motion, &target, &RetargetOptions { in_place: true, ..RetargetOptions::default() });
-    let pelvis = way(&walks, "pelvis");
+    let pelvis = path(&walks, "pelvis");
     assert!(pelvis[0].distance(pelvis[pelvis.len() - 1]) > 1.0);
     for joint in ["Root", "pelvis"] {
-        let way = way(&stays, joint);
-        // One rounding of a metre in f32 for each of a few sums.
-        assert!(way.iter().all(|at| at.distance(way[0]) < 1e-5), "{joint}");
+        let path = path(&stays, joint);
+        // A few roundings of metres in f32.
+        assert!(path.iter().all(|at| at.distance(path[0]) < 1e-5), "{joint}");
     }
     for frame in 0..walks.frame_count() {
         assert_eq!(walks.rotations(frame), stays.rotations(frame));
@@ -103,7 +103,7 @@ fn in_place_the_body_stays_over_where_it_starts() {
 }
 
 #[test]
-fn without_limits_an_elbow_goes_where_the_source_does() {
+fn without_limits_a_wrist_bends_as_far_as_the_source() {
     let (motion, target) = limp();
     let source = &motion;
     let hand = source.skeleton().find("hand_l").unwrap();
@@ -128,9 +128,9 @@ fn without_limits_an_elbow_goes_where_the_source_does() {
 }
 
 #[test]
-fn without_feet_they_slide_as_they_came() {
+fn without_planting_feet_slide() {
     let (motion, _) = limp();
-    // Wide hips and other proportions of the legs make feet slide that did not.
+    // Wide hips and legs of other proportions make feet slide that stood in the source.
     let target = bodies().remove(2).1;
     let (held, quality) = run(&motion, &target, &RetargetOptions::default());
     let feet = quality.feet.unwrap();

@@ -1,4 +1,4 @@
-//! The bones that point the same way in source and target.
+//! Bones of source and target that correspond.
 
 use glam::Vec3;
 
@@ -7,7 +7,7 @@ use super::super::joint_map::Slot;
 use crate::math::RigidTransform;
 use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 
-/// Below this two joints are one, metres: no direction can be read from them.
+/// Joints closer than this count as one, metres, as they give no direction.
 const SHORTEST: f32 = 1e-4;
 
 /// Where a bone of the source ends.
@@ -15,11 +15,11 @@ const SHORTEST: f32 = 1e-4;
 pub(super) enum Tip {
     /// At this joint.
     Joint(usize),
-    /// Here, in the space of the bone's own joint.
+    /// At this point in the space of the bone's own joint.
     End(Vec3),
 }
 
-/// A bone of the target, from joint to joint, and the same of the source.
+/// A bone of the target, from joint to joint, and the corresponding bone of the source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bone {
     pub(super) target: usize,
@@ -28,8 +28,8 @@ pub(super) struct Bone {
     pub(super) source_tip: Tip,
 }
 
-/// Both limbs of a side: joint and where its bone ends.
-pub(super) const LIMBS: [(SidedJoint, SidedJoint); 6] = [
+/// The bones of arm and leg: joint at the near end, joint at the far end.
+pub(super) const LIMB_BONES: [(SidedJoint, SidedJoint); 6] = [
     (SidedJoint::Upperarm, SidedJoint::Lowerarm),
     (SidedJoint::Lowerarm, SidedJoint::Hand),
     (SidedJoint::Hand, SidedJoint::Middle01),
@@ -39,7 +39,7 @@ pub(super) const LIMBS: [(SidedJoint, SidedJoint); 6] = [
 ];
 
 impl Bone {
-    /// The bone of this joint of a limb or finger, where both skeletons have it with a length.
+    /// The bone that begins at this joint of a limb or finger; `None` unless both skeletons have it, with a length.
     pub(super) fn of(ours: RigJoint, map: &JointMap, source: &Skeleton, target: &Skeleton) -> Option<Self> {
         let RigJoint::Sided(stem, side) = ours else { return None };
         let tip = next(stem)?.on(side);
@@ -49,7 +49,7 @@ impl Bone {
             _ => vec![tip.into()],
         };
         let tips = candidates.into_iter().filter_map(|tip| Some(Tip::Joint(map.source_for(tip)?)));
-        // A knee is no end site: only hands, feet and the last bones of fingers may end in one.
+        // Only hands, feet and fingers may end in an end site; the others end in a joint.
         let may_end = !matches!(
             stem,
             SidedJoint::Upperarm | SidedJoint::Lowerarm | SidedJoint::Thigh | SidedJoint::Calf
@@ -65,12 +65,12 @@ impl Bone {
         })
     }
 
-    /// From the source's joint to its tip, in model space.
+    /// From the source's joint to its tip, in model space, metres.
     pub(super) fn of_source(&self, model_from_joints: &[RigidTransform]) -> Vec3 {
         vector(model_from_joints, self.source, self.source_tip)
     }
 
-    /// From the target's joint to its tip, in model space.
+    /// From the target's joint to its tip, in model space, metres.
     pub(super) fn of_target(&self, model_from_joints: &[RigidTransform]) -> Vec3 {
         model_from_joints[self.target_tip].translation - model_from_joints[self.target].translation
     }
@@ -85,10 +85,10 @@ fn vector(model: &[RigidTransform], joint: usize, tip: Tip) -> Vec3 {
 
 /// The joint at the far end of a limb's or finger's bone.
 fn next(joint: SidedJoint) -> Option<SidedJoint> {
-    let of_limb = LIMBS.iter().find(|(from, _)| *from == joint).map(|(_, to)| *to);
+    let of_limb = LIMB_BONES.iter().find(|(from, _)| *from == joint).map(|(_, to)| *to);
     of_limb.or_else(|| {
         let (finger, number) = joint.finger()?;
-        // Joints count from 1, so that this is the one after.
+        // Numbers count from 1, so this is the next joint.
         finger.joints().get(number).copied()
     })
 }

@@ -1,7 +1,7 @@
-//! What drives each joint of the target. Spine and neck are shared out along their length.
+//! The driver of each joint of the target. Spine and neck are interpolated along their length.
 
 use super::super::joint_map::{NECK, SPINE};
-use super::bones::LIMBS;
+use super::bones::LIMB_BONES;
 use super::fingers::relaxed;
 use super::reference::Reference;
 use super::{Driver, FingerMode, TransferOptions};
@@ -9,7 +9,7 @@ use crate::Side;
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Finger, RigJoint, SidedJoint};
 
-/// One driver per joint of the target.
+/// The drivers, one per joint of the target.
 pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<Driver> {
     let target = reference.joints.target;
     let mut drivers: Vec<Driver> = target.rest_rotations().map(Driver::Still).collect();
@@ -26,7 +26,7 @@ pub(super) fn drivers(reference: &Reference, options: &TransferOptions) -> Vec<D
     for side in Side::ALL {
         let arm = reference.arm(side);
         let leg = reference.leg(side, options.feet);
-        for ((joint, _), alignment) in LIMBS.into_iter().zip(arm.into_iter().chain(leg)) {
+        for ((joint, _), alignment) in LIMB_BONES.into_iter().zip(arm.into_iter().chain(leg)) {
             set(joint.on(side), alignment);
         }
         set(SidedJoint::Ball.on(side), leg[2]);
@@ -52,13 +52,13 @@ fn fingers(reference: &Reference, mode: FingerMode, side: Side, hand: Rotation, 
         .collect();
     let source_of = |ours: RigJoint| reference.map.source_of(ours);
     let beside_thumb = of_hand.iter().filter(|(.., (finger, _))| *finger != Finger::Thumb);
-    let told = beside_thumb.filter(|(_, ours, _)| source_of(*ours).is_some()).count();
+    let matched = beside_thumb.filter(|(_, ours, _)| source_of(*ours).is_some()).count();
     let mut alignment = hand;
     for (joint, ours, (finger, number)) in of_hand {
         if number == 1 {
             alignment = hand;
         }
-        match source_of(ours).filter(|_| mode == FingerMode::Source && told >= 4) {
+        match source_of(ours).filter(|_| mode == FingerMode::Source && matched >= 4) {
             Some(source) => {
                 alignment = reference.finger(ours, alignment);
                 drivers[joint] = Driver::Joint(source, reference.offset(source, joint, alignment));
@@ -72,8 +72,8 @@ fn fingers(reference: &Reference, mode: FingerMode, side: Side, hand: Rotation, 
     }
 }
 
-/// Spine and neck: the first and the last joint of a chain follow those of the source, those between what the source
-/// does at the same part of the way. A source of one joint bends evenly from the joint before the chain.
+/// Spine and neck: joints of a chain follow the source at the same fraction of its length, the first and the last one exactly.
+/// If the source has one joint, the chain bends evenly from the joint before it.
 fn trunk(reference: &Reference, drivers: &mut [Driver]) {
     let (map, target) = (reference.map, reference.joints.target);
     let ours = |joints: &[RigJoint]| joints.iter().filter_map(|j| target.rig_joint(*j)).collect::<Vec<_>>();
@@ -91,6 +91,7 @@ fn trunk(reference: &Reference, drivers: &mut [Driver]) {
     }
 }
 
+/// Drives the joints `target` of a chain by the joints `source`; `before` is the source joint below the chain.
 fn share(
     reference: &Reference,
     before: Option<usize>,
@@ -108,14 +109,14 @@ fn share(
             continue;
         }
         let at = if target.len() == 1 { 0.5 } else { along(&rest.target_rest, target)[i] };
-        let places = along(&rest.source_rest, source);
-        let next = places.iter().position(|place| *place >= at).unwrap_or(source.len() - 1).max(1);
-        let span = (places[next] - places[next - 1]).max(1e-6);
-        let t = ((at - places[next - 1]) / span).clamp(0.0, 1.0);
+        let fractions = along(&rest.source_rest, source);
+        let next = fractions.iter().position(|fraction| *fraction >= at).unwrap_or(source.len() - 1).max(1);
+        let span = (fractions[next] - fractions[next - 1]).max(1e-6);
+        let t = ((at - fractions[next - 1]) / span).clamp(0.0, 1.0);
         drivers[joint] = Driver::Between([part(source[next - 1], joint), part(source[next], joint)], t);
     }
     for driver in drivers {
-        // An end of the way is one joint.
+        // At an end of the interpolation one joint is enough.
         if let Driver::Between([from, to], t) = *driver
             && (t == 0.0 || t == 1.0)
         {
@@ -125,14 +126,18 @@ fn share(
     }
 }
 
-/// Where joints stand along a chain, 0 the first and 1 the last; evenly when they are all in one place.
+/// Positions of joints along a chain as fractions of its length, 0 to 1; evenly spaced when it has no length.
 fn along(model: &[RigidTransform], chain: &[usize]) -> Vec<f32> {
-    let mut way = vec![0.0];
+    let mut lengths = vec![0.0];
     for pair in chain.windows(2) {
         let step = model[pair[0]].translation.distance(model[pair[1]].translation);
-        way.push(way.last().copied().unwrap_or(0.0) + step);
+        lengths.push(lengths.last().copied().unwrap_or(0.0) + step);
     }
-    let whole = way.last().copied().unwrap_or(0.0);
+    let whole = lengths.last().copied().unwrap_or(0.0);
     let last = (chain.len() - 1).max(1) as f32;
-    way.iter().enumerate().map(|(i, w)| if whole > 1e-4 { w / whole } else { i as f32 / last }).collect()
+    lengths
+        .iter()
+        .enumerate()
+        .map(|(i, length)| if whole > 1e-4 { length / whole } else { i as f32 / last })
+        .collect()
 }

@@ -1,7 +1,7 @@
-//! Retargeting: a motion of one skeleton, of any proportions and rest pose, onto ours.
+//! Pose transfer: a motion of a skeleton of any proportions and rest pose is transferred to a body of the rig.
 //!
-//! Bones of limbs point in the world where the source's point; the trunk turns as the source's trunk turns. Everything
-//! that depends on the two skeletons alone is computed once, in a [`Retargeter`], of which a frame is then a product of
+//! Bones of limbs take the directions of the source's bones in model space; the trunk takes its rotations. Everything that
+//! depends on the two skeletons alone is computed once, in a [`Retargeter`], after which a frame costs one product of
 //! quaternions per joint (see `reference.rs`).
 
 mod bones;
@@ -20,10 +20,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 pub use direction::{BoneError, DirectionError, direction_error};
-use hinge::{Limb, MeanFold};
+use hinge::{HingedLimb, MeanHingeAngle};
 pub use jump::{Jump, worst_jump};
 use reference::Reference;
-use root::Root;
+use root::PelvisMotion;
 use twist::Twist;
 
 use super::JointMap;
@@ -32,25 +32,25 @@ use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{Pose, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
-/// Who carries the way over the ground.
+/// Which joint carries root motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RootMotion {
-    /// The pelvis; our `Root` stays at the origin.
+    /// The pelvis; the joint `Root` stays at the origin.
     #[default]
     Pelvis,
-    /// `Root` moves over the ground below the pelvis, without turning; the pelvis only moves up and down in it.
+    /// `Root` moves along the floor with the pelvis, without rotating; the pelvis moves only up and down relative to it.
     Root,
 }
 
-/// What fingers do.
+/// Where finger poses come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FingerMode {
-    /// As the source's, on each hand of which it has at least four joints besides the thumb; else as `Relaxed`.
+    /// From the source, for each hand of which it has at least four joints besides the thumb; otherwise as `Relaxed`.
     #[default]
     Source,
-    /// Hands at ease.
+    /// A relaxed hand.
     Relaxed,
-    /// As at rest.
+    /// The rest pose.
     Rest,
 }
 
@@ -58,7 +58,7 @@ impl FingerMode {
     /// Every mode.
     pub const ALL: [Self; 3] = [Self::Source, Self::Relaxed, Self::Rest];
 
-    /// The word for it on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Source => "source",
@@ -82,39 +82,39 @@ impl FromStr for FingerMode {
 /// What feet keep of the source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FootMode {
-    /// The sole: a foot that stands flat in the source stands flat, whatever the slope its bone is drawn at.
+    /// The sole: a foot that is flat in the source is flat, whatever the slope of the source's foot bone.
     #[default]
     Sole,
     /// The direction of the bone from ankle to ball.
     Bone,
 }
 
-/// Where the floor is.
+/// How the height of the floor is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Floor {
-    /// Below the lowest foot of the clip: the body is lowered or lifted, as a whole and by one height for all frames,
-    /// until it stands there.
+    /// From the lowest feet of the clip: the body is lowered or lifted by one height for all frames until they stand on the
+    /// floor.
     #[default]
     Fit,
-    /// At y = 0 of the source.
+    /// It is y = 0 of the source.
     Source,
 }
 
-/// How to retarget.
+/// How poses are transferred.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferOptions {
-    /// Who carries the way over the ground; the pelvis.
+    /// Which joint carries root motion; the pelvis by default.
     pub root: RootMotion,
-    /// What fingers do; the source's where it has any, else at ease.
+    /// Where finger poses come from; by default from the source where it has fingers.
     pub fingers: FingerMode,
-    /// What feet keep; the sole.
+    /// What feet keep of the source; the sole by default.
     pub feet: FootMode,
-    /// Where the floor is; below the lowest foot.
+    /// How the height of the floor is found; from the lowest feet by default.
     pub floor: Floor,
-    /// Whether elbows and knees fold about their hinges, with the roll that is left over given to upper arm, hand,
-    /// thigh and foot; they do. Directions stay as they are.
+    /// Whether elbows and knees bend about their hinge axes, with the remaining roll moved to upper arm, hand, thigh and foot;
+    /// on by default. Directions of bones do not change.
     pub hinges: bool,
-    /// Scale of the way over the ground and of heights; `None`, the ratio of the legs' lengths.
+    /// Scale of root motion and heights; `None` is the ratio of leg lengths.
     pub scale: Option<f32>,
 }
 
@@ -131,7 +131,7 @@ impl Default for TransferOptions {
     }
 }
 
-/// Both skeletons, and where their joints rest in model space.
+/// Both skeletons and their rest poses, `model_from_joint`.
 struct Joints<'a> {
     source: &'a Skeleton,
     target: &'a Skeleton,
@@ -139,35 +139,35 @@ struct Joints<'a> {
     target_rest: Vec<RigidTransform>,
 }
 
-/// What moves a joint of the target.
+/// What determines the rotation of a joint of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Driver {
-    /// `parent_from_joint` stays this.
+    /// This constant `parent_from_joint`.
     Still(Rotation),
-    /// `model_from_joint` is the source joint's, and this after it.
+    /// `model_from_joint` of the source joint times this offset.
     Joint(usize, Rotation),
-    /// Between those of two source joints: `0` is the first.
+    /// Slerp between two of these; the number is from 0, the first, to 1.
     Between([(usize, Rotation); 2], f32),
 }
 
-/// Carries clips of one skeleton over to another. Made once per pair, shared freely.
+/// Transfers clips of one skeleton to another. Created once per pair of skeletons; immutable.
 #[derive(Clone, Debug)]
 pub struct Retargeter {
     source: Skeleton,
     target: Arc<Skeleton>,
     drivers: Vec<Driver>,
-    limbs: Vec<Limb>,
+    limbs: Vec<HingedLimb>,
     twists: Vec<Twist>,
-    root: Root,
+    pelvis: PelvisMotion,
     options: TransferOptions,
 }
 
 impl Retargeter {
-    /// Prepares for clips of `source`, matched by `map`. `target` is a body of ours: see [`Body::skeleton`](crate::Body::skeleton).
+    /// For clips of `source`, whose joints `map` matches. `target` is the skeleton of a body, see
+    /// [`Body::skeleton`](crate::Body::skeleton).
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the target lacks pelvis or thighs, `map` is of another source, or the scale is not
-    /// positive.
+    /// [`Error::Invalid`] when the target lacks pelvis or thighs, `map` is of another source, or the scale is not positive.
     pub fn new(
         source: &Skeleton,
         target: Arc<Skeleton>,
@@ -190,33 +190,33 @@ impl Retargeter {
             target_rest: target.model_from_joints(),
         };
         let reference = Reference::new(map, &joints);
-        let root = Root::new(&reference, options.scale)
+        let pelvis = PelvisMotion::new(&reference, options.scale)
             .ok_or_else(|| Error::invalid("retargeting", "the target has no pelvis with thighs"))?;
         let mut limbs = Vec::new();
         for side in Side::ALL {
-            limbs.extend(Limb::of(&reference, [SidedJoint::Upperarm, SidedJoint::Lowerarm], side, 1.0));
-            limbs.extend(Limb::of(&reference, [SidedJoint::Thigh, SidedJoint::Calf], side, -1.0));
+            limbs.extend(HingedLimb::of(&reference, [SidedJoint::Upperarm, SidedJoint::Lowerarm], side, 1.0));
+            limbs.extend(HingedLimb::of(&reference, [SidedJoint::Thigh, SidedJoint::Calf], side, -1.0));
         }
         let drivers = drivers::drivers(&reference, options);
         let twists = twist::find(&joints);
-        Ok(Self { source: source.clone(), drivers, limbs, twists, root, options: *options, target })
+        Ok(Self { source: source.clone(), drivers, limbs, twists, pelvis, options: *options, target })
     }
 
-    /// What the way over the ground and heights are scaled by.
+    /// Scale of root motion and heights.
     pub fn scale(&self) -> f32 {
-        self.root.scale
+        self.pelvis.scale
     }
 
-    /// The clip on the target's skeleton: as many frames, the same rate and name.
+    /// The clip on the target's skeleton, with the same frames, rate and name.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the clip's skeleton is not the source, or its numbers are too large to work with.
+    /// [`Error::Invalid`] when the clip's skeleton is not the source, or when numbers overflow.
     pub fn retarget(&self, clip: &Clip) -> Result<Clip> {
         self.retarget_with(clip, |_, _| {})
     }
 
-    /// As [`retarget`](Self::retarget), with a word in every frame's pose before the floor is found: joint limits, say.
-    /// `finish` gets the frame and the pose, whose rotations it may change.
+    /// As [`retarget`](Self::retarget), with a callback that may change every pose before the floor is found, for instance
+    /// to clamp joints. `finish` gets the frame and the pose; changes of translations are ignored.
     ///
     /// # Errors
     /// As [`retarget`](Self::retarget).
@@ -231,9 +231,9 @@ impl Retargeter {
             source_rest: Vec::new(),
             target_rest: self.target.model_from_joints(),
         };
-        let means = self.mean_folds(clip);
+        let means = self.mean_hinge_angles(clip);
         let mut rotations = Vec::with_capacity(clip.frame_count() * self.target.len());
-        let mut places = Vec::with_capacity(clip.frame_count());
+        let mut positions = Vec::with_capacity(clip.frame_count());
         let (mut pose, mut source, mut model, mut locals) = (Pose::default(), vec![], vec![], vec![]);
         let mut rolls = vec![None; self.twists.len()];
         let mut finished = self.target.rest_pose().clone();
@@ -242,33 +242,33 @@ impl Retargeter {
             self.model_rotations(&source, &mut model);
             if self.options.hinges {
                 for (limb, mean) in self.limbs.iter().zip(&means) {
-                    limb.fold_about_hinge(*mean, &mut model);
+                    limb.bend_about_hinge(*mean, &mut model);
                 }
             }
-            let place = self.root.place(&source, model[self.root.pelvis]);
+            let position = self.pelvis.position(&source, model[self.pelvis.joint]);
             self.locals(&mut model, &mut locals);
             for (local, rotation) in finished.locals.iter_mut().zip(&locals) {
                 local.rotation = *rotation;
             }
             finish(frame, &mut finished);
-            // The twist joints share what limits have left of the roll.
+            // Twist joints share the roll that the joint limits have left.
             locals.clear();
             locals.extend(finished.locals.iter().map(|local| local.rotation));
             twist::apply(&self.twists, &mut locals, &mut rolls);
             rotations.extend_from_slice(&locals);
-            places.push(place);
+            positions.push(position);
         }
         if self.options.floor == Floor::Fit {
-            let above = self.root.above_floor(&joints, &rotations, &places);
-            places.iter_mut().for_each(|place| place.y -= above);
+            let above = self.pelvis.height_above_floor(&joints, &rotations, &positions);
+            positions.iter_mut().for_each(|position| position.y -= above);
         }
-        let tracks = self.root.split(&joints, self.options.root, places).into_iter();
+        let tracks = self.pelvis.translations(&joints, self.options.root, positions).into_iter();
         let tracks = tracks.map(|(joint, values)| TranslationTrack { joint: joint as u32, values }).collect();
         let rest = self.target.clone();
         Clip::new(clip.name().to_owned(), rest, clip.frames_per_second(), rotations, tracks)
     }
 
-    /// Rotations in model space of the joints that the source drives; the others' are left over from before.
+    /// Rotations in model space of the joints that the source drives; the others keep those of the previous frame.
     fn model_rotations(&self, source: &[RigidTransform], model: &mut Vec<Rotation>) {
         model.resize(self.drivers.len(), Rotation::IDENTITY);
         for (rotation, driver) in model.iter_mut().zip(&self.drivers) {
@@ -285,24 +285,24 @@ impl Retargeter {
         }
     }
 
-    /// `parent_from_joint` from rotations in model space, which joints that stay still get on the way.
+    /// Rotations of `parent_from_joint` from those in model space, which are filled in for joints with constant rotations.
     fn locals(&self, model: &mut [Rotation], locals: &mut Vec<Rotation>) {
         locals.clear();
         for (joint, (driver, parent)) in self.drivers.iter().zip(self.target.parents()).enumerate() {
-            let above = parent.and_then(|p| model.get(p as usize)).copied().unwrap_or(Rotation::IDENTITY);
+            let parent = parent.and_then(|p| model.get(p as usize)).copied().unwrap_or(Rotation::IDENTITY);
             locals.push(match *driver {
                 Driver::Still(local) => {
-                    model[joint] = above * local;
+                    model[joint] = parent * local;
                     local
                 }
-                _ => (above.conjugate() * model[joint]).normalize(),
+                _ => (parent.conjugate() * model[joint]).normalize(),
             });
         }
     }
 
-    /// How far each limb folds beside its hinge in the mean of the clip.
-    fn mean_folds(&self, clip: &Clip) -> Vec<f32> {
-        let mut means = vec![MeanFold::default(); self.limbs.len()];
+    /// The mean over the clip of each limb's angle between bending and hinge, radians; empty without hinges.
+    fn mean_hinge_angles(&self, clip: &Clip) -> Vec<f32> {
+        let mut means = vec![MeanHingeAngle::default(); self.limbs.len()];
         if !self.options.hinges {
             return Vec::new();
         }
@@ -311,7 +311,7 @@ impl Retargeter {
             clip.model_into(frame, &mut pose, &mut source);
             self.model_rotations(&source, &mut model);
             for (mean, limb) in means.iter_mut().zip(&self.limbs) {
-                mean.add(limb.fold(&model));
+                mean.add(limb.hinge_angle(&model));
             }
         }
         means.into_iter().map(|mean| mean.angle(clip.frame_count())).collect()

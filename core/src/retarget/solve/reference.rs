@@ -1,13 +1,19 @@
-//! The target's rest pose brought into the source's: one constant rotation per joint.
+//! Alignment of the rest poses of source and target: one constant rotation per joint.
 //!
-//! Let `A` turn the target's joint from its own rest pose to where the source rests, in model space. Then a source that
-//! has moved its joint to `W` from `R` at rest moves the target's joint, at rest `T`, to `W · (R⁻¹ · A · T)`: the
-//! bracket is what is computed here, once per pair of skeletons.
+//! All rotations here are in model space. Let the alignment `A` rotate the target's joint from its rest pose to the pose in
+//! which the source rests. A source joint that rotates from `R` at rest to `W` then moves the target's joint from `T` at rest
+//! to
 //!
-//! The trunk only turns to the source's facing (and leans with a source that leans much): spines are drawn too
-//! differently to match them bone by bone. Limbs match directions, each bone on top of the one before it by the
-//! shortest arc, so that no roll comes in between; where an elbow or knee is bent at rest its plane says the roll, and
-//! where a hand has fingers the row of their knuckles does.
+//! ```text
+//! W · R⁻¹ · A · T = W · offset        offset = R⁻¹ · A · T
+//! ```
+//!
+//! The offset is computed here, once per pair of skeletons.
+//!
+//! The trunk is aligned by the source's facing only (and by its lean, if that is large), as spines differ too much between
+//! skeletons to match them bone by bone. Limbs are aligned by directions, each bone after the one before it by the shortest
+//! arc, which adds no roll. Where an elbow or knee is bent at rest its plane gives the roll, and in a hand with fingers the
+//! row of knuckles does.
 
 use glam::{Mat3, Vec3};
 
@@ -18,19 +24,22 @@ use crate::Side;
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{RigJoint, SidedJoint};
 
-/// Bends and leans below this are taken for the drawing of the skeleton and not for a pose, radians (15°).
+/// Bends and leans below this are attributed to the skeleton's design and not to its pose, radians (15°).
 const POSED: f32 = 0.26;
-/// Legs apart beyond this, from the vertical in the frontal plane, mean that feet splay with them, as the zero poses of
-/// CMU's skeletons do, and do not stand flat, radians (12°).
+/// If legs are spread from the vertical by more than this, feet are tilted with them instead of flat, as in the zero poses of
+/// CMU's skeletons, radians (12°).
 const SPLAYED: f32 = 0.21;
-/// A foot that points further from ours than this at rest is not flat, radians (25°).
+/// If the bone of a foot laid flat differs from the source's by more than this, the source's foot is not flat at rest,
+/// radians (25°).
 const FLAT: f32 = 0.44;
 
-/// Source and target at rest.
+/// Source and target in their rest poses.
 pub(super) struct Reference<'a> {
     pub(super) map: &'a JointMap,
     pub(super) joints: &'a Joints<'a>,
+    /// Rotation about +Y from the target's facing to the source's.
     facing: Rotation,
+    /// `A` of the trunk.
     trunk: Rotation,
 }
 
@@ -55,8 +64,8 @@ impl<'a> Reference<'a> {
         };
         let of_source = |joint: RigJoint| map.source_of(joint);
         let of_target = |joint: RigJoint| joints.target.rig_joint(joint);
-        let turn = yaw(&joints.source_rest, &of_source) - yaw(&joints.target_rest, &of_target);
-        let facing = Rotation::from_rotation_y(turn);
+        let angle = yaw(&joints.source_rest, &of_source) - yaw(&joints.target_rest, &of_target);
+        let facing = Rotation::from_rotation_y(angle);
         let up = up(&joints.source_rest, &of_source).zip(up(&joints.target_rest, &of_target));
         let lean = up.map_or(Rotation::IDENTITY, |(source, target)| {
             let target = facing * target;
@@ -69,7 +78,7 @@ impl<'a> Reference<'a> {
         Self { map, joints, facing, trunk: lean * facing }
     }
 
-    /// `R⁻¹ · A · T` for a source joint that drives a target joint with the alignment `A`.
+    /// The offset `R⁻¹ · A · T` of a target joint that a source joint drives, with the alignment `A`.
     pub(super) fn offset(&self, source: usize, target: usize, alignment: Rotation) -> Rotation {
         let (r, t) = (self.joints.source_rest[source].rotation, self.joints.target_rest[target].rotation);
         (r.conjugate() * alignment * t).normalize()
@@ -80,31 +89,32 @@ impl<'a> Reference<'a> {
         self.trunk
     }
 
-    /// `A` of a side's arm: upper arm, forearm, hand.
+    /// `A` of an arm: upper arm, forearm, hand.
     pub(super) fn arm(&self, side: Side) -> [Rotation; 3] {
         let [upper, lower] = self.hinge([SidedJoint::Upperarm, SidedJoint::Lowerarm], side, Vec3::Z);
         let hand = self.bone(SidedJoint::Hand.on(side), lower);
         [upper, lower, self.knuckles(side).unwrap_or(hand)]
     }
 
-    /// `A` of a side's leg: thigh, calf, foot.
+    /// `A` of a leg: thigh, calf, foot.
     pub(super) fn leg(&self, side: Side, mode: FootMode) -> [Rotation; 3] {
         let [upper, lower] = self.hinge([SidedJoint::Thigh, SidedJoint::Calf], side, Vec3::NEG_Z);
         [upper, lower, self.foot(side, lower, mode)]
     }
 
-    /// `A` of a finger bone, on top of that of the bone before.
+    /// `A` of a finger bone, after that of the bone before it.
     pub(super) fn finger(&self, joint: RigJoint, before: Rotation) -> Rotation {
         self.bone(joint, before)
     }
 
+    /// Directions of a bone in source and target at rest.
     fn pair(&self, joint: RigJoint) -> Option<(Vec3, Vec3)> {
         let bone = Bone::of(joint, self.map, self.joints.source, self.joints.target)?;
         let source = bone.of_source(&self.joints.source_rest).try_normalize()?;
         Some((source, bone.of_target(&self.joints.target_rest).try_normalize()?))
     }
 
-    /// The shortest arc on top of what comes before.
+    /// `A` of a bone: the shortest arc after the alignment of the bone before it.
     fn bone(&self, joint: RigJoint, before: Rotation) -> Rotation {
         match self.pair(joint) {
             Some((source, target)) => {
@@ -114,7 +124,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Upper and lower part of a limb that flexes the lower one towards `flexion` of the upper one's joint.
+    /// `A` of the upper and lower bone of a limb, which flexes towards `flexion` in the upper joint's space.
     fn hinge(&self, limb: [SidedJoint; 2], side: Side, flexion: Vec3) -> [Rotation; 2] {
         let [upper, lower] = limb.map(|joint| joint.on(side));
         let mut first = self.bone(upper, self.trunk);
@@ -128,7 +138,7 @@ impl<'a> Reference<'a> {
         [first, self.bone(lower, first)]
     }
 
-    /// The hand by its direction and the row of its knuckles.
+    /// `A` of a hand by its direction and the row of its knuckles; `None` without them.
     fn knuckles(&self, side: Side) -> Option<Rotation> {
         let (source, target) = self.pair(SidedJoint::Hand.on(side))?;
         let [index, pinky] = [SidedJoint::Index01.on(side), SidedJoint::Pinky01.on(side)];
@@ -139,7 +149,7 @@ impl<'a> Reference<'a> {
         align(target, ours[c].translation - ours[d].translation, source, row)
     }
 
-    /// The foot by its sole, which stands on the floor at rest whatever way the bone above it points, or by the bone.
+    /// `A` of a foot: by its sole, which is on the floor at rest whatever the slope of the bone, or by the bone.
     fn foot(&self, side: Side, calf: Rotation, mode: FootMode) -> Rotation {
         let foot = SidedJoint::Foot.on(side);
         let Some((source, target)) = self.pair(foot) else { return self.facing };
@@ -152,7 +162,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Which way is up from the sole at rest.
+    /// The direction up from the sole at rest.
     fn up_of_foot(&self, side: Side) -> Vec3 {
         let at = |joint: SidedJoint| {
             self.map.source_of(joint.on(side)).map(|j| self.joints.source_rest[j].translation)
@@ -164,7 +174,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// The rotation that takes one direction to another and, as far as that leaves room, a second one to its other.
+/// The rotation that takes the direction `from` to `to` and `from_second` as near to `to_second` as that allows.
 fn align(from: Vec3, from_second: Vec3, to: Vec3, to_second: Vec3) -> Option<Rotation> {
     let basis = |first: Vec3, second: Vec3| {
         let x = first.try_normalize()?;

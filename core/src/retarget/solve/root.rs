@@ -1,4 +1,4 @@
-//! Where the body stands: the middle of the hips follows the source's, scaled by the length of the legs.
+//! Position of the body: the midpoint of the hips follows the source's, scaled by the ratio of leg lengths.
 
 use glam::Vec3;
 
@@ -10,24 +10,26 @@ use crate::clip::Clip;
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::{RigJoint, SidedJoint, model_from_joints};
 
-/// Of the frames, those whose lowest foot is taken for standing on the floor at least: less would follow noise, more
-/// would sink who steps off it.
+/// The quantile, over the frames, of the lower foot's height that is taken for the floor: a lower one would follow noise, a
+/// higher one would sink a body that steps off the floor.
 const FLOOR_FRAMES: f32 = 0.02;
 
-/// The way of the pelvis.
+/// The motion of the pelvis.
 #[derive(Clone, Debug)]
-pub(super) struct Root {
-    pub(super) pelvis: usize,
+pub(super) struct PelvisMotion {
+    /// The target's pelvis.
+    pub(super) joint: usize,
     parent: Option<usize>,
+    /// The source's thighs.
     thighs: [usize; 2],
-    /// From the pelvis to the middle of the hip joints, in the pelvis' space.
+    /// Midpoint of the target's hip joints, in the pelvis' space, metres.
     hips: Vec3,
     pub(super) scale: f32,
-    /// Joints of the feet and their heights at rest, above the floor.
+    /// The target's joints of the feet and their heights above the floor at rest, metres.
     feet: Vec<(usize, f32)>,
 }
 
-impl Root {
+impl PelvisMotion {
     pub(super) fn new(reference: &Reference, scale: Option<f32>) -> Option<Self> {
         let Joints { target, target_rest, .. } = reference.joints;
         let pelvis = target.rig_joint(RigJoint::Pelvis)?;
@@ -42,7 +44,7 @@ impl Root {
         let feet = [SidedJoint::Foot, SidedJoint::Ball].into_iter().flat_map(SidedJoint::both);
         let feet = feet.filter_map(|joint| target.rig_joint(joint));
         Some(Self {
-            pelvis,
+            joint: pelvis,
             parent: target.parents()[pelvis].map(|p| p as usize),
             thighs,
             hips: target_rest[pelvis].inverse().to_affine().transform_point3(hips),
@@ -51,62 +53,69 @@ impl Root {
         })
     }
 
-    /// Where the pelvis is, by the source's pose and its own rotation, both in model space.
-    pub(super) fn place(&self, source: &[RigidTransform], rotation: Rotation) -> Vec3 {
+    /// Position of the pelvis, from the source's pose and its own rotation, all in model space; metres.
+    pub(super) fn position(&self, source: &[RigidTransform], rotation: Rotation) -> Vec3 {
         let [l, r] = self.thighs;
         (source[l].translation + source[r].translation) / 2.0 * self.scale - rotation * self.hips
     }
 
-    /// How far the feet would stand above the floor, metres: what to lower the body by. `places` are the pelvis',
-    /// frame by frame, in model space.
-    pub(super) fn above_floor(&self, joints: &Joints, rotations: &[Rotation], places: &[Vec3]) -> f32 {
+    /// How far the feet are above the floor, metres, by which the body is to be lowered. `rotations` are those of
+    /// `parent_from_joint` (frames × joints), `positions` those of the pelvis in model space.
+    pub(super) fn height_above_floor(
+        &self,
+        joints: &Joints,
+        rotations: &[Rotation],
+        positions: &[Vec3],
+    ) -> f32 {
         let parents = joints.target.parents();
         let mut locals = joints.target.rest_pose().locals.clone();
         let mut model = Vec::new();
-        let mut lowest: Vec<f32> = Vec::with_capacity(places.len());
-        for (frame, place) in rotations.chunks_exact(locals.len()).zip(places) {
+        let mut lowest: Vec<f32> = Vec::with_capacity(positions.len());
+        for (frame, position) in rotations.chunks_exact(locals.len()).zip(positions) {
             for (local, rotation) in locals.iter_mut().zip(frame) {
                 local.rotation = *rotation;
             }
             model_from_joints(parents, &locals, &mut model);
-            let pelvis = model[self.pelvis].translation.y;
+            let pelvis = model[self.joint].translation.y;
             let foot = self.feet.iter().map(|(j, height)| model[*j].translation.y - height);
-            lowest.push(foot.fold(f32::INFINITY, f32::min) - pelvis + place.y);
+            lowest.push(foot.fold(f32::INFINITY, f32::min) - pelvis + position.y);
         }
         lowest.sort_by(f32::total_cmp);
         let at = (FLOOR_FRAMES * (lowest.len() - 1) as f32) as usize;
         if self.feet.is_empty() { 0.0 } else { lowest[at] }
     }
 
-    /// Translations of Root and pelvis in their parents, from the pelvis' places in model space.
-    pub(super) fn split(
+    /// Translation tracks of root and pelvis, relative to their parents, from positions of the pelvis in model space.
+    pub(super) fn translations(
         &self,
         joints: &Joints,
         motion: RootMotion,
-        places: Vec<Vec3>,
+        positions: Vec<Vec3>,
     ) -> Vec<(usize, Vec<Vec3>)> {
         let rest = &joints.target_rest;
-        let Some(root) = self.parent else { return vec![(self.pelvis, places)] };
-        let from_root = rest[root].inverse();
-        let in_root = |place: &Vec3| from_root.to_affine().transform_point3(*place);
+        let Some(root) = self.parent else { return vec![(self.joint, positions)] };
+        let root_from_model = rest[root].inverse();
+        let in_root = |position: &Vec3| root_from_model.to_affine().transform_point3(*position);
         match motion {
-            RootMotion::Pelvis => vec![(self.pelvis, places.iter().map(in_root).collect())],
+            RootMotion::Pelvis => vec![(self.joint, positions.iter().map(in_root).collect())],
             RootMotion::Root => {
-                let hips = rest[self.pelvis].translation;
-                let way: Vec<Vec3> = places.iter().map(|place| (*place - hips).with_y(0.0)).collect();
-                let pelvis = places.iter().zip(&way).map(|(place, way)| in_root(&(*place - *way))).collect();
-                let above = joints.target.parents()[root].map(|p| rest[p as usize].inverse());
-                let of_root = |way: &Vec3| {
-                    let place = rest[root].translation + *way;
-                    above.map_or(place, |from_model| from_model.to_affine().transform_point3(place))
+                let at_rest = rest[self.joint].translation;
+                let travel: Vec<Vec3> =
+                    positions.iter().map(|position| (*position - at_rest).with_y(0.0)).collect();
+                let pelvis =
+                    positions.iter().zip(&travel).map(|(position, by)| in_root(&(*position - *by))).collect();
+                let parent_from_model = joints.target.parents()[root].map(|p| rest[p as usize].inverse());
+                let of_root = |by: &Vec3| {
+                    let position = rest[root].translation + *by;
+                    parent_from_model.map_or(position, |parent| parent.to_affine().transform_point3(position))
                 };
-                vec![(root, way.iter().map(of_root).collect()), (self.pelvis, pelvis)]
+                vec![(root, travel.iter().map(of_root).collect()), (self.joint, pelvis)]
             }
         }
     }
 }
 
-/// The target's leg to the source's: thigh, calf, and how far the ankle stands above the ball of the foot.
+/// Ratio of the target's leg length to the source's: thigh, calf, and height of the ankle above the ball of the foot.
 fn leg_ratio(map: &JointMap, joints: &Joints) -> f32 {
     let (mut source, mut target) = (0.0, 0.0);
     for side in Side::ALL {
@@ -128,7 +137,7 @@ fn leg_ratio(map: &JointMap, joints: &Joints) -> f32 {
 }
 
 impl Clip {
-    /// Where a frame's joints are: `model_from_joint`.
+    /// Forward kinematics of a frame: fills `model` with `model_from_joint`.
     pub(super) fn model_into(
         &self,
         frame: usize,

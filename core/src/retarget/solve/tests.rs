@@ -3,12 +3,12 @@ use crate::skeleton::RigJoint;
 use crate::skeleton::humanoid::{JointNames, renamed};
 use crate::testing::person::{Style, motion, person, posed, restyled};
 
-/// f32 through a chain of a dozen joints, radians and metres.
+/// Rounding of f32 through a chain of a dozen joints, radians and metres.
 const EXACT: f32 = 1e-5;
-/// The same where directions were compared, whose shortest arcs stop at 7e-4 (`Rotation::from_rotation_arc`).
+/// The same where directions were aligned: `Rotation::from_rotation_arc` ignores angles below 7e-4.
 const CLOSE: f32 = 4e-3;
 
-fn exactly() -> TransferOptions {
+fn source_floor() -> TransferOptions {
     TransferOptions { floor: Floor::Source, ..Default::default() }
 }
 
@@ -17,7 +17,7 @@ fn retarget(clip: &Clip, target: &Arc<Skeleton>, options: &TransferOptions) -> C
     Retargeter::new(clip.skeleton(), target.clone(), &map, options).unwrap().retarget(clip).unwrap()
 }
 
-/// The largest angle of a rotation and distance of a translation; twist joints only when asked for.
+/// Asserts that rotations and translations differ by less than `tolerance`; twist joints are compared only if `twists`.
 fn assert_same(a: &Clip, b: &Clip, tolerance: f32, twists: bool) {
     assert_eq!(a.frame_count(), b.frame_count());
     for frame in 0..a.frame_count() {
@@ -29,8 +29,8 @@ fn assert_same(a: &Clip, b: &Clip, tolerance: f32, twists: bool) {
             let q = x.rotation.conjugate() * y.rotation;
             let angle = 2.0 * libm::asinf(q.vector().length().min(1.0));
             assert!(angle < tolerance, "frame {frame}, {name}: {angle} rad");
-            let way = x.translation.distance(y.translation);
-            assert!(way < tolerance, "frame {frame}, {name}: {} m for {}", y.translation, x.translation);
+            let distance = x.translation.distance(y.translation);
+            assert!(distance < tolerance, "frame {frame}, {name}: {} m for {}", y.translation, x.translation);
         }
     }
 }
@@ -40,16 +40,16 @@ fn mixamo(name: &str) -> Option<String> {
 }
 
 #[test]
-fn our_own_clip_stays_as_it_is() {
+fn a_clip_of_the_target_itself_does_not_change() {
     let rest = person();
     let clip = motion(&rest, 20);
-    assert_same(&clip, &retarget(&clip, &rest, &exactly()), EXACT, false);
-    // Elbows that roll and fold sideways stay when hinges are off.
+    assert_same(&clip, &retarget(&clip, &rest, &source_floor()), EXACT, false);
+    // Elbows that roll and bend sideways are kept when hinges are off.
     let mut rotations: Vec<Rotation> = (0..20).flat_map(|f| clip.rotations(f).to_vec()).collect();
     for (i, q) in rotations.iter_mut().enumerate() {
         *q *= Rotation::from_scaled_axis(glam::Vec3::new(0.1, 0.2, -0.1) * (i % 5) as f32);
     }
-    // Twist joints, Root and face are not the source's to say.
+    // Twist joints, Root and face do not come from the source.
     let names = rest.names();
     for (i, q) in rotations.iter_mut().enumerate() {
         let joint = i % rest.len();
@@ -58,15 +58,15 @@ fn our_own_clip_stays_as_it_is() {
         }
     }
     let wild = Clip::new("wild".into(), rest.clone(), 30.0, rotations, clip.translations().to_vec()).unwrap();
-    let found = retarget(&wild, &rest, &TransferOptions { hinges: false, ..exactly() });
+    let found = retarget(&wild, &rest, &TransferOptions { hinges: false, ..source_floor() });
     assert_same(&wild, &found, EXACT, false);
 }
 
 #[test]
-fn the_same_motion_in_any_style_is_the_same() {
+fn axes_facing_and_rest_pose_of_the_source_do_not_matter() {
     let rest = person();
     let clip = motion(&rest, 20);
-    let expected = retarget(&clip, &rest, &exactly());
+    let expected = retarget(&clip, &rest, &source_floor());
     let a_pose = posed(
         &rest,
         &[
@@ -75,7 +75,7 @@ fn the_same_motion_in_any_style_is_the_same() {
             ("index_01_l", [0.0, 0.0, 20.0]),
         ],
     );
-    // Crouching with the arms ahead, soles flat, one upper arm rolled.
+    // Crouching with the arms forward, soles flat, one upper arm rolled.
     let bent = posed(
         &rest,
         &[
@@ -104,16 +104,16 @@ fn the_same_motion_in_any_style_is_the_same() {
         let source = restyled(&clip, &style);
         println!("{what}");
         for feet in [FootMode::Sole, FootMode::Bone] {
-            // A bent knee in the plane of the rest pose leaves no more than what a leg's own slant at rest adds.
+            // With bent knees the slant of the legs at rest adds an error.
             let tolerance = if what == "bent" { 0.05 } else { CLOSE };
-            let found = retarget(&source, &rest, &TransferOptions { feet, ..exactly() });
+            let found = retarget(&source, &rest, &TransferOptions { feet, ..source_floor() });
             assert_same(&expected, &found, tolerance, false);
         }
     }
 }
 
 #[test]
-fn a_giant_moves_as_far_as_its_legs_are_long() {
+fn root_motion_and_heights_scale_with_leg_length() {
     let rest = person();
     let clip = motion(&rest, 12);
     let style = Style {
@@ -124,14 +124,19 @@ fn a_giant_moves_as_far_as_its_legs_are_long() {
         scale: 2.0,
     };
     let giant = restyled(&clip, &style);
-    assert_same(&retarget(&clip, &rest, &exactly()), &retarget(&giant, &rest, &exactly()), CLOSE, false);
-    let twice = retarget(&giant, &rest, &TransferOptions { scale: Some(1.0), ..exactly() });
+    assert_same(
+        &retarget(&clip, &rest, &source_floor()),
+        &retarget(&giant, &rest, &source_floor()),
+        CLOSE,
+        false,
+    );
+    let twice = retarget(&giant, &rest, &TransferOptions { scale: Some(1.0), ..source_floor() });
     let height = |clip: &Clip| clip.pose(0).locals[clip.skeleton().find("pelvis").unwrap()].translation.y;
     assert!((height(&twice) - height(&clip)).abs() > 0.8);
 }
 
 #[test]
-fn left_is_left() {
+fn left_stays_left() {
     let rest = person();
     let raised = posed(&rest, &[("upperarm_l", [0.0, 0.0, 80.0])]);
     let rotations: Vec<Rotation> = raised.iter().map(|l| l.rotation).collect();
@@ -153,25 +158,25 @@ fn left_is_left() {
 #[test]
 fn roll_is_spread_along_limbs() {
     let rest = person();
-    let turn = |turns: &[(&str, [f32; 3])]| {
-        let rotations: Vec<Rotation> = posed(&rest, turns).iter().map(|l| l.rotation).collect();
+    let retarget_roll = |rotations: &[(&str, [f32; 3])]| {
+        let rotations: Vec<Rotation> = posed(&rest, rotations).iter().map(|l| l.rotation).collect();
         let clip = Clip::new("roll".into(), rest.clone(), 30.0, rotations, vec![]).unwrap();
-        retarget(&clip, &rest, &exactly())
+        retarget(&clip, &rest, &source_floor())
     };
     let roll = |clip: &Clip, name: &str| {
         let joint = rest.find(name).unwrap();
         let q = rest.rest_pose().locals[joint].rotation.conjugate() * clip.rotations(0)[joint];
         crate::pose::SwingTwist::of(q).twist.to_degrees()
     };
-    // A forearm that was rolled at the elbow rolls at the wrist.
-    for turns in [[("hand_l", [0.0, -80.0, 0.0])], [("lowerarm_l", [0.0, -80.0, 0.0])]] {
-        let clip = turn(&turns);
+    // A forearm that is rolled at the elbow is rolled at the wrist instead.
+    for rotations in [[("hand_l", [0.0, -80.0, 0.0])], [("lowerarm_l", [0.0, -80.0, 0.0])]] {
+        let clip = retarget_roll(&rotations);
         let rolls = ["lowerarm_l", "lowerarm_twist_01_l", "lowerarm_twist_02_l"].map(|n| roll(&clip, n));
         for (found, expected) in rolls.into_iter().zip([0.0, -40.0, -80.0]) {
             assert!((found - expected).abs() < 1.5, "{rolls:?}");
         }
     }
-    let clip = turn(&[("upperarm_l", [0.0, 60.0, 0.0]), ("thigh_r", [0.0, 20.0, 0.0])]);
+    let clip = retarget_roll(&[("upperarm_l", [0.0, 60.0, 0.0]), ("thigh_r", [0.0, 20.0, 0.0])]);
     for (name, expected) in
         [("upperarm_twist_01_l", -60.0), ("upperarm_twist_02_l", -30.0), ("thigh_twist_01_r", -20.0)]
     {
@@ -180,7 +185,7 @@ fn roll_is_spread_along_limbs() {
 }
 
 #[test]
-fn spines_of_other_counts_bend_as_a_whole() {
+fn spines_with_other_numbers_of_joints_bend_as_a_whole() {
     let rest = person();
     let clip = motion(&rest, 10);
     for drop in [&["spine_02"][..], &["spine_01", "spine_02"], &["spine_02", "neck_01"]] {
@@ -193,13 +198,13 @@ fn spines_of_other_counts_bend_as_a_whole() {
             scale: 1.0,
         };
         let source = restyled(&clip, &style);
-        // A joint that shall drive nothing is left out of the chain.
+        // A joint that is mapped to nothing is left out of the chain.
         let overrides = drop.iter().map(|name| (mixamo(name).unwrap(), None)).collect();
         let map = JointMap::find(source.skeleton(), &overrides).unwrap();
-        let retargeter = Retargeter::new(source.skeleton(), rest.clone(), &map, &exactly()).unwrap();
+        let retargeter = Retargeter::new(source.skeleton(), rest.clone(), &map, &source_floor()).unwrap();
         let found = retargeter.retarget(&source).unwrap();
         let error = direction_error(&source, &found, &map);
-        // Degrees, of arcs that stop at 7e-4.
+        // Degrees; shortest arcs ignore angles below 7e-4 rad.
         assert!(error.max() < 0.1, "{error:?}");
         for frame in 0..10 {
             let chest = |clip: &Clip| {
@@ -211,7 +216,7 @@ fn spines_of_other_counts_bend_as_a_whole() {
 }
 
 #[test]
-fn root_motion_moves_over_to_the_root() {
+fn root_motion_can_be_on_the_root_joint() {
     let rest = person();
     let clip = motion(&rest, 10);
     let pelvis = retarget(&clip, &rest, &TransferOptions::default());
@@ -220,15 +225,15 @@ fn root_motion_moves_over_to_the_root() {
     assert_eq!(root.translations()[0].joint, 0);
     assert!(root.translations()[0].values.iter().all(|v| v.y == 0.0));
     for frame in 0..10 {
-        let places = |clip: &Clip| clip.pose(frame).model_from_joints(rest.parents());
-        for (a, b) in places(&pelvis)[1..].iter().zip(&places(&root)[1..]) {
+        let positions = |clip: &Clip| clip.pose(frame).model_from_joints(rest.parents());
+        for (a, b) in positions(&pelvis)[1..].iter().zip(&positions(&root)[1..]) {
             assert!(a.translation.distance(b.translation) < EXACT);
         }
     }
 }
 
 #[test]
-fn feet_stand_on_the_floor_wherever_the_source_floats() {
+fn feet_stand_on_the_floor_when_the_source_floats() {
     let rest = person();
     let clip = motion(&rest, 30);
     let mut track = clip.translations()[0].clone();
@@ -249,7 +254,7 @@ fn feet_stand_on_the_floor_wherever_the_source_floats() {
 }
 
 #[test]
-fn hands_without_fingers_are_at_ease() {
+fn hands_without_fingers_are_relaxed() {
     let rest = person();
     let clip = motion(&rest, 3);
     let fingerless = |name: &str| mixamo(name).filter(|n| !n.contains("Index") && !n.contains("Pinky"));
@@ -280,7 +285,7 @@ fn hands_without_fingers_are_at_ease() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn unsuitable_scales_targets_and_clips_are_refused() {
     let rest = person();
     let clip = motion(&rest, 2);
     let map = JointMap::find(&rest, &Default::default()).unwrap();

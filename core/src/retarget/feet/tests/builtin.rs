@@ -1,4 +1,4 @@
-//! The built-in clips, by what feet and joint limits say of them.
+//! The built-in clips, checked by foot contacts and joint limits.
 use crate::pose::limits::JointLimits;
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ fn joints_stay_within_their_limits_and_feet_on_the_floor() {
 }
 
 #[test]
-fn the_last_frame_is_the_first_but_for_the_way() {
+fn the_last_pose_is_the_first_but_for_root_motion() {
     for (body, rest) in bodies() {
         for name in BUILTIN {
             let clip = builtin(name, &rest).unwrap();
@@ -39,8 +39,8 @@ fn the_last_frame_is_the_first_but_for_the_way() {
             for (a, b) in first.locals.iter().zip(&last.locals) {
                 assert!(a.rotation.dot(b.rotation).abs() > 1.0 - 1e-5, "{body} {name}");
             }
-            let way = last.locals[0].translation - first.locals[0].translation;
-            assert_eq!(way.z > 0.0, name == "walk", "{body} {name}: {way}");
+            let travel = last.locals[0].translation - first.locals[0].translation;
+            assert_eq!(travel.z > 0.0, name == "walk", "{body} {name}: {travel}");
         }
     }
 }
@@ -72,8 +72,8 @@ fn walking_looks_like_walking() {
             );
         }
         // A comfortable walk: 1.0 to 1.6 m/s for legs of 0.6 to 1.1 m.
-        let way = clip.pose(clip.frame_count() - 1).locals[0].translation.z;
-        let speed = f64::from(way) / clip.duration();
+        let travel = clip.pose(clip.frame_count() - 1).locals[0].translation.z;
+        let speed = f64::from(travel) / clip.duration();
         assert!((0.9..1.7).contains(&speed), "{body}: {speed} m/s");
     }
 }
