@@ -5,6 +5,7 @@ use std::{ffi::OsStr, path::Path};
 use super::motion::{ReadOptions, raw::RawMotion};
 use super::write::WriteOptions;
 use super::{bvh, fbx, gltf, npz, obj, usd, vrm};
+use crate::error::FormatError;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
@@ -195,7 +196,7 @@ pub(super) fn able<T>(
     found.ok_or_else(|| {
         let able = Format::ALL.iter().filter(|format| ability(format.description()).is_some());
         let known: Vec<String> = able.map(|format| format!(".{}", format.ending())).collect();
-        Error::file(path, format!("unknown ending, expected one of {}", known.join(" ")))
+        Error::file(path, FormatError::Ending { expected: known.join(" ") })
     })
 }
 

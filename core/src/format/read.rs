@@ -86,12 +86,13 @@ pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &Re
     options.check()?;
     let (_, read) = able(path, |format| format.read_motion)?;
     let raw = read(bytes, path, options)?;
-    units_and_axes::resolve(raw, options).map_err(|message| Error::file(path, message))
+    units_and_axes::resolve(raw, options).map_err(|error| Error::file(path, Box::new(error)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Fault;
 
     #[test]
     fn the_ending_tells_the_format_and_the_first_bytes_confirm_it() {
@@ -104,7 +105,7 @@ mod tests {
         for (path, expected) in [
             ("a.BVH", "expected HIERARCHY"),
             ("a.npz", "expected a zip archive"),
-            ("a.fbx", "an FBX file, which this is not: it starts with `\\x7fELF`"),
+            ("a.fbx", "expected an FBX file, got one that starts with `\\x7fELF`"),
             ("a.glb", "glTF"),
         ] {
             let error = error(path, b"\x7fELF");
@@ -113,6 +114,21 @@ mod tests {
         assert!(matches!(read_motion("missing.bvh", &ReadOptions::default()), Err(Error::Io { .. })));
         let rate = ReadOptions { frames_per_second: Some(f64::NAN), ..Default::default() };
         assert!(matches!(read_motion_from_bytes(b"", "a.bvh", &rate), Err(Error::Request { .. })));
+    }
+
+    #[test]
+    fn the_kind_of_a_fault_is_known_whatever_the_format_and_the_place() {
+        let fault = |path: &str, text: &str| match read_meshes_from_bytes(text.as_bytes(), path) {
+            Err(Error::File { source, .. }) => source.fault().cloned(),
+            _ => None,
+        };
+        let dangling = |what: &str| Fault::Dangling { what: what.into(), index: 5, count: 1 };
+        assert_eq!(fault("a.obj", "v 1 2 3\nf 1 1 5"), Some(dangling("vertex")));
+        let nodes = r#"{"asset": {"version": "2.0"}, "nodes": [{"children": [5]}]}"#;
+        assert_eq!(fault("a.gltf", nodes), Some(dangling("node")));
+        let units = "#usda 1.0\n(\n    metersPerUnit = 0\n)\n";
+        assert_eq!(fault("a.usda", units), Some(Fault::unexpected("a positive number", 0)));
+        assert_eq!(fault("a.glb", "{"), None, "the words of the parser of JSON");
     }
 
     #[test]

@@ -45,6 +45,9 @@ pub struct Definition {
     pub edges: Vec<[u32; 2]>,
 }
 
+/// What errors are about.
+const WHAT: &str = "measure definitions";
+
 impl Definition {
     /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
     pub fn standard(&self) -> Option<&'static str> {
@@ -57,33 +60,34 @@ impl Definition {
         points.chain(self.edges.iter().flatten().copied())
     }
 
-    fn validate(&self, vertex_count: usize) -> std::result::Result<(), String> {
+    fn validate(&self, vertex_count: usize) -> Result<()> {
+        let fault = |message: String| Err(Error::invalid(WHAT, format!("{}: {message}", self.name)));
         let need = match self.kind {
             Kind::Tape => 3,
             Kind::Slice => 1,
             Kind::Length => 2,
         };
         if self.points.len() < need || (self.kind == Kind::Length && self.points.len() != 2) {
-            return Err(format!("{} points do not make a {:?}", self.points.len(), self.kind));
+            return fault(format!("{} points do not make a {:?}", self.points.len(), self.kind));
         }
         if let Some(v) = self.vertices().find(|v| *v as usize >= vertex_count) {
-            return Err(format!("vertex {v} of {vertex_count}"));
+            return fault(format!("vertex {v} of {vertex_count}"));
         }
         for point in &self.points {
             let sum: f64 = point.0.iter().map(|t| t.1).sum();
             if !sum.is_finite() || (sum - 1.0).abs() > 1e-6 {
-                return Err(format!("weights of a point sum to {sum}, not 1"));
+                return fault(format!("weights of a point sum to {sum}, not 1"));
             }
         }
         let unit = |v: DVec3| (v.length() - 1.0).abs() < 1e-6;
         if self.kind != Kind::Length && !unit(self.normal) {
-            return Err(format!("normal {} is not of unit length", self.normal));
+            return fault(format!("normal {} is not of unit length", self.normal));
         }
         if self.axis.is_some_and(|a| !unit(a)) {
-            return Err("axis is not of unit length".into());
+            return fault("axis is not of unit length".into());
         }
         if self.kind == Kind::Slice && self.edges.is_empty() {
-            return Err("a slice needs edges to cut".into());
+            return fault("a slice needs edges to cut".into());
         }
         Ok(())
     }
@@ -140,7 +144,7 @@ pub(super) fn read_list<'a>(
     names: impl ExactSizeIterator<Item = &'a str>,
     vertex_count: usize,
 ) -> Result<Vec<Definition>> {
-    let fail = |message: String| Error::invalid("measure definitions", message);
+    let fail = |message: String| Error::invalid(WHAT, message);
     let list: Vec<Definition> = serde_json::from_str(json).map_err(|e| fail(e.to_string()))?;
     if list.len() != names.len() {
         return Err(fail(format!("expected {} measures, got {}", names.len(), list.len())));
@@ -149,7 +153,7 @@ pub(super) fn read_list<'a>(
         if definition.name != name {
             return Err(fail(format!("expected {name}, got {}", definition.name)));
         }
-        definition.validate(vertex_count).map_err(|e| fail(format!("{name}: {e}")))?;
+        definition.validate(vertex_count)?;
     }
     Ok(list)
 }

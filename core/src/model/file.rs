@@ -207,8 +207,8 @@ impl ModelParts {
         }
         let metadata: Metadata =
             serde_json::from_value(version).map_err(|e| fail(format!("metadata: {e}")))?;
-        if verify {
-            verify_checksum(bytes, &metadata.sha256).map_err(fail)?;
+        if verify && let Some(fault) = checksum_fault(bytes, &metadata.sha256) {
+            return Err(fail(fault));
         }
         let file = SafeTensors::deserialize(bytes).map_err(|e| fail(e.to_string()))?;
         let reader = Reader { file: &file, origin };
@@ -365,20 +365,20 @@ fn find(within: &[u8], what: &[u8]) -> Option<usize> {
     within.windows(what.len()).position(|w| w == what)
 }
 
-/// Compares the checksum that a file carries with the one that its bytes have.
-fn verify_checksum(bytes: &[u8], carried: &str) -> std::result::Result<(), String> {
-    let place = find(&bytes[..header_end(bytes)], carried.as_bytes())
-        .filter(|_| carried.len() == NO_CHECKSUM.len())
-        .ok_or_else(|| "metadata: sha256: expected 64 hexadecimal digits".to_owned())?;
+/// Where the checksum that a file carries is not the one that its bytes have, what is wrong.
+fn checksum_fault(bytes: &[u8], carried: &str) -> Option<String> {
+    let place = find(&bytes[..header_end(bytes)], carried.as_bytes());
+    let Some(place) = place.filter(|_| carried.len() == NO_CHECKSUM.len()) else {
+        return Some("metadata: sha256: expected 64 hexadecimal digits".to_owned());
+    };
     let mut hash = Sha256::new();
     hash.update(&bytes[..place]);
     hash.update(NO_CHECKSUM);
     hash.update(&bytes[place + NO_CHECKSUM.len()..]);
     let taken = hex(&hash.finalize());
-    if taken == carried {
-        return Ok(());
-    }
-    Err(format!("the SHA-256 of the file is {taken}, its header says {carried}: the file is damaged"))
+    (taken != carried).then(|| {
+        format!("the SHA-256 of the file is {taken}, its header says {carried}: the file is damaged")
+    })
 }
 
 #[derive(Default)]

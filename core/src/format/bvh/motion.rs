@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
+use super::Result;
 use super::lexer::Lexer;
 use super::{frames, hierarchy};
-use crate::error::Outcome;
+use crate::Error;
 use crate::format::motion::raw::{self, RawMotion};
 use crate::format::motion::{Found, ReadOptions, clip_name};
 use crate::math::RigidTransform;
-use crate::{Error, Result};
 
 /// Reads the text of a file; the clip is named after it.
-pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<RawMotion> {
-    motion(bytes, &clip_name(path), options).map_err(|message| Error::file(path, message))
+pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
+    motion(bytes, &clip_name(path), options).map_err(|error| Error::file(path, error))
 }
 
-fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
     let mut lexer = Lexer::new(bytes);
     let mut skeleton = hierarchy::read(&mut lexer)?;
     let mut warnings = Vec::new();

@@ -12,6 +12,9 @@ mod motion;
 mod tests;
 
 use super::kind::{Description, Holds};
+use crate::error::FbxError;
+
+type Result<T> = std::result::Result<T, FbxError>;
 
 pub(super) const FBX: Description = Description {
     ending: "fbx",

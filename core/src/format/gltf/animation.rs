@@ -7,7 +7,8 @@ use gltf_json::{Accessor, Animation, Index, Value};
 
 use glam::DQuat;
 
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 use crate::format::gltf::document::Document;
 use crate::format::motion::{Found, raw::snapped_rate};
 
@@ -41,17 +42,18 @@ impl Keys {
         document: &Document,
         animation: &Animation,
         sampler: Index<Sampler>,
-    ) -> Outcome<(Self, Index<Accessor>)> {
+    ) -> Result<(Self, Index<Accessor>)> {
         let of_sampler = animation.samplers.get(sampler.value());
         let sampler = of_sampler
-            .ok_or_else(|| format!("sampler {} of {}", sampler.value(), animation.samplers.len()))?;
+            .ok_or_else(|| Fault::dangling("sampler", sampler.value(), animation.samplers.len()))?;
         let Checked::Valid(interpolation) = sampler.interpolation else {
-            return Err("interpolation: expected LINEAR, STEP or CUBICSPLINE".to_owned());
+            return Err(Fault::unexpected("LINEAR, STEP or CUBICSPLINE", "another").into())
+                .within("interpolation");
         };
-        let times = document.numbers::<1>(sampler.input).map_err(|e| format!("input: {e}"))?;
+        let times = document.numbers::<1>(sampler.input).within("input")?;
         let times: Vec<f64> = times.iter().map(|[time]| f64::from(*time)).collect();
         if times.is_empty() || !times.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err("input: expected times of keys that rise".to_owned());
+            return Err(Fault::unexpected("times of keys that rise", "others").into()).within("input");
         }
         Ok((Self { times, interpolation }, sampler.output))
     }
@@ -99,39 +101,41 @@ pub(super) struct Track {
 
 /// The tracks of an animation that move nodes; weights of blend shapes are passed over. `left` is how many numbers the
 /// document may still have.
-pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Outcome<Vec<Track>> {
+pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<Track>> {
     let mut tracks = Vec::<Track>::new();
     for (i, channel) in animation.channels.iter().enumerate() {
         let Checked::Valid(property) = channel.target.path else { continue };
         if property == Property::MorphTargetWeights {
             continue;
         }
-        let track =
-            read_channel(document, animation, i, property).map_err(|e| format!("channels[{i}]: {e}"))?;
-        *left = left
-            .checked_sub(4 * track.values.len())
-            .ok_or_else(|| format!("more than {MAX_NUMBERS} numbers of keys"))?;
+        let track = read_channel(document, animation, i, property).within(format_args!("channels[{i}]"))?;
+        *left = left.checked_sub(4 * track.values.len()).ok_or_else(too_many_numbers)?;
         tracks.push(track);
     }
     Ok(tracks)
 }
 
-fn read_channel(document: &Document, animation: &Animation, i: usize, property: Property) -> Outcome<Track> {
+/// The fault of a document that has more numbers of keys than [`MAX_NUMBERS`].
+pub(super) fn too_many_numbers() -> Fault {
+    Fault::too_many(format_args!("{MAX_NUMBERS} numbers of keys"), "more")
+}
+
+fn read_channel(document: &Document, animation: &Animation, i: usize, property: Property) -> Result<Track> {
     let channel = &animation.channels[i];
     let (node, nodes) = (channel.target.node.value(), document.root.nodes.len());
     if node >= nodes {
-        return Err(format!("target.node: {node} of {nodes}"));
+        return Err(Fault::dangling("node", node, nodes).into()).within("target");
     }
     let (keys, output) = Keys::read(document, animation, channel.sampler)?;
-    let values: Outcome<Vec<[f32; 4]>> = match property {
+    let values: Result<Vec<[f32; 4]>> = match property {
         Property::Rotation => document.numbers::<4>(output),
         _ => document.numbers::<3>(output).map(|v| v.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()),
     };
-    let values = values.map_err(|e| format!("output: {e}"))?;
+    let values = values.within("output")?;
     let (count, expected) = (keys.times.len(), keys.each() * keys.times.len());
     if values.len() != expected {
-        let got = values.len();
-        return Err(format!("output: expected {expected} values for {count} keys, got {got}"));
+        let expected = format!("{expected} values for {count} keys");
+        return Err(Fault::unexpected(expected, values.len()).into()).within("output");
     }
     Ok(Track { node, property, keys, values })
 }

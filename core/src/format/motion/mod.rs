@@ -10,7 +10,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::clip::Clip;
-use crate::error::Outcome;
+use crate::error::Fault;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
@@ -122,10 +122,10 @@ pub(crate) fn clip_name(path: &Path) -> String {
 }
 
 /// Refuses bytes that do not start as those of a format do.
-pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> Outcome<()> {
+pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> std::result::Result<(), Fault> {
     if magics.iter().any(|magic| bytes.starts_with(magic)) {
         return Ok(());
     }
     let came = bytes[..bytes.len().min(8)].escape_ascii();
-    Err(format!("expected {expected}, which this is not: it starts with `{came}`"))
+    Err(Fault::unexpected(expected, format_args!("one that starts with `{came}`")))
 }

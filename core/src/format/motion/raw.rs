@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::Found;
-use crate::clip::TranslationTrack;
-use crate::error::Outcome;
+use crate::clip::{MAX_FRAMES, TranslationTrack};
+use crate::error::Fault;
 use crate::math::RigidTransform;
 use crate::space::{Axis, Unit};
 
@@ -163,14 +163,17 @@ impl Recorder {
 }
 
 /// How many frames a motion of so many seconds has, if a clip of so many joints may have them.
-pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Outcome<usize> {
+pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Result<usize, Fault> {
     // Each frame of each joint is evaluated from curves: what a few bytes of a file may ask for has to end.
-    const MOST: f64 = (1u32 << 24) as f64;
+    const MOST: u32 = 1 << 24;
     let frames = (seconds * rate).round() + 1.0;
-    if (0.0..=crate::clip::MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= MOST {
+    if (0.0..=MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= f64::from(MOST) {
         return Ok(frames as usize);
     }
-    Err(format!("{seconds} s at {rate} frames a second of {joints} joints are too many frames"))
+    Err(Fault::too_many(
+        format_args!("{MAX_FRAMES} frames and {MOST} rotations"),
+        format_args!("{seconds} s at {rate} frames a second of {joints} joints"),
+    ))
 }
 
 #[cfg(test)]
@@ -207,7 +210,7 @@ mod tests {
     fn a_long_motion_is_refused() {
         assert_eq!(frame_count(2.0, 30.0, 50), Ok(61));
         for seconds in [1e9, f64::NAN, f64::INFINITY, -1.0] {
-            assert!(frame_count(seconds, 30.0, 50).unwrap_err().contains("too many"));
+            assert!(matches!(frame_count(seconds, 30.0, 50), Err(Fault::TooMany { .. })));
         }
         assert!(frame_count(10_000.0, 30.0, 4000).is_err());
     }

@@ -18,6 +18,9 @@ mod smpl;
 mod tests;
 
 use super::kind::{Description, Holds};
+use crate::error::NpzError;
+
+type Result<T> = std::result::Result<T, NpzError>;
 
 pub(super) const NPZ: Description = Description {
     ending: "npz",

@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use super::Slot;
+use crate::error::FormatError;
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
@@ -14,9 +15,7 @@ pub type Overrides = BTreeMap<String, Option<String>>;
 /// # Errors
 /// [`Error::File`] when it is no JSON object of names and nulls, with line and column.
 pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
-    serde_json::from_str(json).map_err(|e| {
-        Error::file(path, format!(r#"expected {{"source joint": "joint of ours" or null}}: {e}"#))
-    })
+    serde_json::from_str(json).map_err(|error| Error::file(path, FormatError::Mapping(error)))
 }
 
 /// Checks both sides: our joint to source joint, and source joints that shall drive nothing.

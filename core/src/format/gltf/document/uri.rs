@@ -1,26 +1,35 @@
 //! Content of a buffer's URI (glTF 2.0, section 3.6.1.2).
 
-use std::path::{Component as PathComponent, Path};
+use std::path::{Component as PathComponent, Path, PathBuf};
 
-use crate::Error;
+use crate::error::Fault;
+use crate::format::gltf::Result;
 
-/// Base64 data, or a file beside or below the document.
-pub(crate) fn load(
-    uri: &str,
-    document: &Path,
-) -> std::result::Result<Vec<u8>, std::result::Result<Error, String>> {
+/// Where the bytes of a buffer are.
+pub(crate) enum Source {
+    /// In the URI itself.
+    Data(Vec<u8>),
+    /// In a file beside or below the document.
+    File(PathBuf),
+}
+
+/// What a URI in a document refers to.
+pub(crate) fn source(uri: &str, document: &Path) -> Result<Source> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (_, base64) = data.split_once(";base64,").ok_or(Err("expected base64 data".to_owned()))?;
-        return base64_decoded(base64).ok_or(Err("expected base64 data, got other characters".into()));
+        let base64 = data.split_once(";base64,").and_then(|(_, base64)| base64_decoded(base64));
+        let fault = || Fault::unexpected("base64 data", "other characters");
+        return Ok(Source::Data(base64.ok_or_else(fault)?));
     }
-    let relative = percent_decoded(uri).ok_or_else(|| Err(format!("`{uri}` is not valid Unicode")))?;
+    let relative = percent_decoded(uri)
+        .ok_or_else(|| Fault::unexpected("a name in Unicode", format_args!("`{uri}`")))?;
     let relative = Path::new(&relative);
     if uri.contains(':')
         || !relative.components().all(|c| matches!(c, PathComponent::Normal(_) | PathComponent::CurDir))
     {
-        return Err(Err(format!("expected a file beside or below the document, got `{uri}`")));
+        let expected = "a file beside or below the document";
+        return Err(Fault::unexpected(expected, format_args!("`{uri}`")).into());
     }
-    crate::format::disk::read(&document.with_file_name("").join(relative)).map_err(Ok)
+    Ok(Source::File(document.with_file_name("").join(relative)))
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {
@@ -38,7 +47,7 @@ fn percent_decoded(uri: &str) -> Option<String> {
 }
 
 /// RFC 4648, section 4; padding is optional.
-pub(crate) fn base64_decoded(text: &str) -> Option<Vec<u8>> {
+fn base64_decoded(text: &str) -> Option<Vec<u8>> {
     let text = text.trim_end_matches('=').as_bytes();
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
     for group in text.chunks(4) {

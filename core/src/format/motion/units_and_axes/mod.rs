@@ -8,11 +8,10 @@ use std::sync::Arc;
 use super::proportions::Proportions;
 use super::raw::RawMotion;
 use super::{Found, Motion, ReadOptions, ReadReport};
+use crate::Result;
 use crate::clip::Clip;
-use crate::error::Outcome;
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
 
 /// What a body of unknown unit is taken to be tall, metres.
 const TYPICAL: f64 = 1.7;
@@ -21,15 +20,11 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.4..=3.2;
 /// Bodies for which a found unit is not doubted, metres.
 const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
 
-/// A file's motion as clips in metres, +Y up. An error says what of the joints or motions contradicts itself.
-pub(crate) fn resolve(raw: RawMotion, options: &ReadOptions) -> Outcome<Motion> {
-    convert(raw, options).map_err(|error| match error {
-        Error::Invalid { what, message } => format!("{what}: {message}"),
-        other => other.to_string(),
-    })
-}
-
-fn convert(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
+/// A file's motion as clips in metres, +Y up.
+///
+/// # Errors
+/// [`Invalid`](crate::Error::Invalid) says what of the joints or motions contradicts itself.
+pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
     let mut rest = Skeleton::new(
         std::mem::take(&mut raw.names),
         raw.parents.clone(),
