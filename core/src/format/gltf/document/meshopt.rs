@@ -12,7 +12,7 @@ pub(crate) const NAME: &str = "EXT_meshopt_compression";
 
 /// Most bytes of all views of a document together.
 const MAX_BYTES: usize = 1 << 30;
-/// A byte of the codec stands for no more than this many bytes, a header aside.
+/// A byte of the codec decodes to no more than this many bytes, a header aside.
 const MAX_RATIO: usize = 256;
 
 /// The extension of a buffer view.
@@ -94,7 +94,7 @@ fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Result<Vec<u8>
     }
 }
 
-/// Rows of `N` words, whose bytes stand in memory as in the file.
+/// Rows of `N` words, whose bytes are in memory as in the file.
 fn vertices<const N: usize>(encoded: &[u8], count: usize, filter: &str) -> meshopt::Result<Vec<u8>>
 where
     [u32; N]: Default + bytemuck::Pod,

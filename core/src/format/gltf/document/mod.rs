@@ -93,7 +93,7 @@ impl Document {
                 }
             }
         }
-        // From the roots down; what is never reached hangs in a ring.
+        // From the roots down; what is never reached is part of a cycle.
         let mut order = Vec::with_capacity(nodes.len());
         let mut open: Vec<usize> = (0..nodes.len()).rev().filter(|i| parents[*i].is_none()).collect();
         while let Some(i) = open.pop() {
@@ -140,7 +140,7 @@ impl Document {
         Ok(vectors)
     }
 
-    /// An accessor of finite rows of `N` numbers: `f32`, or integers that stand for fractions.
+    /// An accessor of finite rows of `N` numbers: `f32`, or normalised integers.
     pub(crate) fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>> {
         let (accessor, component) = self.accessor(index)?;
         let fraction = component != ComponentType::F32;
@@ -283,7 +283,7 @@ fn multiplicity(accessor: &Accessor) -> Option<usize> {
     }
 }
 
-/// The bytes of a buffer that a view speaks of.
+/// The bytes of a buffer view.
 pub(crate) fn slice(
     buffers: &[Vec<u8>],
     buffer: usize,
@@ -347,7 +347,8 @@ fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
     }
 }
 
-/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4).
+/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). Not by the crate `gltf`, which refuses chunks of
+/// unknown kinds, computes with lengths that it has not checked, and does not say where a file ends too early.
 fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     let word = |at: usize| {
         let word = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
