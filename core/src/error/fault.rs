@@ -99,11 +99,11 @@ impl Fault {
     }
 }
 
-/// What the parser of a format says of bytes that it cannot read.
+/// The error of a parser for bytes that it cannot read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParserError {
-    /// It refused them; its own words.
+    /// It refused them, with this message.
     #[error("{0}")]
     Refused(String),
     /// It panicked.

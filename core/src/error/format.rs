@@ -1,4 +1,4 @@
-//! The errors of the readers of files, one for each format: a [`Fault`], or others' words, and where in the file it is.
+//! The errors of the readers of files, one for each format: a [`Fault`] or the message of a parser, and where in the file it is.
 
 use std::fmt::Display;
 
@@ -8,7 +8,7 @@ use super::{Error, Fault, ParserError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormatError {
-    /// The path does not end in a way that tells a format for the purpose.
+    /// The ending of the path is not that of a format for the purpose.
     #[error("unknown ending, expected one of {expected}")]
     Ending {
         /// The endings that would do, with their dots.
@@ -44,7 +44,7 @@ pub enum FormatError {
 }
 
 impl FormatError {
-    /// The kind of fault, whatever the format and the place; `None` where the words are those of a parser or of another
+    /// The kind of fault, whatever the format and the place; `None` where the message is that of a parser or of another
     /// part of the library.
     pub fn fault(&self) -> Option<&Fault> {
         match self {
@@ -78,7 +78,7 @@ impl<T, E: Located> Within for Result<T, E> {
     }
 }
 
-/// Declares the error of a format whose parts are told by a path within the file.
+/// Declares the error of a format whose parts are identified by a path within the file.
 macro_rules! located_error {
     ($(#[$doc:meta])* $name:ident { $($(#[$attribute:meta])* $variant:ident($($content:tt)*),)* }) => {
         $(#[$doc])*
@@ -100,7 +100,7 @@ macro_rules! located_error {
         }
 
         impl $name {
-            /// The kind of fault, whatever its place; `None` for others' words.
+            /// The kind of fault, whatever its place; `None` for the message of a parser.
             pub fn fault(&self) -> Option<&Fault> {
                 match self {
                     Self::In { source, .. } => source.fault(),
@@ -160,7 +160,7 @@ impl ObjError {
 }
 
 located_error! {
-    /// Something is wrong in an archive of numpy arrays; parts are told by the name of the array.
+    /// Something is wrong in an archive of numpy arrays; parts are identified by the name of the array.
     NpzError {
         /// The parser of the archive or of an array cannot read it.
         #[error("{0}")]
@@ -169,7 +169,7 @@ located_error! {
 }
 
 located_error! {
-    /// Something is wrong in an FBX file; parts are told by the names of animations and nodes.
+    /// Something is wrong in an FBX file; parts are identified by the names of animations and nodes.
     FbxError {
         /// The parser cannot read it.
         #[error("is damaged or truncated: {0}")]
@@ -178,7 +178,7 @@ located_error! {
 }
 
 located_error! {
-    /// Something is wrong in a glTF or VRM file; parts are told as in `nodes[3].mesh: POSITION: accessor 7`.
+    /// Something is wrong in a glTF or VRM file; parts are identified as in `nodes[3].mesh: POSITION: accessor 7`.
     GltfError {
         /// The JSON is not that of a glTF document.
         #[error("is neither a binary glTF nor valid glTF JSON: {0}")]
@@ -193,7 +193,7 @@ located_error! {
 }
 
 located_error! {
-    /// Something is wrong in a USD file; parts are told by the path of the prim or property.
+    /// Something is wrong in a USD file; parts are identified by the path of the prim or property.
     UsdError {
         /// The parser cannot read it.
         #[error("{0}")]

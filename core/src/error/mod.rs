@@ -50,7 +50,7 @@ pub enum Error {
         path: PathBuf,
         /// What was tried: `read`, `write`, `create`.
         action: &'static str,
-        /// The system's own word.
+        /// The system's error.
         source: std::io::Error,
     },
     /// Data handed to an exporter or a constructor contradicts itself.

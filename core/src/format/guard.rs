@@ -10,7 +10,7 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic of this thread would become an error about a damaged file, of which nobody has to hear.
+/// Whether a panic of this thread would become an error about a damaged file, which needs no report.
 ///
 /// The parser of USD promises errors, but it is young, and where a damaged file makes it panic the library catches that.
 /// Rust's own panic hook still writes to standard error, which belongs to the program, and so does the choice of the hook.
@@ -28,7 +28,7 @@ pub fn panic_becomes_error() -> bool {
     GUARDED.get()
 }
 
-/// Runs what decodes bytes that nobody vouches for: its errors, with their causes, and its panics become a
+/// Runs what decodes untrusted bytes: its errors, with their causes, and its panics become a
 /// [`ParserError`].
 pub(super) fn guarded<T, E: std::error::Error>(
     decode: impl FnOnce() -> Result<T, E>,

@@ -12,7 +12,7 @@ use crate::{Error, Result};
 /// Declares [`Format`] of one line per format: the documentation, the name, and the description in its folder.
 macro_rules! formats {
     ($($(#[$doc:meta])* $format:ident = $description:path,)*) => {
-        /// A file format, told by the ending of a path. More may come.
+        /// A file format, decided by the ending of a path. More may come.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Format {
@@ -32,7 +32,7 @@ macro_rules! formats {
     };
 }
 
-// In this order the endings stand in messages.
+// Messages list the endings in this order.
 formats! {
     /// BVH, a hierarchy of joints and one motion, as text.
     Bvh = bvh::BVH,
@@ -56,12 +56,12 @@ formats! {
     Obj = obj::OBJ,
 }
 
-/// What a format has words for, whether or not it is read or written here.
+/// What a format can hold, whether or not it is read or written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Holds {
     /// Surfaces.
     pub meshes: bool,
-    /// Joints and how they hang together.
+    /// A joint tree.
     pub skeleton: bool,
     /// Motions.
     pub clips: bool,
@@ -94,7 +94,7 @@ pub(crate) enum Write {
     WithBuffer(fn(&Scene, &str, &WriteOptions) -> Result<gltf::GltfFiles>),
 }
 
-/// What a format's folder says of itself.
+/// The description of a format, from its folder.
 pub(crate) struct Description {
     /// The ending of its files, in lower case, without the dot.
     pub(crate) ending: &'static str,
@@ -118,7 +118,7 @@ impl Format {
         self.description().title
     }
 
-    /// What the format has words for.
+    /// What the format can hold.
     pub const fn holds(self) -> Holds {
         self.description().holds
     }

@@ -15,18 +15,18 @@ use crate::{Error, Result};
 /// morph targets. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model
 /// order, with texture seams merged; those of others as they are. A skeleton must have one root and no scale; nodes
 /// above and between its joints are folded into the joints. Where the rest pose is not the bind pose, the scene is in
-/// the bind pose. Meshes of a character without a skin have to hang on a joint and are bound to it.
+/// the bind pose. Meshes of a character without a skin have to be below a joint and are bound to it.
 ///
 /// # Errors
 /// [`Error::File`] says what is wrong and where: another ending, damage, several roots, scale in the skeleton, a mesh
-/// that hangs on nothing; [`Error::Io`] when reading fails.
+/// that is below no joint; [`Error::Io`] when reading fails.
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene> {
     let path = path.as_ref();
     let (_, read) = able(path, |format| format.read_scene)?;
     read(&disk::read(path)?, path)
 }
 
-/// [`read_scene`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// [`read_scene`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
 /// looked for.
 ///
 /// # Errors
@@ -41,7 +41,7 @@ pub fn read_scene_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sce
 /// as the file has them.
 ///
 /// The scene has meshes, materials and extras, but neither joints nor clips. Meshes with a skin come first, so that the
-/// body of our own files is the first mesh, and are in the bind pose; the others are where the file puts them. Files of
+/// body of our own files is the first mesh, and are in the bind pose; the others are where the file places them. Files of
 /// ours come back in model order, with texture seams merged. The scene need not [validate](Scene::validate): a mesh may
 /// be of points alone.
 ///
@@ -53,7 +53,7 @@ pub fn read_meshes(path: impl AsRef<Path>) -> Result<Scene> {
     read(&disk::read(path)?, path)
 }
 
-/// [`read_meshes`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// [`read_meshes`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
 /// looked for.
 ///
 /// # Errors
@@ -65,7 +65,7 @@ pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sc
 }
 
 /// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
-/// `.usda`, `.usdc`, `.usdz`. The ending tells the format, the first bytes confirm it.
+/// `.usda`, `.usdc`, `.usdz`. The ending decides the format, the first bytes confirm it.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails,
@@ -76,7 +76,7 @@ pub fn read_motion(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Moti
     read_motion_from_bytes(&disk::read(path)?, path, options)
 }
 
-/// [`read_motion`] of a file that is already in memory; `path` tells the format, where buffers of a `.gltf` are looked
+/// [`read_motion`] of a file that is already in memory; `path` decides the format, where buffers of a `.gltf` are looked
 /// for, and the name of a clip that has none.
 ///
 /// # Errors

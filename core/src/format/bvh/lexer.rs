@@ -1,4 +1,4 @@
-//! Lines and words of a BVH file, with the line they stand in.
+//! Lines and words of a BVH file, with their line numbers.
 
 use std::fmt::Display;
 
@@ -57,7 +57,7 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Takes a word that has to come, in any case of letters.
+    /// Consumes a word that has to be next, in upper or lower case.
     pub(super) fn expect(&mut self, expected: &str) -> Result<()> {
         match self.next() {
             Some(word) if word.eq_ignore_ascii_case(expected.as_bytes()) => Ok(()),
@@ -91,7 +91,7 @@ impl<'a> Lexer<'a> {
         number.map_or_else(|| self.unexpected(what, shown(word)), Ok)
     }
 
-    /// Makes sure that nothing else stands in this line.
+    /// Checks that nothing else is in this line.
     pub(super) fn end_of_line(&mut self, after: &str) -> Result<()> {
         match self.next_in_line() {
             None => Ok(()),
@@ -99,7 +99,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The words of this line up to its end, or up to an opening brace, which is not taken, joined by single blanks.
+    /// The words of this line up to its end, or up to an opening brace, which is not consumed, joined by single blanks.
     pub(super) fn name(&mut self) -> Result<String> {
         let mut name = String::new();
         loop {

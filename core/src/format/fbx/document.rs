@@ -114,7 +114,7 @@ impl Nodes {
         std::iter::successors(self.parents[node], |&above| self.parents[above])
     }
 
-    /// World transforms of all nodes, by the way that each takes on its parent's scale.
+    /// World transforms of all nodes, each with its own mode of inheriting scale.
     pub(super) fn world(&self, scene: &Scene, locals: &[ufbx::Transform]) -> Vec<DAffine3> {
         let mut world = vec![DAffine3::IDENTITY; locals.len()];
         // Rotations alone, for nodes that do without their parent's scale.
@@ -141,8 +141,8 @@ impl Nodes {
         world
     }
 
-    /// World transforms of joints in the bind pose: of a skin, else of a pose, else as the nodes stand without
-    /// motion. Joints that the bind pose does not know follow their parents.
+    /// World transforms of joints in the bind pose: of a skin, else of a pose, else of the nodes without
+    /// motion. Joints that the bind pose does not hold follow their parents.
     pub(super) fn bind_pose(
         &self,
         scene: &Scene,

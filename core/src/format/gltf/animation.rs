@@ -28,11 +28,11 @@ pub(super) struct Keys {
     pub(super) interpolation: Interpolation,
 }
 
-/// Where a time lies among keys.
+/// The position of a time among keys.
 pub(super) enum Place {
     /// On this key, before the first or after the last.
     At(usize),
-    /// A share of the way from this key to the next, which is so many seconds long.
+    /// A share of the span from this key to the next, and the span in seconds.
     After(usize, f64, f64),
 }
 
@@ -68,7 +68,7 @@ impl Keys {
         if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key }
     }
 
-    /// Where a time lies. A key that is up to `near` seconds away counts as reached.
+    /// The position of a time. A key that is up to `near` seconds away counts as reached.
     pub(super) fn place(&self, time: f64, near: f64) -> Place {
         let times = &self.times;
         let next = times.partition_point(|t| *t <= time + near);
@@ -99,7 +99,7 @@ pub(super) struct Track {
     values: Vec<[f32; 4]>,
 }
 
-/// The tracks of an animation that move nodes; weights of blend shapes are passed over. `left` is how many numbers the
+/// The tracks of an animation that move nodes; weights of morph targets are left out. `left` is how many numbers the
 /// document may still have.
 pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<Track>> {
     let mut tracks = Vec::<Track>::new();
@@ -196,14 +196,14 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// From the first key to the last, or as long as our own files say; at the rate that is asked for, else that our own
+    /// From the first key to the last, or as long as our own files say; at the requested rate, else that our own
     /// files say, else that on whose frames all keys lie, else [`FALLBACK_RATE`].
     pub(super) fn of(animation: &Animation, keys: &[&Keys], asked: Option<f64>) -> Self {
-        let told = told(animation);
-        let (start, end) = told.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
+        let stated = stated(animation);
+        let (start, end) = stated.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
         let timing =
             |rate: f64, found| Self { start, end, rate, found, frames: 1.0 + ((end - start) * rate).round() };
-        match (asked, told) {
+        match (asked, stated) {
             (Some(rate), _) => timing(rate, Found::Asked),
             (None, Some((rate, frames))) => Self { frames, ..timing(rate, Found::File) },
             (None, None) => match rate(keys) {
@@ -215,7 +215,7 @@ impl Timing {
 }
 
 /// Rate and number of frames, which our own files say: keys that change nothing are left out of them.
-fn told(animation: &Animation) -> Option<(f64, f64)> {
+fn stated(animation: &Animation) -> Option<(f64, f64)> {
     let extras: Value = gltf_json::deserialize::from_str(animation.extras.as_ref()?.get()).ok()?;
     let number = |key: &str| extras.get("anthronet")?.get(key)?.as_f64();
     let (rate, frames) = (number("frames_per_second")?, number("frames")?);

@@ -31,7 +31,7 @@ pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize)
         let primitive = of_mesh.and_then(|mesh| mesh.primitives.first());
         let targets = primitive.and_then(|primitive| primitive.targets.as_ref()).map_or(0, Vec::len);
         if targets == 0 {
-            // Weights of nothing are nobody's.
+            // Weights without targets have no effect.
             continue;
         }
         let track = read_channel(document, animation, channel.sampler, targets);

@@ -1,4 +1,4 @@
-//! What the readers of motion share: what they are asked, what they hand on ([`raw`]), and how units and axes are found
+//! What the readers of motion share: their options, their result ([`raw`]), and how units and axes are found
 //! for all of them ([`units_and_axes`], by the body's [`proportions`]).
 
 mod proportions;
@@ -14,7 +14,7 @@ use crate::error::Fault;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
-/// What is said of a file beforehand; it wins over what the file says.
+/// What the caller knows of a file; it overrides what the file states.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReadOptions {
     /// The unit of lengths.
@@ -62,7 +62,7 @@ pub enum Found {
     Detected,
     /// From [`ReadOptions`].
     Asked,
-    /// Nothing tells: the format's habit.
+    /// Nothing states it: what is usual for the format.
     Assumed,
 }
 
@@ -83,9 +83,9 @@ pub struct ReadReport {
     pub frames_per_second: f64,
     /// How the rate was found.
     pub rate_found: Found,
-    /// About how tall the body is, metres, from the lengths of its bones; 0 where they tell nothing.
+    /// About how tall the body is, metres, from the lengths of its bones; 0 where there are no bones.
     pub stature: f64,
-    /// What was mended, assumed or looks wrong.
+    /// What was corrected or assumed, or looks wrong.
     pub warnings: Vec<String>,
 }
 

@@ -10,7 +10,7 @@ use crate::space::Axis;
 /// How many times a person is as long from fingertip to toe, along the bones, as tall. Of skeletons that end at wrists
 /// and ankles 1.25, of those with fingers and toes 1.5.
 const SPAN_PER_STATURE: f64 = 1.4;
-/// How much longer one extent has to be than another to tell how a body stands.
+/// How much longer one extent has to be than another to decide which way is up.
 const CLEAR: f32 = 1.5;
 /// The fewest joints of a person.
 const FIGURE: usize = 10;
@@ -25,7 +25,7 @@ struct Stance {
 }
 
 impl Stance {
-    /// The axis along which the body clearly stands.
+    /// The axis along which the body is clearly upright.
     fn upright(self) -> Option<Axis> {
         let [_, y, z] = self.extents.to_array();
         if y > CLEAR * z { Some(Axis::Y) } else { (z > CLEAR * y).then_some(Axis::Z) }
@@ -37,8 +37,8 @@ impl Stance {
     }
 }
 
-/// The body within a file's joints: those that hang together by bones of fixed length. A root on the floor that the
-/// hips fly away from is none of it.
+/// The body within a file's joints: those that bones of fixed length connect. A root on the floor that the
+/// hips move away from is not part of it.
 pub(super) struct Proportions {
     lengths: Vec<f32>,
     member: Vec<bool>,
@@ -77,11 +77,11 @@ impl Proportions {
         self.member.iter().filter(|m| **m).count() >= FIGURE
     }
 
-    /// How tall the body is in the file's unit, from the longest way along its bones, which no pose changes; 0 where
+    /// How tall the body is in the file's unit, from the longest path along its bones, which no pose changes; 0 where
     /// there are no bones.
     pub(super) fn stature(&self, raw: &RawMotion) -> f64 {
         let count = self.lengths.len();
-        // The longest way down from each joint; children stand after their parents.
+        // The longest path down from each joint; children come after their parents.
         let (mut down, mut span) = (vec![0.0f64; count], 0.0f64);
         for joint in (0..count).rev().filter(|&j| self.member[j]) {
             let end = raw.ends[joint].map_or(0.0, |end| f64::from(end.length()));
@@ -96,8 +96,8 @@ impl Proportions {
         span / SPAN_PER_STATURE
     }
 
-    /// The axis that the body clearly stands along: from its rest pose and its motion, which may contradict each
-    /// other, as when somebody lies, or a root turns the file's axes. Against the file's own word it takes both, or
+    /// The axis along which the body is clearly upright: from its rest pose and its motion, which may contradict each
+    /// other, as when a person lies down, or a root turns the file's axes. To overrule the file takes both, or
     /// feet on a floor.
     pub(super) fn upright(&self, raw: &RawMotion) -> Option<Axis> {
         let rest = (!raw.rest_is_upright).then(|| self.stance(raw, std::iter::once(raw.rest.clone())));

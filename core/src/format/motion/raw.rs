@@ -1,4 +1,4 @@
-//! What the readers of the formats hand on: a motion in the units and axes of its file.
+//! What the readers of the formats return: a motion in the units and axes of its file.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 
@@ -117,7 +117,7 @@ impl Rigid {
         DAffine3::from_rotation_translation(self.rotation, self.position)
     }
 
-    /// Each joint's transform to its parent, for joints that stand after their parents.
+    /// Each joint's transform to its parent, for joints that come after their parents.
     pub(crate) fn locals(world: &[Self], parents: &[Option<u32>]) -> Vec<RigidTransform> {
         let local = |(joint, parent): (&Self, &Option<u32>)| {
             let (rotation, translation) = match parent.and_then(|p| world.get(p as usize)) {

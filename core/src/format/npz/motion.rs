@@ -1,4 +1,4 @@
-//! The arrays of an archive as a motion of the skeleton that their number of joints tells.
+//! The arrays of an archive as a motion of the skeleton that has their number of joints.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -110,7 +110,7 @@ struct Poses {
     values: Vec<f64>,
 }
 
-/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body may lack.
+/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body are optional.
 fn read_poses(archive: &mut Archive) -> Result<Poses> {
     if let Some((key, poses)) = archive.first(&["poses", "smpl_poses", "fullpose"])? {
         let (frames, width) = (poses.rows(), poses.width());

@@ -1,8 +1,8 @@
 //! Skeletons of the SMPL family: public names and hierarchy of joints, places of our own.
 //!
 //! The body models' own joint places are under licences that forbid their use in products, and differ from body to
-//! body anyway. These are round numbers for somebody 1.70 m tall in a T-pose, from everyday proportions: legs about
-//! half of the height, arms' span about the height. Retargeting scales by legs, so that only ratios matter.
+//! body anyway. These are round numbers for a person 1.70 m tall in a T-pose, from everyday proportions: legs about
+//! half of the height, arm span about the height. Retargeting scales by legs, so that only ratios matter.
 
 use glam::{Quat, Vec3};
 

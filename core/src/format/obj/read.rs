@@ -1,7 +1,7 @@
 //! Wavefront OBJ: polygons, one mesh per `o` or `g` section that has faces.
 //!
 //! A mesh has the vertices that its section declares and those that its faces use, in the file's order, so that a file
-//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are passed over.
+//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are ignored.
 
 use std::{collections::BTreeMap, path::Path};
 

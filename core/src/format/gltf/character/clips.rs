@@ -107,7 +107,7 @@ impl Motion {
         let mut tracks = animation::read(document, animation, left)?;
         tracks.retain(|track| nodes.contains_key(&track.node));
         let weights = weights::read(document, animation, left)?;
-        // Joints tell the frames where there are any.
+        // The times of joints decide where any moves; else those of weights.
         let keys: Vec<&Keys> = match tracks.is_empty() {
             true => weights.iter().map(|weights| &weights.keys).collect(),
             false => tracks.iter().map(|track| &track.keys).collect(),

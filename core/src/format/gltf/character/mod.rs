@@ -9,9 +9,9 @@ use gltf_json::{
 };
 
 use self::clips::NodeWeights;
-use self::skeleton::{Skeleton, hung_on};
+use self::skeleton::{Skeleton, joint_above};
 use super::document::{Document, Tree};
-use super::meshes::{Part, attribute, bring_normals_to_length, merge_copies, parts, place, with_materials};
+use super::meshes::{Part, attribute, merge_copies, normalize_normals, parts, place, with_materials};
 use crate::error::{Fault, Within};
 use crate::format::gltf::Result;
 use crate::scene::{MorphTrack, Scene, SceneMesh};
@@ -65,19 +65,19 @@ fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<NodeWeights>, nod
 fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Result<SceneMesh> {
     let Part { mut mesh, vertices, .. } = part;
     place(&mut mesh, world_from_node)?;
-    bring_normals_to_length(&mut mesh);
+    normalize_normals(&mut mesh);
     merge_copies(&mut mesh, vertices)?;
     Ok(mesh)
 }
 
-/// A mesh with its own weights, or one without that hangs on a joint.
+/// A mesh with its own weights, or one without that is below a joint.
 fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>) -> Result<SceneMesh> {
     let Part { node, primitive, mut mesh, vertices } = part;
     let written = mesh.positions.len();
     match document.root.nodes[node].skin {
         Some(skin) => weights(document, skeleton, skin.value(), &sets(primitive), &mut mesh)?,
         None => {
-            let (joint, model_from_node) = hung_on(document, tree, skeleton, node)?;
+            let (joint, model_from_node) = joint_above(document, tree, skeleton, node)?;
             place(&mut mesh, &model_from_node)?;
             mesh.influences_per_vertex = 4;
             mesh.joint_indices = [joint, 0, 0, 0].repeat(written);
@@ -89,7 +89,7 @@ fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>
         let found = mesh.joint_indices.len();
         return Err(Fault::unexpected(format_args!("{slots} slots"), found).into()).within("JOINTS");
     }
-    bring_normals_to_length(&mut mesh);
+    normalize_normals(&mut mesh);
     merge_copies(&mut mesh, vertices)?;
     Ok(mesh)
 }

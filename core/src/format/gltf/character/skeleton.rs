@@ -278,8 +278,8 @@ pub(super) fn named(document: &Document, node: usize) -> String {
     }
 }
 
-/// From a node below the skeleton to model space in the bind pose, and the joint that it hangs on.
-pub(super) fn hung_on(
+/// From a node below the skeleton to model space in the bind pose, and the joint that it is below.
+pub(super) fn joint_above(
     document: &Document,
     tree: &Tree,
     skeleton: &Skeleton,
@@ -295,6 +295,6 @@ pub(super) fn hung_on(
         joint_from_node = transform_f64(&document.root.nodes[n]) * joint_from_node;
         at = tree.parents[n];
     }
-    Err(Fault::inconsistent("its mesh has no skin and hangs on no joint").into())
+    Err(Fault::inconsistent("its mesh has no skin and is below no joint").into())
         .within(named(document, node))
 }

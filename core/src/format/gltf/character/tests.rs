@@ -302,7 +302,7 @@ fn says_what_is_wrong_and_where() {
         ("nodes[1] `lower`: expected a rotation and a translation, got scale (0.01)", |j| {
             j["nodes"][1]["scale"] = json!([0.01, 0.01, 0.01]);
         }),
-        ("nodes[4] `Nail`: its mesh has no skin and hangs on no joint", |j| {
+        ("nodes[4] `Nail`: its mesh has no skin and is below no joint", |j| {
             j["nodes"][4].as_object_mut().unwrap().remove("skin");
         }),
         ("animations[0]: a second track of nodes[0] `upper`", |j| {

@@ -24,7 +24,7 @@ use crate::scene::{Corners, Scene, SceneMesh};
 /// How far a normal's length may be from 1 to be taken as it is.
 const LENGTH_TOLERANCE: f32 = 1e-3;
 
-/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes put them.
+/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes place them.
 pub(super) fn scene(document: &Document) -> Result<Scene> {
     let world = document.world_from_nodes(&document.tree()?);
     let mut meshes = Vec::new();
@@ -34,7 +34,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
         if !skinned {
             place(&mut mesh, &world[node]).within(format_args!("nodes[{node}]"))?;
         }
-        bring_normals_to_length(&mut mesh);
+        normalize_normals(&mut mesh);
         // Where a tool has moved a copy away from what it was one of, the vertices stay as they are.
         let bits = |v: usize| mesh.positions[v].map(f32::to_bits);
         if let Ok(originals) = originals(&mesh, vertices, |a, b| bits(a) == bits(b)) {
@@ -65,7 +65,7 @@ pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Res
 
 /// A primitive as a mesh of its own.
 pub(super) struct Part<'a> {
-    /// The node that it hangs on.
+    /// Its node.
     pub(super) node: usize,
     pub(super) primitive: &'a Primitive,
     /// In the space of the mesh, with the file's vertices; its name is unique.
@@ -186,7 +186,7 @@ fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
     })
 }
 
-/// Moves a mesh without a skin to where its node puts it.
+/// Moves a mesh without a skin to where its node places it.
 pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Result<()> {
     if *world == Affine3A::IDENTITY {
         return Ok(());
@@ -215,7 +215,7 @@ pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Result<()> {
 }
 
 /// Normals that are clearly longer or shorter than 1 are made to be.
-pub(super) fn bring_normals_to_length(mesh: &mut SceneMesh) {
+pub(super) fn normalize_normals(mesh: &mut SceneMesh) {
     for normal in &mut mesh.normals {
         let vector = Vec3::from_array(*normal);
         if (vector.length() - 1.0).abs() > LENGTH_TOLERANCE {

@@ -1,4 +1,4 @@
-//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are passed over, and so are default weights: a scene
+//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are ignored, and so are default weights: a scene
 //! rests without its targets.
 
 use glam::{Mat3A, Vec3};
@@ -63,7 +63,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// What the mesh calls its targets: no part of the standard, but what everybody writes.
+/// What the mesh calls its targets: not part of the standard, but a common convention.
 fn names(mesh: &Mesh) -> Vec<String> {
     let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let names = extras.as_ref().and_then(|e| e.get("targetNames")).and_then(Value::as_array);

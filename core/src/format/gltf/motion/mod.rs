@@ -1,7 +1,7 @@
 //! Animations of glTF 2.0 files, binary or JSON (section 3.11 of the specification).
 //!
-//! Joints are the nodes that skins name, or, where there is no skin, those that are animated and all below them; what
-//! stands between and above them is folded in. They rest in the pose of the nodes, which is the one that the format
+//! Joints are the nodes that skins name, or, where there is no skin, those that are animated and all below them; nodes
+//! between and above them are folded in. They rest in the pose of the nodes, which is the one that the format
 //! calls initial. Every animation is sampled at the rate of its keys.
 
 use std::collections::BTreeSet;

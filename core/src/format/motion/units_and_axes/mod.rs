@@ -1,7 +1,8 @@
-//! From a file's unit and axes to ours: what was asked for, what the file says, or what its body tells.
+//! From a file's unit and axes to ours: what was requested, what the file states, or what its body suggests.
 //!
-//! Files lie about both: programs export centimetres as metres, or stand bodies up along another axis than they say.
-//! People are 1.3 to 2.3 m tall and stand upright most of the time, which tells most such mistakes.
+//! Files are often wrong about both: programs export centimetres as metres, or bodies upright along another axis than
+//! they state.
+//! People are 1.3 to 2.3 m tall and are upright most of the time, which reveals most such mistakes.
 
 use std::sync::Arc;
 
@@ -43,7 +44,7 @@ pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motio
         warnings.push(format!("with lengths in {unit} the body is about {stature:.2} m tall"));
     }
 
-    bring_into_ours(&mut raw, unit, up);
+    convert_to_ours(&mut raw, unit, up);
     rest = Skeleton::new(raw.names, raw.parents, raw.rest, raw.ends)?;
     let rest = Arc::new(rest);
     let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
@@ -115,8 +116,8 @@ fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, 
     }
 }
 
-/// Scales all lengths, and turns what stands at the roots.
-fn bring_into_ours(raw: &mut RawMotion, unit: Unit, up: Axis) {
+/// Scales all lengths, and turns the roots.
+fn convert_to_ours(raw: &mut RawMotion, unit: Unit, up: Axis) {
     let metres = unit.metres() as f32;
     let turn = up.ours_from_file();
     for (local, parent) in raw.rest.iter_mut().zip(&raw.parents) {

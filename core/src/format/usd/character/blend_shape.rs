@@ -1,4 +1,4 @@
-//! BlendShapes as morph targets. Shapes in between are passed over.
+//! BlendShapes as morph targets. In-between shapes are ignored.
 
 use glam::{DAffine3, DMat3, DVec3};
 use openusd::sdf::{Path, Value};

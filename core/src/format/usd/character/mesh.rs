@@ -230,7 +230,7 @@ fn influences(
     };
     let joint = |(slot, weight): (&i32, &f64)| {
         let joint = usize::try_from(*slot).ok().and_then(|slot| listed.get(slot).copied().flatten());
-        // What stands in an unused slot does not matter.
+        // The index of an unused slot does not matter.
         joint.or((*weight == 0.0).then_some(0))
     };
     let joints: Option<Vec<usize>> = slots.iter().zip(&weights).map(joint).collect();

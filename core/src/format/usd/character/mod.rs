@@ -1,6 +1,6 @@
 //! Characters from USD: the first skeleton that is animated, or the first at all, with its meshes, materials and clips.
 //!
-//! One layer is read; what it refers to in other files is not. What the writer keeps beside USD's own words comes
+//! One layer is read; what it refers to in other files is not. What the writer keeps beside USD's own attributes comes
 //! back: display names, joint names, extras. Characters of other programs come in the bind pose, without scale; faces
 //! of more than four corners as fans of triangles, materials that are no UsdPreviewSurface in grey.
 
@@ -34,7 +34,7 @@ use crate::space::{Axis, Unit};
 /// Where a rest pose leaves the bind pose by so many metres, a clip says where its joints are.
 const REST_TOLERANCE: f32 = 1e-6;
 
-/// The meshes alone: those with a skin in the bind pose, the others where the file puts them.
+/// The meshes alone: those with a skin in the bind pose, the others where the file places them.
 pub(super) fn meshes(document: &Document) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;

@@ -15,11 +15,11 @@ const MAX_PRIMS: usize = 1 << 20;
 /// Deepest nesting of brackets in text: the parser calls itself for each.
 const MAX_NESTING: usize = 256;
 
-/// A layer whose values are decoded when they are asked for.
+/// A layer whose values are decoded on demand.
 pub(crate) struct Layer(Box<dyn AbstractData>);
 
 impl Layer {
-    /// Opens the bytes of a `.usda`, `.usdc` or `.usdz`, told apart by how they start.
+    /// Opens the bytes of a `.usda`, `.usdc` or `.usdz`, recognised by their first bytes.
     pub(crate) fn open(bytes: &[u8]) -> Result<Self> {
         let data: Box<dyn AbstractData> = if bytes.starts_with(usdc::MAGIC) {
             Box::new(guarded(|| usdc::CrateData::open(bytes.to_vec(), true))?)
@@ -155,7 +155,7 @@ impl Layer {
         })
     }
 
-    /// What an attribute's values stand for: `vertex`, `faceVarying`, `constant`.
+    /// What an attribute has a value for: `vertex`, `faceVarying`, `constant`.
     pub(crate) fn interpolation(&self, prim: &Path, attribute: &str) -> Result<Option<String>> {
         let path = property_path(prim, attribute)?;
         self.text(&path, "interpolation")

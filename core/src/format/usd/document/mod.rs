@@ -13,7 +13,7 @@ use crate::format::usd::Result;
 
 /// One layer; what it refers to in other files is not read.
 pub(super) struct Document {
-    /// Values are decoded when they are asked for.
+    /// Its values are decoded on demand.
     pub(super) layer: Layer,
     /// All active, defined prims, parents first, in the file's order.
     pub(super) prims: Vec<Path>,
@@ -24,7 +24,7 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, told apart by how they start.
+    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, recognised by their first bytes.
     pub(super) fn open(bytes: &[u8]) -> Result<Self> {
         let layer = Layer::open(bytes)?;
         let prims = layer.prims()?;

@@ -20,7 +20,7 @@ pub(crate) struct Skeleton {
     /// The animation that is bound to it.
     pub(crate) animation: Option<Path>,
     pub(crate) joints: Joints,
-    /// What stands above it.
+    /// The transforms of the prims above it.
     pub(crate) above: Xforms,
 }
 
@@ -76,7 +76,7 @@ pub(crate) struct Joints {
     pub(crate) parents: Vec<Option<u32>>,
     /// Rest pose.
     pub(crate) rest: Vec<Transform>,
-    /// Where each joint stands in the file's own list.
+    /// The index of each joint in the file's own list.
     pub(crate) places: Vec<usize>,
 }
 
@@ -88,7 +88,7 @@ impl Joints {
             return Err(Fault::unexpected(expected, listed.len()).into())
                 .within(format_args!("{prim}.joints"));
         }
-        // A parent's path is shorter than its joint's; where it stands first already nothing is moved.
+        // A parent's path is shorter than its joint's; where parents are first already the order is kept.
         let place_of: BTreeMap<&str, usize> =
             listed.iter().enumerate().map(|(i, path)| (path.as_str(), i)).collect();
         if place_of.len() != listed.len() {
@@ -124,7 +124,7 @@ impl Joints {
         Ok(Self { paths, names, parents, rest, places })
     }
 
-    /// The bind pose, `model_from_joint` without scale, below what stands above the skeleton; the file's own numbers where
+    /// The bind pose, `model_from_joint` without scale, below the prims above the skeleton; the file's own numbers where
     /// it has none. The rest pose where the file has no other.
     pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Result<Vec<DAffine3>> {
         let world: Vec<DAffine3> = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
@@ -188,7 +188,7 @@ impl Joints {
         }
     }
 
-    /// The rest pose without scale, which goes into the translations, below what stands above the skeleton.
+    /// The rest pose without scale, which goes into the translations, below the prims above the skeleton.
     pub(crate) fn locals(&self, above: &DAffine3) -> Vec<RigidTransform> {
         let rigid: Vec<Rigid> = self.world(above).iter().map(Rigid::of).collect();
         Rigid::locals(&rigid, &self.parents)

@@ -1,4 +1,4 @@
-//! What stands above a prim: the xformOps of it and of its ancestors (openusd.org, UsdGeomXformable).
+//! The transform of a prim: the xformOps of it and of its ancestors (openusd.org, UsdGeomXformable).
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use openusd::sdf::{Path, Value};
@@ -10,7 +10,7 @@ use crate::format::usd::Result;
 
 /// One operation; its numbers over time codes, at least one sample.
 struct Op {
-    /// Where it stands, for messages.
+    /// Its path, for messages.
     path: String,
     kind: String,
     inverted: bool,
@@ -126,7 +126,7 @@ impl Op {
             }
             "transform" => DAffine3::from_mat4(DMat4::from_cols_array(numbers.first_chunk::<16>()?)),
             kind => {
-                // The axes in the order in which they turn a point: the last stands leftmost.
+                // The axes in the order in which they turn a point: the last is leftmost.
                 let axes = kind.strip_prefix("rotate")?.chars();
                 let mut rotation = DQuat::IDENTITY;
                 for axis in axes.clone() {

@@ -21,9 +21,9 @@ use crate::format::motion::raw::{
 use crate::format::motion::{Found, ReadOptions};
 use crate::space::{Axis, Unit};
 
-/// Most joints of an animation; those beyond the skeleton's are for nobody.
+/// Most joints of an animation; those that the skeleton does not have are ignored.
 const MAX_JOINTS: usize = crate::skeleton::MAX_JOINTS;
-/// Below this, keys stand for poses to blend between, not for frames.
+/// Below this, keys are poses to interpolate, not frames.
 const LEAST_FRAME_RATE: f64 = 10.0;
 
 /// Every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
@@ -96,17 +96,17 @@ struct TimeCodes {
 
 impl TimeCodes {
     fn read(layer: &Layer) -> Result<Self> {
-        let told = match layer.number("timeCodesPerSecond")? {
+        let stated = match layer.number("timeCodesPerSecond")? {
             Some(rate) => Some(rate),
             None => layer.number("framesPerSecond")?,
         };
         // USD's own default.
-        let per_second = told.unwrap_or(24.0);
+        let per_second = stated.unwrap_or(24.0);
         if !(1e-3..=1e6).contains(&per_second) {
             return Err(Fault::unexpected("a positive number", per_second).into())
                 .within("timeCodesPerSecond");
         }
-        Ok(Self { per_second, found: if told.is_some() { Found::File } else { Found::Assumed } })
+        Ok(Self { per_second, found: if stated.is_some() { Found::File } else { Found::Assumed } })
     }
 }
 
@@ -158,7 +158,7 @@ impl Animation {
                 .into_iter()
                 .chain(above.times()),
         );
-        // Joints tell the frames where any moves.
+        // The times of joints decide where any moves; else those of weights.
         let times = if times.is_empty() { self.weights.times() } else { times };
         let (start, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
         let seconds = (end - start) / rate.per_second;

@@ -13,7 +13,7 @@ type Rows<const N: usize> = Vec<[f64; N]>;
 
 /// Samples of numbers (`N` = 1), vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint or blend shape.
 pub(super) struct Track<const N: usize> {
-    /// In order of time; one at time 0 stands for a value that does not change, none for no value.
+    /// In order of time; one at time 0 is a value that does not change; empty without a value.
     samples: Vec<(f64, Rows<N>)>,
     animated: bool,
 }
