@@ -110,3 +110,9 @@ pub enum ParserError {
     #[error("is damaged in a way that the parser does not understand")]
     Panicked,
 }
+
+impl ParserError {
+    pub(crate) fn refused(message: impl Display) -> Self {
+        Self::Refused(message.to_string())
+    }
+}

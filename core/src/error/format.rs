@@ -1,4 +1,5 @@
-//! The errors of the readers of files, one for each format: a [`Fault`] or the message of a parser, and where in the file it is.
+//! The errors of the readers of files, one for each format: a [`Fault`] or the message of a parser, and where in the file
+//! it is.
 
 use std::fmt::Display;
 
@@ -165,6 +166,9 @@ located_error! {
         /// The parser of the archive or of an array cannot read it.
         #[error("{0}")]
         Parser(#[from] ParserError),
+        /// The joints contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
     }
 }
 
@@ -174,6 +178,9 @@ located_error! {
         /// The parser cannot read it.
         #[error("is damaged or truncated: {0}")]
         Parser(#[from] ParserError),
+        /// The joints contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
     }
 }
 

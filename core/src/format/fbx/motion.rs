@@ -13,7 +13,7 @@ use crate::format::fbx::Result;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
 use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
 use crate::math::RigidTransform;
-use crate::skeleton::MAX_JOINTS;
+use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
 /// Most animations of a file.
@@ -66,12 +66,11 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         *name = format!("joint{joint}");
     }
     raw::make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let skeleton = Skeleton::new(names, parents, rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "FBX",
-        ends: vec![None; names.len()],
-        names,
-        parents,
-        rest,
+        skeleton,
         takes,
         unit: Unit::of_metres(scene.settings.unit_meters),
         up: if options.up.is_some() { None } else { Some(up.unwrap_or(Axis::Y)) },

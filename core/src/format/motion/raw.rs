@@ -6,6 +6,7 @@ use super::Found;
 use crate::clip::{MAX_FRAMES, TranslationTrack};
 use crate::error::Fault;
 use crate::math::RigidTransform;
+use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
 /// A skeleton and its motions as a file has them.
@@ -13,11 +14,8 @@ use crate::space::{Axis, Unit};
 pub(crate) struct RawMotion {
     /// The format's name.
     pub(crate) format: &'static str,
-    /// Joints, parents first; unique names.
-    pub(crate) names: Vec<String>,
-    pub(crate) parents: Vec<Option<u32>>,
-    pub(crate) rest: Vec<RigidTransform>,
-    pub(crate) ends: Vec<Option<Vec3>>,
+    /// In the file's unit and axes.
+    pub(crate) skeleton: Skeleton,
     pub(crate) takes: Vec<Take>,
     /// What the file says of its unit; `None` where the format does not.
     pub(crate) unit: Option<Unit>,

@@ -81,7 +81,7 @@ impl<'a> Archive<'a> {
 
 /// What a crate says of bytes that it cannot read.
 fn refused(what: &str, error: impl std::fmt::Display) -> ParserError {
-    ParserError::Refused(format!("{what}: {error}"))
+    ParserError::refused(format_args!("{what}: {error}"))
 }
 
 /// An array from the bytes of its `.npy`.

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{DVec3, Quat, Vec3};
 
 use super::array::Archive;
-use super::smpl;
+use super::smpl::{self, BodyModel};
 use crate::Error;
 use crate::clip::MAX_FRAMES;
 use crate::error::{Fault, Located, NpzError};
@@ -24,7 +24,7 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
     check_start(bytes, &[b"PK\x03\x04", b"PK\x05\x06"], "a zip archive")?;
     let mut archive = Archive::open(bytes)?;
     let poses = read_poses(&mut archive)?;
-    let Some(skeleton) = smpl::skeleton(poses.width / 3) else {
+    let Some(BodyModel { name: model, skeleton }) = smpl::body_model(poses.width / 3)? else {
         let expected = "66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X)";
         return wrong("poses", expected, poses.width);
     };
@@ -56,8 +56,9 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         },
     };
 
-    let mut recorder = Recorder::new(skeleton.rest.len());
-    let mut pose = skeleton.rest.clone();
+    let mut recorder = Recorder::new(skeleton.len());
+    let rest = &skeleton.rest_pose().locals;
+    let mut pose = rest.clone();
     for (turns, at) in poses.values.chunks_exact(poses.width).zip(trans.values.chunks_exact(3)) {
         for (local, turn) in pose.iter_mut().zip(turns.chunks_exact(3)) {
             local.rotation = rotation(DVec3::from_slice(turn));
@@ -65,13 +66,10 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         pose[0].translation = DVec3::from_slice(at).as_vec3();
         recorder.push(&pose);
     }
-    let take = recorder.take(name.to_owned(), rate, &skeleton.rest);
+    let take = recorder.take(name.to_owned(), rate, rest);
     Ok(RawMotion {
-        format: skeleton.model,
-        names: skeleton.names,
-        parents: skeleton.parents,
-        rest: skeleton.rest,
-        ends: skeleton.ends,
+        format: model,
+        skeleton,
         takes: vec![take],
         unit: Some(Unit::Metre),
         up: Some(Axis::Z),
@@ -80,9 +78,8 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         warnings: vec![
             "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
             format!(
-                "`{key}` is taken for the place of the pelvis: the {} body model adds a constant of its own, by which the \
-                 whole clip is shifted",
-                skeleton.model
+                "`{key}` is taken for the place of the pelvis: the {model} body model adds a constant of its own, by which the \
+                 whole clip is shifted"
             ),
         ],
     })

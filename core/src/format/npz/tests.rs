@@ -79,14 +79,14 @@ fn every_model_of_the_family_stands_on_its_feet() {
 #[test]
 fn rest_poses_are_of_a_person_and_mirror_images() {
     for joints in [22, 24, 52, 55] {
-        let skeleton = super::smpl::skeleton(joints).unwrap();
-        assert_eq!(skeleton.names.len(), joints);
-        for (joint, name) in skeleton.names.iter().enumerate() {
-            assert!(joint == 0 || skeleton.parents[joint].is_some_and(|p| (p as usize) < joint), "{name}");
+        let skeleton = super::smpl::body_model(joints).unwrap().unwrap().skeleton;
+        assert!(skeleton.len() == joints && skeleton.tree().has_one_root());
+        for (joint, name) in skeleton.names().iter().enumerate() {
             let Some(right) = name.strip_prefix("left_") else { continue };
-            let right = skeleton.names.iter().position(|n| n.strip_prefix("right_") == Some(right)).unwrap();
-            let mirror = skeleton.rest[right].translation * Vec3::new(-1.0, 1.0, 1.0);
-            assert!(mirror.distance(skeleton.rest[joint].translation) < 1e-6, "{name}");
+            let right = skeleton.find(&format!("right_{right}")).unwrap();
+            let place = |joint: usize| skeleton.rest_pose().locals[joint].translation;
+            let mirror = place(right) * Vec3::new(-1.0, 1.0, 1.0);
+            assert!(mirror.distance(place(joint)) < 1e-6, "{name}");
         }
     }
     let stature = read(&archive(&standing(55))).unwrap().report.stature;

@@ -43,7 +43,7 @@ pub(crate) fn decode_views(root: &Root, buffers: &[Vec<u8>]) -> Result<Vec<Optio
     for (i, view) in root.buffer_views.iter().enumerate() {
         let extension = view.extensions.as_ref().and_then(|e| e.others.get(NAME));
         let decoded = extension.map(|json| {
-            let compressed = Compressed::deserialize(json).map_err(GltfError::from);
+            let compressed = Compressed::deserialize(json).map_err(|e| ParserError::refused(e).into());
             compressed
                 .and_then(|compressed| decode(&compressed, buffers, left))
                 .within(format_args!("bufferViews[{i}].extensions.{NAME}"))
@@ -69,7 +69,7 @@ fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Result<Vec<u8>
     }
     let bad = |error: meshopt::Error| {
         let stream = format!("the {} bytes are not a valid stream of {}", encoded.len(), view.mode);
-        GltfError::from(ParserError::Refused(format!("{stream}: {error}")))
+        GltfError::from(ParserError::refused(format_args!("{stream}: {error}")))
     };
     let filter = view.filter.as_deref().unwrap_or("NONE");
     if !matches!((filter, view.mode.as_str()), ("NONE", _) | ("EXPONENTIAL", "ATTRIBUTES")) {

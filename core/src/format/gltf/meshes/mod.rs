@@ -15,7 +15,7 @@ use gltf_json::{
 use self::copies::{merge, originals};
 use self::targets::Targets;
 use super::document::Document;
-use crate::error::{Fault, GltfError, Within};
+use crate::error::{Fault, GltfError, ParserError, Within};
 use crate::format::gltf::Result;
 use crate::format::limits::{MAX_ELEMENTS, MAX_MESHES};
 use crate::scene::titles::Titles;
@@ -57,7 +57,10 @@ pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Res
     }
     let name = root.scene.and_then(|s| root.get(s)).or(root.scenes.first()).and_then(|s| s.name.clone());
     let extras = match &root.extras {
-        Some(raw) => gltf_json::deserialize::from_str(raw.get()).map_err(GltfError::from).within("extras")?,
+        Some(raw) => {
+            let extras = gltf_json::deserialize::from_str(raw.get());
+            extras.map_err(|e| GltfError::from(ParserError::refused(e))).within("extras")?
+        }
         None => Value::Null,
     };
     Ok(Scene { name: name.unwrap_or_default(), meshes, materials, extras, ..Scene::default() })

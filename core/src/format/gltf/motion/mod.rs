@@ -17,7 +17,7 @@ use crate::format::gltf::Result;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
 use crate::format::motion::{Found, ReadOptions};
 use crate::math::RigidTransform;
-use crate::skeleton::MAX_JOINTS;
+use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
 /// Most nodes of a document.
@@ -70,12 +70,11 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
 
     let mut names: Vec<String> = rig.joints.iter().map(|&node| name(&nodes[node], node)).collect();
     raw::make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let skeleton = Skeleton::new(names, rig.parents, rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "glTF",
-        ends: vec![None; names.len()],
-        names,
-        parents: rig.parents,
-        rest,
+        skeleton,
         takes,
         unit: Some(Unit::Metre),
         up: Some(Axis::Y),

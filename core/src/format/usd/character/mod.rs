@@ -126,7 +126,7 @@ fn still(
         if let Some(Value::Dictionary(data)) = layer.field(&root, FieldKey::CustomData.as_str())?
             && let Some(Value::String(text)) = data.get(EXTRAS)
         {
-            let refused = |e: serde_json::Error| UsdError::from(ParserError::Refused(e.to_string()));
+            let refused = |e: serde_json::Error| UsdError::from(ParserError::refused(e));
             scene.extras =
                 serde_json::from_str(text).map_err(refused).within(format_args!("{root}: {EXTRAS}"))?;
         }

@@ -196,7 +196,7 @@ fn property_path(prim: &Path, property: &str) -> Result<Path> {
 
 /// What the parser says of a name.
 fn refused(place: impl Display, error: impl Display) -> ParserError {
-    ParserError::Refused(format!("{place}: {error}"))
+    ParserError::refused(format_args!("{place}: {error}"))
 }
 
 /// Refuses text whose brackets nest deeper than any layer's: the parser's stack is finite.

@@ -69,12 +69,12 @@ pub(super) fn of_skeleton(
     }
     let mut names = joints.names.clone();
     make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let rest_skeleton =
+        crate::skeleton::Skeleton::new(names, joints.parents.clone(), rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "USD",
-        parents: joints.parents.clone(),
-        ends: vec![None; names.len()],
-        names,
-        rest,
+        skeleton: rest_skeleton,
         takes,
         unit: layer.number("metersPerUnit")?.and_then(Unit::of_metres),
         up: match layer.text(&Path::abs_root(), "upAxis")?.as_deref() {

@@ -57,16 +57,16 @@ fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<RawMotion> {
 #[test]
 fn files_of_others_are_read() {
     let raw = read(OTHERS).unwrap();
-    assert_eq!(raw.names, ["hips", "the leg", "arm"]);
-    assert_eq!(raw.parents, [None, Some(0), Some(0)]);
+    assert_eq!(raw.skeleton.names(), ["hips", "the leg", "arm"]);
+    assert_eq!(raw.skeleton.parents(), [None, Some(0), Some(0)]);
     assert_eq!((raw.unit, raw.up), (Some(Unit::Centimetre), Some(Axis::Z)));
     // The ops above turn +Y into +Z, double every length, lift by 100.
     let upright = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
-    assert!(raw.rest[0].translation.distance(Vec3::new(0.0, 0.0, 200.0)) < 1e-4);
-    assert!(raw.rest[0].rotation.dot(upright).abs() > 0.999_999);
-    assert!(raw.rest[1].translation.distance(Vec3::new(0.0, -80.0, 0.0)) < 1e-4);
+    assert!(raw.skeleton.rest_pose().locals[0].translation.distance(Vec3::new(0.0, 0.0, 200.0)) < 1e-4);
+    assert!(raw.skeleton.rest_pose().locals[0].rotation.dot(upright).abs() > 0.999_999);
+    assert!(raw.skeleton.rest_pose().locals[1].translation.distance(Vec3::new(0.0, -80.0, 0.0)) < 1e-4);
     let quarter = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
-    assert!(raw.rest[2].rotation.dot(quarter).abs() > 0.999_999);
+    assert!(raw.skeleton.rest_pose().locals[2].rotation.dot(quarter).abs() > 0.999_999);
 
     let take = &raw.takes[0];
     assert_eq!((take.name.as_str(), take.frames_per_second), ("Walk", 24.0));
