@@ -3,14 +3,14 @@
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::error::Outcome;
+use crate::error::ParserError;
 
 thread_local! {
     /// Whether this thread is within [`guarded`].
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic of this thread would become an error about a damaged file, of which nobody has to hear.
+/// Whether a panic of this thread would become an error about a damaged file, which needs no report.
 ///
 /// The parser of USD promises errors, but it is young, and where a damaged file makes it panic the library catches that.
 /// Rust's own panic hook still writes to standard error, which belongs to the program, and so does the choice of the hook.
@@ -28,14 +28,17 @@ pub fn panic_becomes_error() -> bool {
     GUARDED.get()
 }
 
-/// Runs what decodes bytes that nobody vouches for: its errors, with their causes, and its panics become messages.
-pub(super) fn guarded<T, E: std::error::Error>(decode: impl FnOnce() -> Result<T, E>) -> Outcome<T> {
+/// Runs what decodes untrusted bytes: its errors, with their causes, and its panics become a
+/// [`ParserError`].
+pub(super) fn guarded<T, E: std::error::Error>(
+    decode: impl FnOnce() -> Result<T, E>,
+) -> Result<T, ParserError> {
     let outer = GUARDED.replace(true);
     let decoded = catch_unwind(AssertUnwindSafe(decode));
     GUARDED.set(outer);
     match decoded {
-        Ok(result) => result.map_err(|error| chain(&error)),
-        Err(_) => Err("is damaged in a way that the parser does not understand".into()),
+        Ok(result) => result.map_err(|error| ParserError::Refused(chain(&error))),
+        Err(_) => Err(ParserError::Panicked),
     }
 }
 
@@ -60,13 +63,13 @@ mod tests {
     #[test]
     fn a_panic_is_an_error_and_is_told_from_others() {
         assert!(!panic_becomes_error());
-        let message = guarded(|| -> std::io::Result<()> {
+        let panicked = guarded(|| -> std::io::Result<()> {
             assert!(panic_becomes_error());
             panic!("said by a test, as it should be")
         });
-        assert!(message.unwrap_err().contains("damaged"));
+        assert_eq!(panicked, Err(ParserError::Panicked));
         assert!(!panic_becomes_error());
         let fault = guarded(|| Err::<(), _>(std::io::Error::other("why"))).unwrap_err();
-        assert_eq!(fault, "why");
+        assert_eq!(fault, ParserError::Refused("why".into()));
     }
 }

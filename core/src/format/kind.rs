@@ -5,13 +5,14 @@ use std::{ffi::OsStr, path::Path};
 use super::motion::{ReadOptions, raw::RawMotion};
 use super::write::WriteOptions;
 use super::{bvh, fbx, gltf, npz, obj, usd, vrm};
+use crate::error::FormatError;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
 /// Declares [`Format`] of one line per format: the documentation, the name, and the description in its folder.
 macro_rules! formats {
     ($($(#[$doc:meta])* $format:ident = $description:path,)*) => {
-        /// A file format, told by the ending of a path. More may come.
+        /// A file format, decided by the ending of a path. More may come.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Format {
@@ -31,7 +32,7 @@ macro_rules! formats {
     };
 }
 
-// In this order the endings stand in messages.
+// Messages list the endings in this order.
 formats! {
     /// BVH, a hierarchy of joints and one motion, as text.
     Bvh = bvh::BVH,
@@ -55,12 +56,12 @@ formats! {
     Obj = obj::OBJ,
 }
 
-/// What a format has words for, whether or not it is read or written here.
+/// What a format can hold, whether or not it is read or written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Holds {
     /// Surfaces.
     pub meshes: bool,
-    /// Joints and how they hang together.
+    /// A joint tree.
     pub skeleton: bool,
     /// Motions.
     pub clips: bool,
@@ -93,7 +94,7 @@ pub(crate) enum Write {
     WithBuffer(fn(&Scene, &str, &WriteOptions) -> Result<gltf::GltfFiles>),
 }
 
-/// What a format's folder says of itself.
+/// The description of a format, from its folder.
 pub(crate) struct Description {
     /// The ending of its files, in lower case, without the dot.
     pub(crate) ending: &'static str,
@@ -117,7 +118,7 @@ impl Format {
         self.description().title
     }
 
-    /// What the format has words for.
+    /// What the format can hold.
     pub const fn holds(self) -> Holds {
         self.description().holds
     }
@@ -195,7 +196,7 @@ pub(super) fn able<T>(
     found.ok_or_else(|| {
         let able = Format::ALL.iter().filter(|format| ability(format.description()).is_some());
         let known: Vec<String> = able.map(|format| format!(".{}", format.ending())).collect();
-        Error::file(path, format!("unknown ending, expected one of {}", known.join(" ")))
+        Error::file(path, FormatError::Ending { expected: known.join(" ") })
     })
 }
 

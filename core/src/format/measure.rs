@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use crate::error::Fault;
 use crate::model::{MeasuredMesh, Model};
 use crate::{Error, Result};
 
@@ -16,7 +17,7 @@ use crate::{Error, Result};
 pub fn measure_file(model: &Model, path: impl AsRef<Path>) -> Result<MeasuredMesh> {
     let path = path.as_ref();
     let scene = super::read_meshes(path)?;
-    let mesh = scene.meshes.first().ok_or_else(|| Error::file(path, "has no mesh"))?;
+    let mesh = scene.meshes.first().ok_or_else(|| Error::file(path, Fault::missing("mesh")))?;
     let vertices: Vec<Vec3> = mesh.positions.iter().copied().map(Vec3::from_array).collect();
-    model.measure_mesh(&vertices).map_err(|error| Error::file(path, error.to_string()))
+    model.measure_mesh(&vertices).map_err(|error| Error::file(path, Box::new(error)))
 }

@@ -33,6 +33,9 @@ pub mod usd;
 pub mod vrm;
 mod write;
 
+pub use crate::error::{
+    BvhError, Fault, FbxError, FormatError, GltfError, NpzError, ObjError, ParserError, UsdError,
+};
 pub use disk::write_atomic;
 pub use gltf::GltfOptions;
 pub use guard::panic_becomes_error;

@@ -15,18 +15,18 @@ use crate::{Error, Result};
 /// morph targets. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model
 /// order, with texture seams merged; those of others as they are. A skeleton must have one root and no scale; nodes
 /// above and between its joints are folded into the joints. Where the rest pose is not the bind pose, the scene is in
-/// the bind pose. Meshes of a character without a skin have to hang on a joint and are bound to it.
+/// the bind pose. Meshes of a character without a skin have to be below a joint and are bound to it.
 ///
 /// # Errors
 /// [`Error::File`] says what is wrong and where: another ending, damage, several roots, scale in the skeleton, a mesh
-/// that hangs on nothing; [`Error::Io`] when reading fails.
+/// that is below no joint; [`Error::Io`] when reading fails.
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene> {
     let path = path.as_ref();
     let (_, read) = able(path, |format| format.read_scene)?;
     read(&disk::read(path)?, path)
 }
 
-/// [`read_scene`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// [`read_scene`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
 /// looked for.
 ///
 /// # Errors
@@ -41,7 +41,7 @@ pub fn read_scene_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sce
 /// as the file has them.
 ///
 /// The scene has meshes, materials and extras, but neither joints nor clips. Meshes with a skin come first, so that the
-/// body of our own files is the first mesh, and are in the bind pose; the others are where the file puts them. Files of
+/// body of our own files is the first mesh, and are in the bind pose; the others are where the file places them. Files of
 /// ours come back in model order, with texture seams merged. The scene need not [validate](Scene::validate): a mesh may
 /// be of points alone.
 ///
@@ -53,7 +53,7 @@ pub fn read_meshes(path: impl AsRef<Path>) -> Result<Scene> {
     read(&disk::read(path)?, path)
 }
 
-/// [`read_meshes`] of a file that is already in memory; `path` tells the format, and where buffers of a `.gltf` are
+/// [`read_meshes`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
 /// looked for.
 ///
 /// # Errors
@@ -65,7 +65,7 @@ pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sc
 }
 
 /// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
-/// `.usda`, `.usdc`, `.usdz`. The ending tells the format, the first bytes confirm it.
+/// `.usda`, `.usdc`, `.usdz`. The ending decides the format, the first bytes confirm it.
 ///
 /// # Errors
 /// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails,
@@ -76,7 +76,7 @@ pub fn read_motion(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Moti
     read_motion_from_bytes(&disk::read(path)?, path, options)
 }
 
-/// [`read_motion`] of a file that is already in memory; `path` tells the format, where buffers of a `.gltf` are looked
+/// [`read_motion`] of a file that is already in memory; `path` decides the format, where buffers of a `.gltf` are looked
 /// for, and the name of a clip that has none.
 ///
 /// # Errors
@@ -86,12 +86,13 @@ pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &Re
     options.check()?;
     let (_, read) = able(path, |format| format.read_motion)?;
     let raw = read(bytes, path, options)?;
-    units_and_axes::resolve(raw, options).map_err(|message| Error::file(path, message))
+    units_and_axes::resolve(raw, options).map_err(|error| Error::file(path, Box::new(error)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Fault;
 
     #[test]
     fn the_ending_tells_the_format_and_the_first_bytes_confirm_it() {
@@ -104,7 +105,7 @@ mod tests {
         for (path, expected) in [
             ("a.BVH", "expected HIERARCHY"),
             ("a.npz", "expected a zip archive"),
-            ("a.fbx", "an FBX file, which this is not: it starts with `\\x7fELF`"),
+            ("a.fbx", "expected an FBX file, got one that starts with `\\x7fELF`"),
             ("a.glb", "glTF"),
         ] {
             let error = error(path, b"\x7fELF");
@@ -113,6 +114,21 @@ mod tests {
         assert!(matches!(read_motion("missing.bvh", &ReadOptions::default()), Err(Error::Io { .. })));
         let rate = ReadOptions { frames_per_second: Some(f64::NAN), ..Default::default() };
         assert!(matches!(read_motion_from_bytes(b"", "a.bvh", &rate), Err(Error::Request { .. })));
+    }
+
+    #[test]
+    fn the_kind_of_a_fault_is_known_whatever_the_format_and_the_place() {
+        let fault = |path: &str, text: &str| match read_meshes_from_bytes(text.as_bytes(), path) {
+            Err(Error::File { source, .. }) => source.fault().cloned(),
+            _ => None,
+        };
+        let dangling = |what: &str| Fault::Dangling { what: what.into(), index: 5, count: 1 };
+        assert_eq!(fault("a.obj", "v 1 2 3\nf 1 1 5"), Some(dangling("vertex")));
+        let nodes = r#"{"asset": {"version": "2.0"}, "nodes": [{"children": [5]}]}"#;
+        assert_eq!(fault("a.gltf", nodes), Some(dangling("node")));
+        let units = "#usda 1.0\n(\n    metersPerUnit = 0\n)\n";
+        assert_eq!(fault("a.usda", units), Some(Fault::unexpected("a positive number", 0)));
+        assert_eq!(fault("a.glb", "{"), None, "the words of the parser of JSON");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::disk::{write_atomic, write_pair};
 use super::gltf::GltfOptions;
 use super::kind::{Format, Write, able};
 use super::vrm::VrmMeta;
+use crate::error::Fault;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
@@ -31,7 +32,7 @@ pub fn write_scene(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions
         Write::WithBuffer(write) => {
             let bin_path = path.with_extension("bin");
             let Some(bin_name) = bin_path.file_name().and_then(OsStr::to_str) else {
-                return Err(Error::file(path, "the name of a .gltf must be valid Unicode"));
+                return Err(Error::file(path, Fault::unexpected("a name in Unicode", "one that is not")));
             };
             let files = write(scene, bin_name, options)?;
             write_pair((path, &files.json), (&bin_path, &files.bin))

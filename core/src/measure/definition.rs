@@ -45,6 +45,9 @@ pub struct Definition {
     pub edges: Vec<[u32; 2]>,
 }
 
+/// What errors are about.
+const WHAT: &str = "measure definitions";
+
 impl Definition {
     /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
     pub fn standard(&self) -> Option<&'static str> {
@@ -58,8 +61,7 @@ impl Definition {
     }
 
     fn validate(&self, vertex_count: usize) -> Result<()> {
-        let fail =
-            |message: String| Error::invalid("measure definitions", format!("{}: {message}", self.name));
+        let fail = |message: String| Error::invalid(WHAT, format!("{}: {message}", self.name));
         let least = match self.kind {
             Kind::Tape => 3,
             Kind::Slice => 1,
@@ -142,7 +144,7 @@ pub(super) fn read_list<'a>(
     names: impl ExactSizeIterator<Item = &'a str>,
     vertex_count: usize,
 ) -> Result<Vec<Definition>> {
-    let fail = |message: String| Error::invalid("measure definitions", message);
+    let fail = |message: String| Error::invalid(WHAT, message);
     let list: Vec<Definition> = serde_json::from_str(json).map_err(|e| fail(e.to_string()))?;
     if list.len() != names.len() {
         return Err(fail(format!("expected {} measures, got {}", names.len(), list.len())));

@@ -1,6 +1,6 @@
 //! Morph targets: displacements of a surface to other shapes, and their weights over the clips.
 
-use super::scene::{Scene, SceneMesh};
+use super::scene::{Scene, SceneMesh, fault};
 use crate::{Error, Result};
 
 /// Displacements of a surface to another shape, also called shape key or blend shape, in model space. Multiplied by the
@@ -70,10 +70,10 @@ impl Scene {
 }
 
 /// Checks the targets of a mesh: names, numbers of rows, finite offsets.
-pub(super) fn validate_targets(mesh: &SceneMesh) -> std::result::Result<(), String> {
+pub(super) fn validate_targets(mesh: &SceneMesh) -> Result<()> {
     let mut names = std::collections::BTreeSet::new();
     for MorphTarget { name, positions, normals } in &mesh.morph_targets {
-        let fault = |message: String| Err(format!("morph target {name:?}: {message}"));
+        let fault = |message: String| Err(fault(mesh, format_args!("morph target {name:?}: {message}")));
         if name.is_empty() || name.chars().any(char::is_control) {
             return fault("its name is empty or holds control characters".into());
         }

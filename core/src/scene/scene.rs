@@ -205,10 +205,7 @@ impl Scene {
         unique("mesh", self.meshes.iter().map(|m| m.name.as_str()))?;
         self.validate_clips()?;
         self.validate_morph_tracks()?;
-        self.meshes.iter().try_for_each(|mesh| {
-            self.validate_mesh(mesh)
-                .map_err(|message| Error::invalid("mesh", format!("`{}`: {message}", mesh.name)))
-        })
+        self.meshes.iter().try_for_each(|mesh| self.validate_mesh(mesh))
     }
 
     fn validate_joints(&self) -> Result<()> {
@@ -322,30 +319,33 @@ impl Scene {
         unique("material", self.materials.iter().map(|m| m.name.as_str()))
     }
 
-    fn validate_mesh(&self, mesh: &SceneMesh) -> std::result::Result<(), String> {
+    fn validate_mesh(&self, mesh: &SceneMesh) -> Result<()> {
         let vertices = mesh.positions.len();
         if vertices == 0 || (mesh.quads.positions.is_empty() && mesh.triangles.positions.is_empty()) {
-            return Err("has no vertices or no faces".into());
+            return Err(fault(mesh, "has no vertices or no faces"));
         }
         if vertices > i32::MAX as usize || mesh.uvs.len() > i32::MAX as usize {
-            return Err(format!("expected at most {} vertices, got {vertices}", i32::MAX));
+            return Err(fault(mesh, format_args!("expected at most {} vertices, got {vertices}", i32::MAX)));
         }
         if mesh.material as usize >= self.materials.len() {
-            return Err(format!("material {} of {}", mesh.material, self.materials.len()));
+            return Err(fault(mesh, format_args!("material {} of {}", mesh.material, self.materials.len())));
         }
         if let Some(i) = mesh.positions.iter().position(|p| !p.iter().all(|v| v.is_finite())) {
-            return Err(format!("position {i} is not finite: {:?}", mesh.positions[i]));
+            return Err(fault(mesh, format_args!("position {i} is not finite: {:?}", mesh.positions[i])));
         }
         if let Some(i) = mesh.uvs.iter().position(|p| !p.iter().all(|v| v.is_finite())) {
-            return Err(format!("texture coordinate {i} is not finite: {:?}", mesh.uvs[i]));
+            return Err(fault(mesh, format_args!("texture coordinate {i} is not finite: {:?}", mesh.uvs[i])));
         }
         if !mesh.normals.is_empty() && mesh.normals.len() != vertices {
-            return Err(format!("expected {vertices} normals or none, got {}", mesh.normals.len()));
+            return Err(fault(
+                mesh,
+                format_args!("expected {vertices} normals or none, got {}", mesh.normals.len()),
+            ));
         }
         for (i, normal) in mesh.normals.iter().enumerate() {
             let length = Vec3::from(*normal).length();
             if length.is_nan() || (length - 1.0).abs() > NORMAL_LENGTH_TOLERANCE {
-                return Err(format!("normal {i} has length {length}, expected 1"));
+                return Err(fault(mesh, format_args!("normal {i} has length {length}, expected 1")));
             }
         }
         validate_corners(&mesh.quads, mesh)?;
@@ -354,25 +354,29 @@ impl Scene {
         self.validate_influences(mesh)
     }
 
-    fn validate_influences(&self, mesh: &SceneMesh) -> std::result::Result<(), String> {
+    fn validate_influences(&self, mesh: &SceneMesh) -> Result<()> {
         let per_vertex = mesh.influences_per_vertex;
         if !matches!(per_vertex, 0 | 4 | 8) {
-            return Err(format!(
-                "influences per vertex must be 4 or 8, or 0 without a skin, got {per_vertex}"
+            return Err(fault(
+                mesh,
+                format_args!("influences per vertex must be 4 or 8, or 0 without a skin, got {per_vertex}"),
             ));
         }
         if (per_vertex == 0) != self.joints.is_empty() {
-            return Err(format!(
-                "{per_vertex} influences per vertex in a scene of {} joints",
-                self.joints.len()
+            return Err(fault(
+                mesh,
+                format_args!("{per_vertex} influences per vertex in a scene of {} joints", self.joints.len()),
             ));
         }
         let expected = mesh.positions.len() * per_vertex;
         if mesh.joint_indices.len() != expected || mesh.joint_weights.len() != expected {
-            return Err(format!(
-                "expected {expected} joint indices and weights, got {} and {}",
-                mesh.joint_indices.len(),
-                mesh.joint_weights.len()
+            return Err(fault(
+                mesh,
+                format_args!(
+                    "expected {expected} joint indices and weights, got {} and {}",
+                    mesh.joint_indices.len(),
+                    mesh.joint_weights.len()
+                ),
             ));
         }
         for vertex in 0..if per_vertex == 0 { 0 } else { mesh.positions.len() } {
@@ -380,20 +384,26 @@ impl Scene {
             let (joints, weights) = (&mesh.joint_indices[slots.clone()], &mesh.joint_weights[slots]);
             let sum: f32 = weights.iter().sum();
             if sum.is_nan() || (sum - 1.0).abs() > WEIGHT_SUM_TOLERANCE {
-                return Err(format!("weights of vertex {vertex} sum to {sum}, expected 1"));
+                return Err(fault(mesh, format_args!("weights of vertex {vertex} sum to {sum}, expected 1")));
             }
             if weights.iter().any(|w| *w < 0.0) || weights.windows(2).any(|w| w[0] < w[1]) {
-                return Err(format!(
-                    "weights of vertex {vertex} are not descending and non-negative: {weights:?}"
+                return Err(fault(
+                    mesh,
+                    format_args!(
+                        "weights of vertex {vertex} are not descending and non-negative: {weights:?}"
+                    ),
                 ));
             }
             let used = &joints[..weights.iter().take_while(|w| **w > 0.0).count()];
             for (slot, joint) in used.iter().enumerate() {
                 if usize::from(*joint) >= self.joints.len() {
-                    return Err(format!("vertex {vertex} uses joint {joint} of {}", self.joints.len()));
+                    return Err(fault(
+                        mesh,
+                        format_args!("vertex {vertex} uses joint {joint} of {}", self.joints.len()),
+                    ));
                 }
                 if used[..slot].contains(joint) {
-                    return Err(format!("vertex {vertex} uses joint {joint} twice"));
+                    return Err(fault(mesh, format_args!("vertex {vertex} uses joint {joint} twice")));
                 }
             }
         }
@@ -401,29 +411,36 @@ impl Scene {
     }
 }
 
-fn validate_corners<const N: usize>(
-    corners: &Corners<N>,
-    mesh: &SceneMesh,
-) -> std::result::Result<(), String> {
+/// What is wrong with a mesh.
+pub(super) fn fault(mesh: &SceneMesh, message: impl std::fmt::Display) -> Error {
+    Error::invalid("mesh", format!("`{}`: {message}", mesh.name))
+}
+
+fn validate_corners<const N: usize>(corners: &Corners<N>, mesh: &SceneMesh) -> Result<()> {
     let expected_uvs = if mesh.uvs.is_empty() { 0 } else { corners.positions.len() };
     if corners.uvs.len() != expected_uvs {
-        return Err(format!(
-            "{} faces of {N} corners need {expected_uvs} rows of texture coordinate indices, got {}",
-            corners.positions.len(),
-            corners.uvs.len()
+        return Err(fault(
+            mesh,
+            format_args!(
+                "{} faces of {N} corners need {expected_uvs} rows of texture coordinate indices, got {}",
+                corners.positions.len(),
+                corners.uvs.len()
+            ),
         ));
     }
     let outside =
         |rows: &[[u32; N]], len: usize| rows.iter().position(|r| r.iter().any(|i| *i as usize >= len));
     if let Some(face) = outside(&corners.positions, mesh.positions.len()) {
-        return Err(format!(
-            "face {face} {:?} of {} vertices",
-            corners.positions[face],
-            mesh.positions.len()
+        return Err(fault(
+            mesh,
+            format_args!("face {face} {:?} of {} vertices", corners.positions[face], mesh.positions.len()),
         ));
     }
     if let Some(face) = outside(&corners.uvs, mesh.uvs.len()) {
-        return Err(format!("face {face} {:?} of {} texture coordinates", corners.uvs[face], mesh.uvs.len()));
+        return Err(fault(
+            mesh,
+            format_args!("face {face} {:?} of {} texture coordinates", corners.uvs[face], mesh.uvs.len()),
+        ));
     }
     Ok(())
 }

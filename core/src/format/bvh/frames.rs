@@ -5,7 +5,8 @@ use glam::Vec3;
 use super::hierarchy::{Channel, Hierarchy};
 use super::lexer::{Lexer, shown};
 use crate::clip::MAX_FRAMES;
-use crate::error::Outcome;
+use crate::error::Fault;
+use crate::format::bvh::Result;
 use crate::format::motion::raw::{Recorder, Take, snapped_rate};
 use crate::math::{RigidTransform, Rotation};
 
@@ -15,11 +16,11 @@ pub(super) fn read(
     skeleton: &Hierarchy,
     rest: &[RigidTransform],
     name: &str,
-) -> Outcome<Take> {
+) -> Result<Take> {
     lexer.expect("Frames:")?;
     let frames = lexer.count("a number of frames")?;
     if frames == 0 || frames > MAX_FRAMES {
-        return lexer.fail(format_args!("expected 1 to {MAX_FRAMES} frames, got {frames}"));
+        return lexer.unexpected(format_args!("1 to {MAX_FRAMES} frames"), frames);
     }
     lexer.end_of_line("Frames")?;
     lexer.expect("Frame")?;
@@ -27,20 +28,19 @@ pub(super) fn read(
     let seconds = lexer.number("seconds a frame")?;
     let rate = snapped_rate(1.0 / seconds);
     if !(0.1..=1000.0).contains(&rate) {
-        return lexer.fail(format_args!("Frame Time: expected 0.001 to 10 seconds, got {seconds}"));
+        return lexer.unexpected("a Frame Time of 0.001 to 10 seconds", seconds);
     }
     lexer.end_of_line("Frame Time")?;
 
     let width: usize = skeleton.channels.iter().map(Vec::len).sum();
     if width == 0 {
-        return lexer.fail("no joint has a channel");
+        return lexer.unexpected("a joint with channels", "none");
     }
     // Each number takes a digit and a blank.
     if frames.saturating_mul(width) > lexer.remaining().div_ceil(2) {
         let bytes = lexer.remaining();
-        return lexer.fail(format_args!(
-            "truncated: {frames} frames of {width} channels cannot stand in {bytes} bytes"
-        ));
+        let expected = format!("{frames} frames of {width} channels");
+        return lexer.fail(Fault::truncated(expected, format_args!("{bytes} bytes")));
     }
     let mut recorder = Recorder::new(rest.len());
     let (mut numbers, mut pose) = (vec![0.0; width], rest.to_vec());
@@ -53,21 +53,21 @@ pub(super) fn read(
         recorder.push(&pose);
     }
     if let Some(word) = lexer.next() {
-        return lexer
-            .fail(format_args!("expected the end of the file after {frames} frames, got `{}`", shown(word)));
+        let expected = format!("the end of the file after {frames} frames");
+        return lexer.unexpected(expected, shown(word));
     }
     Ok(recorder.take(name.to_owned(), rate, rest))
 }
 
 /// Reads the numbers of a line.
-fn read_frame(lexer: &mut Lexer, numbers: &mut [f64], frame: usize, frames: usize) -> Outcome<()> {
+fn read_frame(lexer: &mut Lexer, numbers: &mut [f64], frame: usize, frames: usize) -> Result<()> {
     let width = numbers.len();
     for (i, number) in numbers.iter_mut().enumerate() {
         let word = if i == 0 { lexer.next() } else { lexer.next_in_line() };
         let Some(word) = word else {
             return match i {
-                0 => lexer.fail(format_args!("truncated: expected {frames} frames, got {frame}")),
-                _ => lexer.fail(format_args!("expected {width} channels, got {i}")),
+                0 => lexer.fail(Fault::truncated(format_args!("{frames} frames"), frame)),
+                _ => lexer.unexpected(format_args!("{width} channels"), i),
             };
         };
         *number = lexer.parse(word, "a number")?;

@@ -4,7 +4,8 @@
 use glam::Vec3;
 
 use super::lexer::{Lexer, shown};
-use crate::error::Outcome;
+use crate::error::Fault;
+use crate::format::bvh::Result;
 use crate::skeleton::MAX_JOINTS;
 
 /// One number of a frame.
@@ -36,13 +37,13 @@ struct Open {
 }
 
 /// Reads up to and with the word MOTION.
-pub(super) fn read(lexer: &mut Lexer) -> Outcome<Hierarchy> {
+pub(super) fn read(lexer: &mut Lexer) -> Result<Hierarchy> {
     lexer.expect("HIERARCHY")?;
     let mut found = Hierarchy::default();
     let mut open: Vec<Open> = Vec::new();
     loop {
         let Some(word) = lexer.next() else {
-            return lexer.fail("truncated: the file ends before MOTION");
+            return lexer.fail(Fault::truncated("MOTION", "the end of the file"));
         };
         let keyword = word.to_ascii_uppercase();
         match (keyword.as_slice(), open.last_mut()) {
@@ -75,8 +76,8 @@ pub(super) fn read(lexer: &mut Lexer) -> Outcome<Hierarchy> {
             (b"}", Some(Open { joint, offset, channels })) => {
                 let missing = [(*offset, "OFFSET"), (*channels || joint.is_none(), "CHANNELS")];
                 if let Some((_, what)) = missing.iter().find(|(there, _)| !there) {
-                    let name = joint.map_or("end site", |j| found.names[j].as_str());
-                    return lexer.fail(format_args!("`{name}` has no {what}"));
+                    let name = joint.map_or("the end site", |j| found.names[j].as_str());
+                    return lexer.unexpected(format_args!("{what} of `{name}`"), "none");
                 }
                 open.pop();
             }
@@ -87,17 +88,17 @@ pub(super) fn read(lexer: &mut Lexer) -> Outcome<Hierarchy> {
                     Some(Open { joint: Some(_), .. }) => "one OFFSET, one CHANNELS, JOINT, End Site or }",
                     Some(_) => "one OFFSET or }",
                 };
-                return lexer.fail(format_args!("expected {expected}, got `{}`", shown(word)));
+                return lexer.unexpected(expected, shown(word));
             }
         }
     }
 }
 
 impl Hierarchy {
-    fn add_joint(&mut self, lexer: &mut Lexer, parent: Option<usize>) -> Outcome<usize> {
+    fn add_joint(&mut self, lexer: &mut Lexer, parent: Option<usize>) -> Result<usize> {
         let joint = self.names.len();
         if joint == MAX_JOINTS {
-            return lexer.fail(format_args!("more than {MAX_JOINTS} joints"));
+            return lexer.fail(Fault::too_many(format_args!("{MAX_JOINTS} joints"), "more"));
         }
         self.names.push(lexer.name()?);
         self.parents.push(parent.map(|p| p as u32));
@@ -108,7 +109,7 @@ impl Hierarchy {
     }
 }
 
-fn vector(lexer: &mut Lexer) -> Outcome<Vec3> {
+fn vector(lexer: &mut Lexer) -> Result<Vec3> {
     let mut vector = [0.0; 3];
     for number in &mut vector {
         *number = lexer.number("three numbers after OFFSET")? as f32;
@@ -117,15 +118,15 @@ fn vector(lexer: &mut Lexer) -> Outcome<Vec3> {
     Ok(vector.into())
 }
 
-fn read_channels(lexer: &mut Lexer) -> Outcome<Vec<Channel>> {
+fn read_channels(lexer: &mut Lexer) -> Result<Vec<Channel>> {
     let count = lexer.count("a number of channels")?;
     if count > 6 {
-        return lexer.fail(format_args!("expected at most 6 channels, got {count}"));
+        return lexer.fail(Fault::too_many("6 channels", count));
     }
     let mut channels = Vec::with_capacity(count);
     for i in 0..count {
         let Some(word) = lexer.next_in_line() else {
-            return lexer.fail(format_args!("expected {count} channels, got {i}"));
+            return lexer.unexpected(format_args!("{count} channels"), i);
         };
         let channel = match word.to_ascii_lowercase().as_slice() {
             [axis @ b'x'..=b'z', b'p', b'o', b's', b'i', b't', b'i', b'o', b'n'] => {
@@ -136,11 +137,11 @@ fn read_channels(lexer: &mut Lexer) -> Outcome<Vec<Channel>> {
             }
             _ => {
                 let expected = "Xposition, Yposition, Zposition, Xrotation, Yrotation or Zrotation";
-                return lexer.fail(format_args!("expected {expected}, got `{}`", shown(word)));
+                return lexer.unexpected(expected, shown(word));
             }
         };
         if channels.contains(&channel) {
-            return lexer.fail(format_args!("channel `{}` twice", shown(word)));
+            return lexer.fail(Fault::inconsistent(format_args!("channel {} twice", shown(word))));
         }
         channels.push(channel);
     }

@@ -1,6 +1,9 @@
-//! Lines and words of a BVH file, with the line they stand in.
+//! Lines and words of a BVH file, with their line numbers.
 
-use crate::error::Outcome;
+use std::fmt::Display;
+
+use crate::error::{BvhError, Fault};
+use crate::format::bvh::Result;
 
 /// Goes through the words of a text.
 pub(super) struct Lexer<'a> {
@@ -14,8 +17,13 @@ impl<'a> Lexer<'a> {
     }
 
     /// An error at the present line.
-    pub(super) fn fail<T>(&self, message: impl std::fmt::Display) -> Outcome<T> {
-        Err(format!("line {}: {message}", self.line))
+    pub(super) fn fail<T>(&self, fault: Fault) -> Result<T> {
+        Err(BvhError { line: self.line, fault })
+    }
+
+    /// An error at the present line: something else was expected.
+    pub(super) fn unexpected<T>(&self, expected: impl Display, found: impl Display) -> Result<T> {
+        self.fail(Fault::unexpected(expected, found))
     }
 
     /// The bytes that are left.
@@ -49,52 +57,50 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Takes a word that has to come, in any case of letters.
-    pub(super) fn expect(&mut self, expected: &str) -> Outcome<()> {
+    /// Consumes a word that has to be next, in upper or lower case.
+    pub(super) fn expect(&mut self, expected: &str) -> Result<()> {
         match self.next() {
             Some(word) if word.eq_ignore_ascii_case(expected.as_bytes()) => Ok(()),
-            Some(word) => self.fail(format_args!("expected {expected}, got `{}`", shown(word))),
-            None => self.fail(format_args!("truncated: expected {expected}, got the end of the file")),
+            Some(word) => self.unexpected(expected, shown(word)),
+            None => self.fail(Fault::truncated(expected, "the end of the file")),
         }
     }
 
     /// A finite number of this line.
-    pub(super) fn number(&mut self, what: &str) -> Outcome<f64> {
+    pub(super) fn number(&mut self, what: &str) -> Result<f64> {
         let Some(word) = self.next_in_line() else {
-            return self.fail(format_args!("expected {what}, got the end of the line"));
+            return self.unexpected(what, "the end of the line");
         };
         self.parse(word, what)
     }
 
     /// A word as a finite number.
-    pub(super) fn parse(&self, word: &[u8], what: &str) -> Outcome<f64> {
+    pub(super) fn parse(&self, word: &[u8], what: &str) -> Result<f64> {
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
         match number {
             Some(number) if number.is_finite() && number.abs() < 1e30 => Ok(number),
-            Some(_) => self.fail(format_args!("expected {what}, got `{}`, which is not finite", shown(word))),
-            None => self.fail(format_args!("expected {what}, got `{}`", shown(word))),
+            Some(_) => self.fail(Fault::not_finite(what, shown(word))),
+            None => self.unexpected(what, shown(word)),
         }
     }
 
     /// A whole number of this line.
-    pub(super) fn count(&mut self, what: &str) -> Outcome<usize> {
+    pub(super) fn count(&mut self, what: &str) -> Result<usize> {
         let word = self.next_in_line().unwrap_or_default();
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        number.map_or_else(|| self.fail(format_args!("expected {what}, got `{}`", shown(word))), Ok)
+        number.map_or_else(|| self.unexpected(what, shown(word)), Ok)
     }
 
-    /// Makes sure that nothing else stands in this line.
-    pub(super) fn end_of_line(&mut self, after: &str) -> Outcome<()> {
+    /// Checks that nothing else is in this line.
+    pub(super) fn end_of_line(&mut self, after: &str) -> Result<()> {
         match self.next_in_line() {
             None => Ok(()),
-            Some(word) => {
-                self.fail(format_args!("expected the end of the line after {after}, got `{}`", shown(word)))
-            }
+            Some(word) => self.unexpected(format_args!("the end of the line after {after}"), shown(word)),
         }
     }
 
-    /// The words of this line up to its end, or up to an opening brace, which is not taken, joined by single blanks.
-    pub(super) fn name(&mut self) -> Outcome<String> {
+    /// The words of this line up to its end, or up to an opening brace, which is not consumed, joined by single blanks.
+    pub(super) fn name(&mut self) -> Result<String> {
         let mut name = String::new();
         loop {
             let before = self.rest;
@@ -102,7 +108,7 @@ impl<'a> Lexer<'a> {
                 Some(b"{") => self.rest = before,
                 Some(word) => {
                     let Ok(word) = std::str::from_utf8(word) else {
-                        return self.fail(format_args!("name `{}` is not UTF-8", shown(word)));
+                        return self.unexpected("a name in UTF-8", shown(word));
                     };
                     if !name.is_empty() {
                         name.push(' ');
@@ -112,13 +118,13 @@ impl<'a> Lexer<'a> {
                 }
                 None => {}
             }
-            return if name.is_empty() { self.fail("expected a joint's name") } else { Ok(name) };
+            return if name.is_empty() { self.unexpected("a joint's name", "none") } else { Ok(name) };
         }
     }
 }
 
-/// The start of a word, fit for a message.
+/// The start of a word in quotes, fit for a message.
 pub(super) fn shown(word: &[u8]) -> String {
     let start = word[..word.len().min(40)].escape_ascii();
-    format!("{start}{}", if word.len() > 40 { "…" } else { "" })
+    format!("`{start}{}`", if word.len() > 40 { "…" } else { "" })
 }

@@ -14,6 +14,9 @@ mod motion;
 mod tests;
 
 use super::kind::{Description, Holds};
+use crate::error::BvhError;
+
+type Result<T> = std::result::Result<T, BvhError>;
 
 pub(super) const BVH: Description = Description {
     ending: "bvh",

@@ -4,38 +4,33 @@ use std::path::Path;
 
 use super::lexer::Lexer;
 use super::{frames, hierarchy};
-use crate::error::Outcome;
+use crate::Error;
 use crate::format::motion::raw::{self, RawMotion};
 use crate::format::motion::{Found, ReadOptions, clip_name};
 use crate::math::RigidTransform;
-use crate::{Error, Result};
+use crate::skeleton::Skeleton;
 
 /// Reads the text of a file; the clip is named after it.
-pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<RawMotion> {
-    motion(bytes, &clip_name(path), options).map_err(|message| Error::file(path, message))
-}
-
-fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
     let mut lexer = Lexer::new(bytes);
-    let mut skeleton = hierarchy::read(&mut lexer)?;
+    let mut joints = hierarchy::read(&mut lexer).map_err(|error| Error::file(path, error))?;
     let mut warnings = Vec::new();
-    raw::make_unique(&mut skeleton.names, &mut warnings);
-    let rest: Vec<RigidTransform> = skeleton
+    raw::make_unique(&mut joints.names, &mut warnings);
+    let rest: Vec<RigidTransform> = joints
         .offsets
         .iter()
         .map(|&translation| RigidTransform { rotation: crate::math::Rotation::IDENTITY, translation })
         .collect();
-    let mut take = frames::read(&mut lexer, &skeleton, &rest, name)?;
+    let take = frames::read(&mut lexer, &joints, &rest, &clip_name(path));
+    let mut take = take.map_err(|error| Error::file(path, error))?;
     let mut rate_found = Found::File;
     if let Some(rate) = options.frames_per_second {
         (take.frames_per_second, rate_found) = (rate, Found::Asked);
     }
+    let skeleton = Skeleton::new(joints.names, joints.parents, rest, joints.ends);
     Ok(RawMotion {
         format: "BVH",
-        names: skeleton.names,
-        parents: skeleton.parents,
-        rest,
-        ends: skeleton.ends,
+        skeleton: skeleton.map_err(|error| Error::file(path, Box::new(error)))?,
         takes: vec![take],
         unit: None,
         up: None,

@@ -14,8 +14,8 @@ fn metres() -> ReadOptions {
     ReadOptions { unit: Some(Unit::Metre), up: Some(Axis::Y), frames_per_second: None }
 }
 
-fn read(text: &str) -> Result<Motion, String> {
-    read_motion_from_bytes(text.as_bytes(), Path::new("walk.bvh"), &metres()).map_err(|e| e.to_string())
+fn read(text: &str) -> crate::Result<Motion> {
+    read_motion_from_bytes(text.as_bytes(), Path::new("walk.bvh"), &metres())
 }
 
 #[test]
@@ -89,23 +89,20 @@ fn says_what_is_wrong_and_in_which_line() {
     let cases: [(&str, String); 21] = [
         ("line 1: truncated: expected HIERARCHY", String::new()),
         ("line 1: expected HIERARCHY, got `MOTION`", "MOTION".into()),
-        ("more than 4096 joints", many),
-        ("more than 4096 joints", deep),
+        ("expected at most 4096 joints, got more", many),
+        ("expected at most 4096 joints, got more", deep),
         ("line 2: expected a joint's name", SMALL.replace("ROOT Hips", "ROOT")),
-        (
-            "line 4: expected three numbers after OFFSET, got `nan`, which is not finite",
-            SMALL.replace("0 1 0\n", "0 nan 0\n"),
-        ),
+        ("line 4: three numbers after OFFSET: `nan` is not finite", SMALL.replace("0 1 0\n", "0 nan 0\n")),
         ("line 4: expected three numbers after OFFSET, got the end", SMALL.replace("0 1 0\n", "0 1\n")),
         ("line 5: expected 6 channels, got 5", SMALL.replace("Xrotation Yrotation", "Xrotation")),
         ("line 5: expected the end of the line after 5 channels", SMALL.replace("CHANNELS 6", "CHANNELS 5")),
         ("line 5: expected Xposition", SMALL.replace("Zposition", "Wposition")),
         ("line 5: channel `Xposition` twice", SMALL.replace("Zposition", "Xposition")),
         ("line 5: expected at most 6", SMALL.replace("CHANNELS 6", "CHANNELS 1000000000")),
-        ("`end site` has no OFFSET", SMALL.replace("OFFSET 0 -0.9 0", "")),
+        ("expected OFFSET of `the end site`, got none", SMALL.replace("OFFSET 0 -0.9 0", "")),
         ("expected 1 to 1048576 frames, got 0", SMALL.replace("Frames: 2", "Frames: 0")),
         (
-            "line 18: truncated: 900000 frames",
+            "line 18: truncated: expected 900000 frames",
             SMALL.replace("Frames: 2", "Frames: 900000").replace("Frame Time", "Frame\tTime"),
         ),
         (
@@ -113,13 +110,13 @@ fn says_what_is_wrong_and_in_which_line() {
             SMALL.replace("Frames: 2", "Frames: 3").replace("4 5 6", "4.0000 5.0000 6.0000"),
         ),
         ("expected the end of the file after 1 frames, got `4`", SMALL.replace("Frames: 2", "Frames: 1")),
-        ("line 18: Frame Time: expected 0.001 to 10 seconds, got 0", SMALL.replace("0.0333333", "0")),
+        ("line 18: expected a Frame Time of 0.001 to 10 seconds, got 0", SMALL.replace("0.0333333", "0")),
         ("line 19: expected 7 channels, got 6", SMALL.replace(" 40\n", "\n")),
-        ("line 20: expected a number, got `inf`", SMALL.replace("4 5 6", "4 inf 6")),
+        ("line 20: a number: `inf` is not finite", SMALL.replace("4 5 6", "4 inf 6")),
         ("after 2 frames, got `garbage`", format!("{SMALL}garbage")),
     ];
     for (expected, text) in cases {
-        let error = read(&text).unwrap_err();
+        let error = read(&text).unwrap_err().to_string();
         assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
     }
 }

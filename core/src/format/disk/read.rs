@@ -2,6 +2,7 @@
 
 use std::{fs, path::Path};
 
+use crate::error::Fault;
 use crate::{Error, Result};
 
 /// Largest file that is read: far above any character or motion, far below the memory of a small machine.
@@ -15,14 +16,11 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     let fault = |source| Error::Io { path: path.into(), action: "read", source };
     let metadata = fs::metadata(path).map_err(fault)?;
     if !metadata.is_file() {
-        return Err(Error::file(path, "is not a regular file"));
+        return Err(Error::file(path, Fault::unexpected("a regular file", "a folder or a device")));
     }
     if metadata.len() > MAX_FILE_BYTES {
-        let bytes = metadata.len();
-        return Err(Error::file(
-            path,
-            format!("expected a file of at most {MAX_FILE_BYTES} bytes, got {bytes}"),
-        ));
+        let fault = Fault::too_many(format_args!("{MAX_FILE_BYTES} bytes"), metadata.len());
+        return Err(Error::file(path, fault));
     }
     fs::read(path).map_err(fault)
 }

@@ -86,7 +86,7 @@ fn property(text: &str) -> Property {
     let text = text.trim();
     if let Some(text) = text.strip_prefix('"') {
         let text = text.trim_end_matches('"');
-        // The kind of an object stands behind its name in binary files.
+        // The kind of an object follows its name in binary files.
         let text = text.split_once("::").map_or(text.into(), |(kind, name)| format!("{name}\0\x01{kind}"));
         return Property::Text(text);
     }

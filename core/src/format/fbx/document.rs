@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use ufbx::{Node, Scene};
 
-use crate::error::Outcome;
+use crate::error::{Fault, FbxError, ParserError, Within};
+use crate::format::fbx::Result;
 
 /// Most bytes that `ufbx` may take for a scene and while it reads one.
 const MAX_MEMORY: usize = 1 << 31;
@@ -14,7 +15,7 @@ const MAX_NODES: usize = 1 << 16;
 /// Deepest nesting of nodes.
 const MAX_DEPTH: u32 = 1 << 12;
 /// The scene of a file's bytes, without its surfaces.
-pub(super) fn open(bytes: &[u8]) -> Outcome<ufbx::SceneRoot> {
+pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
     let memory = || ufbx::AllocatorOpts { memory_limit: MAX_MEMORY, ..Default::default() };
     let opts = ufbx::LoadOpts {
         temp_allocator: memory(),
@@ -31,25 +32,28 @@ pub(super) fn open(bytes: &[u8]) -> Outcome<ufbx::SceneRoot> {
     ufbx::load_memory(bytes, opts).map_err(|error| {
         let info = error.info();
         let more = if info.is_empty() { String::new() } else { format!(" ({info})") };
-        format!("is damaged or truncated: {}{more}", &*error.description)
+        ParserError::Refused(format!("{}{more}", &*error.description)).into()
     })
 }
 
 /// Refuses numbers that are none: places and turns would become others of them.
-pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Outcome<()> {
+pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Result<()> {
     let is = |t: &ufbx::Transform| {
         vec3(t.translation).is_finite() && quat(t.rotation).is_finite() && vec3(t.scale).is_finite()
     };
     match locals.iter().position(|local| !is(local)) {
         None => Ok(()),
         Some(node) => {
-            Err(format!("node `{}`: its transform is not finite", &*scene.nodes[node].element.name))
+            let ufbx::Transform { translation, rotation, scale } = locals[node];
+            let found = format!("{}, {}, {}", vec3(translation), quat(rotation), vec3(scale));
+            Err(FbxError::from(Fault::not_finite("its transform", found)))
+                .within(format_args!("node `{}`", &*scene.nodes[node].element.name))
         }
     }
 }
 
 /// Refuses text that ends within a node, which the parser takes for the end of it.
-fn check_braces(text: &[u8]) -> Outcome<()> {
+fn check_braces(text: &[u8]) -> Result<()> {
     let (mut open, mut quoted, mut comment, mut line) = (Vec::new(), false, false, 1);
     for byte in text {
         match byte {
@@ -64,7 +68,7 @@ fn check_braces(text: &[u8]) -> Outcome<()> {
         }
     }
     match open.last() {
-        Some(line) => Err(format!("is damaged or truncated: what line {line} opens has no end")),
+        Some(line) => Err(ParserError::Refused(format!("the brace of line {line} is not closed")).into()),
         None => Ok(()),
     }
 }
@@ -77,10 +81,10 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    pub(super) fn of(scene: &Scene) -> Outcome<Self> {
+    pub(super) fn of(scene: &Scene) -> Result<Self> {
         let count = scene.nodes.len();
         if count > MAX_NODES {
-            return Err(format!("expected at most {MAX_NODES} nodes, got {count}"));
+            return Err(Fault::too_many(format_args!("{MAX_NODES} nodes"), count).into());
         }
         let parent = |node: &Node| node.parent.as_ref().map(|p| p.element.typed_id as usize);
         let parents: Vec<Option<usize>> = scene.nodes.iter().map(|node| parent(node)).collect();
@@ -88,7 +92,10 @@ impl Nodes {
         let mut order: Vec<usize> = Vec::with_capacity(count);
         for (node, parent) in parents.iter().enumerate() {
             match parent {
-                Some(parent) => children.get_mut(*parent).ok_or("a node's parent does not exist")?.push(node),
+                Some(parent) => {
+                    let of_parent = children.get_mut(*parent);
+                    of_parent.ok_or_else(|| Fault::dangling("node", *parent, count))?.push(node);
+                }
                 None => order.push(node),
             }
         }
@@ -98,7 +105,7 @@ impl Nodes {
             next += 1;
         }
         if order.len() != count {
-            return Err("nodes are their own ancestors".to_owned());
+            return Err(Fault::inconsistent("nodes are their own ancestors").into());
         }
         Ok(Self { parents, order })
     }
@@ -107,7 +114,7 @@ impl Nodes {
         std::iter::successors(self.parents[node], |&above| self.parents[above])
     }
 
-    /// World transforms of all nodes, by the way that each takes on its parent's scale.
+    /// World transforms of all nodes, each with its own mode of inheriting scale.
     pub(super) fn world(&self, scene: &Scene, locals: &[ufbx::Transform]) -> Vec<DAffine3> {
         let mut world = vec![DAffine3::IDENTITY; locals.len()];
         // Rotations alone, for nodes that do without their parent's scale.
@@ -134,8 +141,8 @@ impl Nodes {
         world
     }
 
-    /// World transforms of joints in the bind pose: of a skin, else of a pose, else as the nodes stand without
-    /// motion. Joints that the bind pose does not know follow their parents.
+    /// World transforms of joints in the bind pose: of a skin, else of a pose, else of the nodes without
+    /// motion. Joints that the bind pose does not hold follow their parents.
     pub(super) fn bind_pose(
         &self,
         scene: &Scene,

@@ -7,23 +7,24 @@ use glam::{DAffine3, DMat3, DVec3};
 use ufbx::{CoordinateAxis, Scene};
 
 use super::document::{self, Nodes, finite, vec3};
-use crate::error::Outcome;
+use crate::Error;
+use crate::error::{Fault, FbxError, Within};
+use crate::format::fbx::Result;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
 use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
 use crate::math::RigidTransform;
-use crate::skeleton::MAX_JOINTS;
+use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
 
 /// Most animations of a file.
 const MAX_TAKES: usize = 1 << 10;
 
 /// Reads a file; a clip without a name of its own is named after it.
-pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<RawMotion> {
-    motion(bytes, &clip_name(path), options).map_err(|message| Error::file(path, message))
+pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
+    motion(bytes, &clip_name(path), options).map_err(|error| Error::file(path, error))
 }
 
-fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
     check_start(bytes, &[b"Kaydara FBX Binary", b";"], "an FBX file")?;
     let scene = document::open(bytes)?;
     let nodes = Nodes::of(&scene)?;
@@ -65,12 +66,11 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
         *name = format!("joint{joint}");
     }
     raw::make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let skeleton = Skeleton::new(names, parents, rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "FBX",
-        ends: vec![None; names.len()],
-        names,
-        parents,
-        rest,
+        skeleton,
         takes,
         unit: Unit::from_metres(scene.settings.unit_meters),
         up: if options.up.is_some() { None } else { Some(up.unwrap_or(Axis::Y)) },
@@ -94,13 +94,14 @@ struct Animated<'a> {
 
 impl Animated<'_> {
     /// Every animation, sampled at a rate; one without a name is called `name`.
-    fn read(&self, rate: f64, name: &str) -> Outcome<Vec<Take>> {
+    fn read(&self, rate: f64, name: &str) -> Result<Vec<Take>> {
         let Self { scene, nodes, joints, parents, turn, rest } = *self;
         if scene.anim_stacks.is_empty() {
-            return Err("expected an animation, got none".to_owned());
+            return Err(Fault::missing("animation").into());
         }
         if scene.anim_stacks.len() > MAX_TAKES {
-            return Err(format!("expected at most {MAX_TAKES} animations, got {}", scene.anim_stacks.len()));
+            let most = format!("{MAX_TAKES} animations");
+            return Err(Fault::too_many(most, scene.anim_stacks.len()).into());
         }
         let mut takes = Vec::new();
         let mut frames_so_far = 0;
@@ -109,7 +110,7 @@ impl Animated<'_> {
             let title = if title.is_empty() { name } else { title };
             let (begin, end) = span(stack);
             let frames = raw::frame_count(end - begin, rate, scene.nodes.len());
-            let frames = frames.map_err(|e| format!("animation `{title}`: {e}"))?;
+            let frames = frames.map_err(FbxError::from).within(format_args!("animation `{title}`"))?;
             frames_so_far += frames;
             raw::frame_count(frames_so_far as f64, 1.0, scene.nodes.len())?;
             let mut recorder = Recorder::new(joints.len());
@@ -120,7 +121,7 @@ impl Animated<'_> {
                     .iter()
                     .map(|node| ufbx::evaluate_transform(&stack.anim, node, time))
                     .collect();
-                finite(scene, &locals).map_err(|e| format!("animation `{title}`: frame {frame}: {e}"))?;
+                finite(scene, &locals).within(format_args!("animation `{title}`: frame {frame}"))?;
                 let world = nodes.world(scene, &locals);
                 let rigid: Vec<Rigid> = joints.iter().map(|&node| Rigid::of(&(turn * world[node]))).collect();
                 recorder.push(&Rigid::locals(&rigid, parents));
@@ -145,7 +146,7 @@ fn span(stack: &ufbx::AnimStack) -> (f64, f64) {
 }
 
 /// The nodes that are bones, parents first; where there are none, those that are animated.
-fn joints(scene: &Scene, nodes: &Nodes) -> Outcome<Vec<usize>> {
+fn joints(scene: &Scene, nodes: &Nodes) -> Result<Vec<usize>> {
     let mut joints: Vec<usize> =
         nodes.order.iter().copied().filter(|&node| scene.nodes[node].bone.is_some()).collect();
     if joints.is_empty() {
@@ -158,14 +159,16 @@ fn joints(scene: &Scene, nodes: &Nodes) -> Outcome<Vec<usize>> {
         joints = nodes.order.iter().copied().filter(moves).collect();
     }
     match joints.len() {
-        0 => Err("expected bones or animated nodes, got none".to_owned()),
-        count if count > MAX_JOINTS => Err(format!("expected at most {MAX_JOINTS} joints, got {count}")),
+        0 => Err(Fault::missing("bones or animated nodes").into()),
+        count if count > MAX_JOINTS => {
+            Err(Fault::too_many(format_args!("{MAX_JOINTS} joints"), count).into())
+        }
         _ => Ok(joints),
     }
 }
 
 /// The axis that the file says is up, and a turn for files of other axes, for which it is `None`.
-fn axes(scene: &Scene, options: &ReadOptions) -> Outcome<(Option<Axis>, DAffine3)> {
+fn axes(scene: &Scene, options: &ReadOptions) -> Result<(Option<Axis>, DAffine3)> {
     let axes = scene.settings.axes;
     let said = match axes.up {
         _ if options.up.is_some() => return Ok((options.up, DAffine3::IDENTITY)),
@@ -177,10 +180,11 @@ fn axes(scene: &Scene, options: &ReadOptions) -> Outcome<(Option<Axis>, DAffine3
     let [Some(right), Some(up), Some(front)] = columns else { return Ok((said, DAffine3::IDENTITY)) };
     let ours = DMat3::from_cols(right, up, front).transpose();
     match (ours.determinant(), said) {
-        (determinant, _) if determinant < 0.5 => Err(format!(
-            "axes: expected right-handed ones, got {:?}, {:?}, {:?}",
-            axes.right, axes.up, axes.front
-        )),
+        (determinant, _) if determinant < 0.5 => Err(Fault::unexpected(
+            "right-handed axes",
+            format_args!("{:?}, {:?}, {:?}", axes.right, axes.up, axes.front),
+        )
+        .into()),
         (_, Some(_)) => Ok((said, DAffine3::IDENTITY)),
         (_, None) => Ok((None, DAffine3::from_mat3(ours))),
     }

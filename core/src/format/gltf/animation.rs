@@ -7,7 +7,8 @@ use gltf_json::{Accessor, Animation, Index, Value};
 
 use glam::DQuat;
 
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 use crate::format::gltf::document::Document;
 use crate::format::motion::{Found, raw::snapped_rate};
 
@@ -27,11 +28,11 @@ pub(super) struct Keys {
     pub(super) interpolation: Interpolation,
 }
 
-/// Where a time lies among keys.
+/// The position of a time among keys.
 pub(super) enum Place {
     /// On this key, before the first or after the last.
     At(usize),
-    /// A share of the way from this key to the next, which is so many seconds long.
+    /// A share of the span from this key to the next, and the span in seconds.
     After(usize, f64, f64),
 }
 
@@ -41,17 +42,18 @@ impl Keys {
         document: &Document,
         animation: &Animation,
         sampler: Index<Sampler>,
-    ) -> Outcome<(Self, Index<Accessor>)> {
+    ) -> Result<(Self, Index<Accessor>)> {
         let of_sampler = animation.samplers.get(sampler.value());
         let sampler = of_sampler
-            .ok_or_else(|| format!("sampler {} of {}", sampler.value(), animation.samplers.len()))?;
+            .ok_or_else(|| Fault::dangling("sampler", sampler.value(), animation.samplers.len()))?;
         let Checked::Valid(interpolation) = sampler.interpolation else {
-            return Err("interpolation: expected LINEAR, STEP or CUBICSPLINE".to_owned());
+            return Err(Fault::unexpected("LINEAR, STEP or CUBICSPLINE", "another").into())
+                .within("interpolation");
         };
-        let times = document.numbers::<1>(sampler.input).map_err(|e| format!("input: {e}"))?;
+        let times = document.numbers::<1>(sampler.input).within("input")?;
         let times: Vec<f64> = times.iter().map(|[time]| f64::from(*time)).collect();
         if times.is_empty() || !times.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err("input: expected times of keys that rise".to_owned());
+            return Err(Fault::unexpected("times of keys that rise", "others").into()).within("input");
         }
         Ok((Self { times, interpolation }, sampler.output))
     }
@@ -66,7 +68,7 @@ impl Keys {
         if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key }
     }
 
-    /// Where a time lies. A key that is up to `near` seconds away counts as reached.
+    /// The position of a time. A key that is up to `near` seconds away counts as reached.
     pub(super) fn place(&self, time: f64, near: f64) -> Place {
         let times = &self.times;
         let next = times.partition_point(|t| *t <= time + near);
@@ -97,41 +99,43 @@ pub(super) struct Track {
     values: Vec<[f32; 4]>,
 }
 
-/// The tracks of an animation that move nodes; weights of blend shapes are passed over. `left` is how many numbers the
+/// The tracks of an animation that move nodes; weights of morph targets are left out. `left` is how many numbers the
 /// document may still have.
-pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Outcome<Vec<Track>> {
+pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<Track>> {
     let mut tracks = Vec::<Track>::new();
     for (i, channel) in animation.channels.iter().enumerate() {
         let Checked::Valid(property) = channel.target.path else { continue };
         if property == Property::MorphTargetWeights {
             continue;
         }
-        let track =
-            read_channel(document, animation, i, property).map_err(|e| format!("channels[{i}]: {e}"))?;
-        *left = left
-            .checked_sub(4 * track.values.len())
-            .ok_or_else(|| format!("more than {MAX_NUMBERS} numbers of keys"))?;
+        let track = read_channel(document, animation, i, property).within(format_args!("channels[{i}]"))?;
+        *left = left.checked_sub(4 * track.values.len()).ok_or_else(too_many_numbers)?;
         tracks.push(track);
     }
     Ok(tracks)
 }
 
-fn read_channel(document: &Document, animation: &Animation, i: usize, property: Property) -> Outcome<Track> {
+/// The fault of a document that has more numbers of keys than [`MAX_NUMBERS`].
+pub(super) fn too_many_numbers() -> Fault {
+    Fault::too_many(format_args!("{MAX_NUMBERS} numbers of keys"), "more")
+}
+
+fn read_channel(document: &Document, animation: &Animation, i: usize, property: Property) -> Result<Track> {
     let channel = &animation.channels[i];
     let (node, nodes) = (channel.target.node.value(), document.root.nodes.len());
     if node >= nodes {
-        return Err(format!("target.node: {node} of {nodes}"));
+        return Err(Fault::dangling("node", node, nodes).into()).within("target");
     }
     let (keys, output) = Keys::read(document, animation, channel.sampler)?;
-    let values: Outcome<Vec<[f32; 4]>> = match property {
+    let values: Result<Vec<[f32; 4]>> = match property {
         Property::Rotation => document.numbers::<4>(output),
         _ => document.numbers::<3>(output).map(|v| v.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()),
     };
-    let values = values.map_err(|e| format!("output: {e}"))?;
+    let values = values.within("output")?;
     let (count, expected) = (keys.times.len(), keys.each() * keys.times.len());
     if values.len() != expected {
-        let got = values.len();
-        return Err(format!("output: expected {expected} values for {count} keys, got {got}"));
+        let expected = format!("{expected} values for {count} keys");
+        return Err(Fault::unexpected(expected, values.len()).into()).within("output");
     }
     Ok(Track { node, property, keys, values })
 }
@@ -192,14 +196,14 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// From the first key to the last, or as long as our own files say; at the rate that is asked for, else that our own
+    /// From the first key to the last, or as long as our own files say; at the requested rate, else that our own
     /// files say, else that on whose frames all keys lie, else [`FALLBACK_RATE`].
     pub(super) fn of(animation: &Animation, keys: &[&Keys], asked: Option<f64>) -> Self {
-        let told = told(animation);
-        let (start, end) = told.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
+        let stated = stated(animation);
+        let (start, end) = stated.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
         let timing =
             |rate: f64, found| Self { start, end, rate, found, frames: 1.0 + ((end - start) * rate).round() };
-        match (asked, told) {
+        match (asked, stated) {
             (Some(rate), _) => timing(rate, Found::Asked),
             (None, Some((rate, frames))) => Self { frames, ..timing(rate, Found::File) },
             (None, None) => match rate(keys) {
@@ -211,7 +215,7 @@ impl Timing {
 }
 
 /// Rate and number of frames, which our own files say: keys that change nothing are left out of them.
-fn told(animation: &Animation) -> Option<(f64, f64)> {
+fn stated(animation: &Animation) -> Option<(f64, f64)> {
     let extras: Value = gltf_json::deserialize::from_str(animation.extras.as_ref()?.get()).ok()?;
     let number = |key: &str| extras.get("anthronet")?.get(key)?.as_f64();
     let (rate, frames) = (number("frames_per_second")?, number("frames")?);

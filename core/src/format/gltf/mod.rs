@@ -12,10 +12,12 @@ use std::path::Path;
 
 use self::document::Document;
 use super::kind::{Description, Holds, Write};
-use crate::error::Outcome;
-use crate::{Error, Result};
+use crate::Error;
+use crate::error::GltfError;
 
 pub use write::{GltfFiles, GltfOptions, to_glb, to_glb_with, to_gltf, to_gltf_with};
+
+type Result<T> = std::result::Result<T, GltfError>;
 
 pub(super) const GLB: Description = Description {
     ending: "glb",
@@ -35,7 +37,7 @@ pub(super) const GLTF: Description = Description {
 };
 
 /// Parses a file, whose buffers may lie beside it, and reads something of it.
-fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Outcome<T>) -> Result<T> {
+fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
     let document = Document::open(bytes, path)?;
-    read(&document).map_err(|message| Error::file(path, message))
+    read(&document).map_err(|error| Error::file(path, error))
 }

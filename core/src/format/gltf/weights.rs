@@ -1,12 +1,13 @@
 //! Keys of the weights of a node's morph targets (glTF 2.0, section 3.11).
 
-use gltf_json::Animation;
-use gltf_json::animation::{Interpolation, Property};
+use gltf_json::animation::{Interpolation, Property, Sampler};
 use gltf_json::validation::Checked;
+use gltf_json::{Animation, Index};
 
-use super::animation::{Keys, Place, hermite};
+use super::animation::{Keys, Place, hermite, too_many_numbers};
 use super::document::Document;
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 
 /// Keys of the weights of one node.
 pub(super) struct WeightKeys {
@@ -19,7 +20,7 @@ pub(super) struct WeightKeys {
 }
 
 /// What an animation says of weights. `left` is how many numbers the document may still have.
-pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Outcome<Vec<WeightKeys>> {
+pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<WeightKeys>> {
     let mut read = Vec::new();
     for (i, channel) in animation.channels.iter().enumerate() {
         if channel.target.path != Checked::Valid(Property::MorphTargetWeights) {
@@ -30,23 +31,32 @@ pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize)
         let primitive = of_mesh.and_then(|mesh| mesh.primitives.first());
         let targets = primitive.and_then(|primitive| primitive.targets.as_ref()).map_or(0, Vec::len);
         if targets == 0 {
-            // Weights of nothing are nobody's.
+            // Weights without targets have no effect.
             continue;
         }
-        let fault = |message: String| format!("channels[{i}]: {message}");
-        let (keys, output) = Keys::read(document, animation, channel.sampler).map_err(fault)?;
-        let values = document.numbers::<1>(output).map_err(|m| fault(format!("output: {m}")))?;
-        let expected = keys.each() * keys.times.len() * targets;
-        if values.len() != expected {
-            let (keys, got) = (keys.times.len(), values.len());
-            return Err(fault(format!(
-                "output: expected {expected} weights of {targets} targets for {keys} keys, got {got}"
-            )));
-        }
-        *left = left.checked_sub(values.len()).ok_or_else(|| fault("too many numbers of keys".into()))?;
-        read.push(WeightKeys { node, targets, keys, values: values.into_iter().flatten().collect() });
+        let track = read_channel(document, animation, channel.sampler, targets);
+        let (keys, values) = track.within(format_args!("channels[{i}]"))?;
+        *left = left.checked_sub(values.len()).ok_or_else(too_many_numbers)?;
+        read.push(WeightKeys { node, targets, keys, values });
     }
     Ok(read)
+}
+
+/// Keys and weights of a sampler, for so many targets.
+fn read_channel(
+    document: &Document,
+    animation: &Animation,
+    sampler: Index<Sampler>,
+    targets: usize,
+) -> Result<(Keys, Vec<f32>)> {
+    let (keys, output) = Keys::read(document, animation, sampler)?;
+    let values = document.numbers::<1>(output).within("output")?;
+    let expected = keys.each() * keys.times.len() * targets;
+    if values.len() != expected {
+        let expected = format!("{expected} weights of {targets} targets for {} keys", keys.times.len());
+        return Err(Fault::unexpected(expected, values.len()).into()).within("output");
+    }
+    Ok((keys, values.into_iter().flatten().collect()))
 }
 
 impl WeightKeys {

@@ -1,4 +1,4 @@
-//! What the readers of motion share: what they are asked, what they hand on ([`raw`]), and how units and axes are found
+//! What the readers of motion share: their options, their result ([`raw`]), and how units and axes are found
 //! for all of them ([`units_and_axes`], by the body's [`proportions`]).
 
 mod proportions;
@@ -10,11 +10,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::clip::Clip;
-use crate::error::Outcome;
+use crate::error::Fault;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
-/// What is said of a file beforehand; it wins over what the file says.
+/// What the caller knows of a file; it overrides what the file states.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReadOptions {
     /// The unit of lengths.
@@ -59,7 +59,7 @@ pub enum Found {
     Detected,
     /// From [`ReadOptions`].
     Asked,
-    /// Nothing tells: the format's habit.
+    /// Nothing states it: what is usual for the format.
     Assumed,
 }
 
@@ -80,9 +80,9 @@ pub struct ReadReport {
     pub frames_per_second: f64,
     /// How the rate was found.
     pub rate_found: Found,
-    /// About how tall the body is, metres, from the lengths of its bones; 0 where they tell nothing.
+    /// About how tall the body is, metres, from the lengths of its bones; 0 where there are no bones.
     pub stature: f64,
-    /// What was mended, assumed or looks wrong.
+    /// What was corrected or assumed, or looks wrong.
     pub warnings: Vec<String>,
 }
 
@@ -119,10 +119,10 @@ pub(crate) fn clip_name(path: &Path) -> String {
 }
 
 /// Refuses bytes that do not start as those of a format do.
-pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> Outcome<()> {
+pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> std::result::Result<(), Fault> {
     if magics.iter().any(|magic| bytes.starts_with(magic)) {
         return Ok(());
     }
     let came = bytes[..bytes.len().min(8)].escape_ascii();
-    Err(format!("expected {expected}, which this is not: it starts with `{came}`"))
+    Err(Fault::unexpected(expected, format_args!("one that starts with `{came}`")))
 }

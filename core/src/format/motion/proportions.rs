@@ -10,7 +10,7 @@ use crate::space::Axis;
 /// How many times a person is as long from fingertip to toe, along the bones, as tall. Of skeletons that end at wrists
 /// and ankles 1.25, of those with fingers and toes 1.5.
 const SPAN_PER_STATURE: f64 = 1.4;
-/// How much longer one extent has to be than another to tell how a body stands.
+/// How much longer one extent has to be than another to decide which way is up.
 const CLEAR: f32 = 1.5;
 /// The fewest joints of a person.
 const FIGURE: usize = 10;
@@ -25,7 +25,7 @@ struct Stance {
 }
 
 impl Stance {
-    /// The axis along which the body clearly stands.
+    /// The axis along which the body is clearly upright.
     fn upright(self) -> Option<Axis> {
         let [_, y, z] = self.extents.to_array();
         if y > CLEAR * z { Some(Axis::Y) } else { (z > CLEAR * y).then_some(Axis::Z) }
@@ -37,8 +37,8 @@ impl Stance {
     }
 }
 
-/// The body within a file's joints: those that hang together by bones of fixed length. A root on the floor that the
-/// hips fly away from is none of it.
+/// The body within a file's joints: those that bones of fixed length connect. A root on the floor that the
+/// hips move away from is not part of it.
 pub(super) struct Proportions {
     lengths: Vec<f32>,
     member: Vec<bool>,
@@ -46,9 +46,9 @@ pub(super) struct Proportions {
 
 impl Proportions {
     pub(super) fn of(raw: &RawMotion) -> Self {
-        let mut steps: Vec<Vec3> = raw.rest.iter().map(|l| l.translation).collect();
+        let mut steps: Vec<Vec3> = rest_of(raw).iter().map(|l| l.translation).collect();
         let longest = steps.iter().map(|s| s.length()).fold(0.0, f32::max);
-        let mut loose = vec![false; raw.names.len()];
+        let mut loose = vec![false; raw.skeleton.len()];
         for track in raw.takes.iter().flat_map(|take| &take.tracks) {
             let (joint, count) = (track.joint as usize, track.values.len().max(1));
             let mean = track.values.iter().sum::<Vec3>() / count as f32;
@@ -60,7 +60,7 @@ impl Proportions {
         let mut lengths: Vec<f32> = steps.iter().map(|s| s.length()).collect();
         let mut top = Vec::with_capacity(loose.len());
         let mut sizes = vec![0usize; loose.len()];
-        for (joint, parent) in raw.parents.iter().enumerate() {
+        for (joint, parent) in raw.skeleton.parents().iter().enumerate() {
             let above = parent.filter(|_| !loose[joint]).and_then(|p| top.get(p as usize).copied());
             top.push(above.unwrap_or(joint));
             sizes[top[joint]] += 1;
@@ -77,17 +77,19 @@ impl Proportions {
         self.member.iter().filter(|m| **m).count() >= FIGURE
     }
 
-    /// How tall the body is in the file's unit, from the longest way along its bones, which no pose changes; 0 where
+    /// How tall the body is in the file's unit, from the longest path along its bones, which no pose changes; 0 where
     /// there are no bones.
     pub(super) fn stature(&self, raw: &RawMotion) -> f64 {
         let count = self.lengths.len();
-        // The longest way down from each joint; children stand after their parents.
+        // The longest path down from each joint; children come after their parents.
         let (mut down, mut span) = (vec![0.0f64; count], 0.0f64);
         for joint in (0..count).rev().filter(|&j| self.member[j]) {
-            let end = raw.ends[joint].map_or(0.0, |end| f64::from(end.length()));
+            let end = raw.skeleton.ends()[joint].map_or(0.0, |end| f64::from(end.length()));
             span = span.max(down[joint] + end);
             down[joint] = down[joint].max(end);
-            if let Some(parent) = raw.parents[joint].map(|p| p as usize).filter(|&p| self.member[p]) {
+            if let Some(parent) =
+                raw.skeleton.parents()[joint].map(|p| p as usize).filter(|&p| self.member[p])
+            {
                 let way = down[joint] + f64::from(self.lengths[joint]);
                 span = span.max(down[parent] + way);
                 down[parent] = down[parent].max(way);
@@ -96,11 +98,11 @@ impl Proportions {
         span / SPAN_PER_STATURE
     }
 
-    /// The axis that the body clearly stands along: from its rest pose and its motion, which may contradict each
-    /// other, as when somebody lies, or a root turns the file's axes. Against the file's own word it takes both, or
+    /// The axis along which the body is clearly upright: from its rest pose and its motion, which may contradict each
+    /// other, as when a person lies down, or a root turns the file's axes. To overrule the file takes both, or
     /// feet on a floor.
     pub(super) fn upright(&self, raw: &RawMotion) -> Option<Axis> {
-        let rest = (!raw.rest_is_upright).then(|| self.stance(raw, std::iter::once(raw.rest.clone())));
+        let rest = (!raw.rest_is_upright).then(|| self.stance(raw, std::iter::once(rest_of(raw).to_vec())));
         let rest = rest.and_then(Stance::upright);
         let stance = self.stance(raw, raw.takes.iter().flat_map(|take| poses(raw, take)));
         match (rest, stance.upright()) {
@@ -114,11 +116,11 @@ impl Proportions {
     fn stance(&self, raw: &RawMotion, poses: impl Iterator<Item = Vec<RigidTransform>>) -> Stance {
         let (mut sum, mut count, mut world) = (Stance::default(), 0.0f32, Vec::new());
         for pose in poses {
-            model_from_joints(&raw.parents, &pose, &mut world);
+            model_from_joints(raw.skeleton.parents(), &pose, &mut world);
             let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             for joint in (0..world.len()).filter(|&j| self.member[j]) {
                 let RigidTransform { rotation, translation } = world[joint];
-                let end = translation + rotation * raw.ends[joint].unwrap_or(Vec3::ZERO);
+                let end = translation + rotation * raw.skeleton.ends()[joint].unwrap_or(Vec3::ZERO);
                 low = low.min(translation).min(end);
                 high = high.max(translation).max(end);
             }
@@ -130,14 +132,19 @@ impl Proportions {
     }
 }
 
+/// Each joint at rest in its parent.
+fn rest_of(raw: &RawMotion) -> &[RigidTransform] {
+    &raw.skeleton.rest_pose().locals
+}
+
 /// Poses of a take, evenly spread.
 fn poses<'a>(raw: &'a RawMotion, take: &'a Take) -> impl Iterator<Item = Vec<RigidTransform>> + 'a {
-    let frames = take.rotations.len() / raw.rest.len().max(1);
+    let frames = take.rotations.len() / raw.skeleton.len();
     let samples = frames.min((SAMPLES / raw.takes.len().max(1)).max(1));
     (0..samples).map(move |i| {
         let frame = i * frames / samples;
-        let mut pose = raw.rest.clone();
-        for (local, rotation) in pose.iter_mut().zip(&take.rotations[frame * raw.rest.len()..]) {
+        let mut pose = rest_of(raw).to_vec();
+        for (local, rotation) in pose.iter_mut().zip(&take.rotations[frame * raw.skeleton.len()..]) {
             local.rotation = *rotation;
         }
         for track in &take.tracks {

@@ -1,11 +1,12 @@
-//! What the readers of the formats hand on: a motion in the units and axes of its file.
+//! What the readers of the formats return: a motion in the units and axes of its file.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::Found;
-use crate::clip::TranslationTrack;
-use crate::error::Outcome;
+use crate::clip::{MAX_FRAMES, TranslationTrack};
+use crate::error::Fault;
 use crate::math::{RigidTransform, Rotation};
+use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
 /// A skeleton and its motions as a file has them.
@@ -13,11 +14,8 @@ use crate::space::{Axis, Unit};
 pub(crate) struct RawMotion {
     /// The format's name.
     pub(crate) format: &'static str,
-    /// Joints, parents first; unique names.
-    pub(crate) names: Vec<String>,
-    pub(crate) parents: Vec<Option<u32>>,
-    pub(crate) rest: Vec<RigidTransform>,
-    pub(crate) ends: Vec<Option<Vec3>>,
+    /// In the file's unit and axes.
+    pub(crate) skeleton: Skeleton,
     pub(crate) takes: Vec<Take>,
     /// What the file says of its unit; `None` where the format does not.
     pub(crate) unit: Option<Unit>,
@@ -117,7 +115,7 @@ impl Rigid {
         DAffine3::from_rotation_translation(self.rotation, self.position)
     }
 
-    /// Each joint's transform to its parent, for joints that stand after their parents.
+    /// Each joint's transform to its parent, for joints that come after their parents.
     pub(crate) fn locals(world: &[Self], parents: &[Option<u32>]) -> Vec<RigidTransform> {
         let local = |(joint, parent): (&Self, &Option<u32>)| {
             let (rotation, translation) = match parent.and_then(|p| world.get(p as usize)) {
@@ -163,14 +161,17 @@ impl Recorder {
 }
 
 /// How many frames a motion of so many seconds has, if a clip of so many joints may have them.
-pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Outcome<usize> {
+pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Result<usize, Fault> {
     // Each frame of each joint is evaluated from curves: what a few bytes of a file may ask for has to end.
-    const MOST: f64 = (1u32 << 24) as f64;
+    const MOST: u32 = 1 << 24;
     let frames = (seconds * rate).round() + 1.0;
-    if (0.0..=crate::clip::MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= MOST {
+    if (0.0..=MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= f64::from(MOST) {
         return Ok(frames as usize);
     }
-    Err(format!("{seconds} s at {rate} frames a second of {joints} joints are too many frames"))
+    Err(Fault::too_many(
+        format_args!("{MAX_FRAMES} frames and {MOST} rotations"),
+        format_args!("{seconds} s at {rate} frames a second of {joints} joints"),
+    ))
 }
 
 #[cfg(test)]
@@ -207,7 +208,7 @@ mod tests {
     fn a_long_motion_is_refused() {
         assert_eq!(frame_count(2.0, 30.0, 50), Ok(61));
         for seconds in [1e9, f64::NAN, f64::INFINITY, -1.0] {
-            assert!(frame_count(seconds, 30.0, 50).unwrap_err().contains("too many"));
+            assert!(matches!(frame_count(seconds, 30.0, 50), Err(Fault::TooMany { .. })));
         }
         assert!(frame_count(10_000.0, 30.0, 4000).is_err());
     }

@@ -7,7 +7,8 @@ use std::io::{Cursor, Read};
 use npyz::npz::NpzArchive;
 use npyz::{NpyFile, Order};
 
-use crate::error::Outcome;
+use crate::error::{Fault, NpzError, ParserError, Within};
+use crate::format::npz::Result;
 
 /// Most bytes of one array: an hour of SMPL-X at 100 frames a second takes 475 MB as `f64`.
 const MAX_BYTES: u64 = 1 << 29;
@@ -40,54 +41,61 @@ pub(super) struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Outcome<Self> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         let zip = NpzArchive::new(Cursor::new(bytes));
-        Ok(Self { zip: zip.map_err(|e| format!("is not a zip archive, or truncated: {e}"))? })
+        Ok(Self { zip: zip.map_err(|e| refused("is not a zip archive, or truncated", e))? })
     }
 
-    /// The error for an array that lacks.
-    pub(super) fn missing(&self, wanted: &str) -> String {
+    /// The error for an array that is missing.
+    pub(super) fn missing(&self, wanted: &str) -> NpzError {
         let mut names: Vec<&str> = self.zip.array_names().collect();
         names.sort_unstable();
         let more = names.len().saturating_sub(20);
         names.truncate(20);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("expected an array {wanted}; the file has {}{more}", names.join(", ").escape_debug())
+        let has = names.join(", ");
+        Fault::missing(format_args!("array {wanted}; the file has {}{more}", has.escape_debug())).into()
     }
 
     /// The first of these arrays that is there, with its name.
-    pub(super) fn first(&mut self, names: &[&'static str]) -> Outcome<Option<(&'static str, Array)>> {
+    pub(super) fn first(&mut self, names: &[&'static str]) -> Result<Option<(&'static str, Array)>> {
         for &name in names {
             if self.zip.array_names().any(|n| n == name) {
-                return self.array(name).map(|array| Some((name, array))).map_err(|e| format!("{name}: {e}"));
+                return self.array(name).map(|array| Some((name, array))).within(name);
             }
         }
         Ok(None)
     }
 
-    fn array(&mut self, name: &str) -> Outcome<Array> {
+    fn array(&mut self, name: &str) -> Result<Array> {
         let file = self.zip.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name));
         let mut bytes = Vec::new();
-        let read = file.map_err(|e| e.to_string())?.take(MAX_BYTES + 1).read_to_end(&mut bytes);
-        read.map_err(|e| format!("cannot be unpacked: {e}"))?;
+        let file = file.map_err(|e| refused("cannot be unpacked", e))?;
+        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| refused("cannot be unpacked", e))?;
         if bytes.len() as u64 > MAX_BYTES {
-            return Err(format!("more than {MAX_BYTES} bytes"));
+            return Err(Fault::too_many(format_args!("{MAX_BYTES} bytes"), "more").into());
         }
         decode(&bytes)
     }
 }
 
+/// What a crate says of bytes that it cannot read.
+fn refused(what: &str, error: impl std::fmt::Display) -> ParserError {
+    ParserError::refused(format_args!("{what}: {error}"))
+}
+
 /// An array from the bytes of its `.npy`.
-pub(super) fn decode(bytes: &[u8]) -> Outcome<Array> {
+pub(super) fn decode(bytes: &[u8]) -> Result<Array> {
     check_header(bytes)?;
     let mut data = bytes;
-    let file = NpyFile::new(&mut data).map_err(|e| e.to_string())?;
+    let file = NpyFile::new(&mut data).map_err(|e| refused("is not an array", e))?;
     let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
     let count = file.len();
     let expected = dtype.num_bytes().and_then(|size| (size as u64).checked_mul(count));
     let into = file.into_inner();
     if expected != Some(into.len() as u64) {
-        return Err(format!("truncated: {} bytes for a shape of {shape:?}", into.len()));
+        let found = format!("{} bytes", into.len());
+        return Err(Fault::truncated(format_args!("an array of shape {shape:?}"), found).into());
     }
     let file = || NpyFile::new(bytes);
     let descr = dtype.descr();
@@ -98,13 +106,14 @@ pub(super) fn decode(bytes: &[u8]) -> Outcome<Array> {
             file().and_then(NpyFile::into_vec::<i64>).map(|v| v.into_iter().map(|x| x as f64).collect())
         }
         "<i4" | ">i4" => file().and_then(NpyFile::into_vec::<i32>).map(widened),
-        other => return Err(format!("expected floating-point or whole numbers, got {other}")),
+        other => return Err(Fault::unexpected("floating-point or whole numbers", other).into()),
     };
-    let mut values = values.map_err(|e| e.to_string())?;
+    let mut values = values.map_err(|e| refused("is not an array", e))?;
     // One axis, or none, is the same in both orders.
     if order == Order::Fortran && shape.len() > 1 {
         let [rows, columns] = shape.as_slice() else {
-            return Err(format!("expected two axes of an array in Fortran order, got {shape:?}"));
+            let found = format!("a shape of {shape:?}");
+            return Err(Fault::unexpected("two axes of an array in Fortran order", found).into());
         };
         let (rows, columns) = (*rows as usize, *columns as usize);
         values = (0..values.len()).map(|i| values[(i % columns) * rows + i / columns]).collect();
@@ -117,26 +126,25 @@ fn widened<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
 }
 
 /// Refuses headers that are longer, deeper or of larger numbers than a plain array's.
-fn check_header(bytes: &[u8]) -> Outcome<()> {
+fn check_header(bytes: &[u8]) -> Result<()> {
     let length = match bytes {
         [0x93, b'N', b'U', b'M', b'P', b'Y', 1, 0, a, b, ..] => usize::from(u16::from_le_bytes([*a, *b])),
         [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, 0, a, b, c, d, ..] => {
             u32::from_le_bytes([*a, *b, *c, *d]) as usize
         }
-        _ => return Err("expected the header of a numpy array".to_owned()),
+        _ => return Err(Fault::unexpected("the header of a numpy array", "other bytes").into()),
     };
     let start = if bytes[6] == 1 { 10 } else { 12 };
     let header = bytes.get(start..).and_then(|rest| rest.get(..length)).filter(|_| length <= MAX_HEADER);
     let Some(header) = header else {
-        return Err(format!(
-            "header of {length} bytes, expected at most {MAX_HEADER} and no more than are there"
-        ));
+        let most = format!("a header of {MAX_HEADER} bytes, and no more than are there");
+        return Err(Fault::too_many(most, length).into());
     };
     let brackets = header.iter().filter(|c| b"([{".contains(c)).count();
     // The product of numbers with so many digits together fits 64 bits.
     let digits = header.iter().filter(|c| c.is_ascii_digit()).count();
     if brackets > 4 || digits > 18 {
-        return Err(format!("expected a plain array, got {}", header.trim_ascii_end().escape_ascii()));
+        return Err(Fault::unexpected("a plain array", header.trim_ascii_end().escape_ascii()).into());
     }
     Ok(())
 }

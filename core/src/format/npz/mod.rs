@@ -3,13 +3,13 @@
 //!
 //! The files hold no skeleton, which comes from the body model. The rest pose here has the public names of the
 //! joints and **assumed lengths of bones**, round numbers for a person of 1.70 m: see `smpl`. World axes are AMASS'
-//! +Z up, unless the body stands along Y; rest poses of the body models are +Y up, facing +Z.
+//! +Z up, unless the body is upright along Y; rest poses of the body models are +Y up, facing +Z.
 //!
-//! The pelvis is put where `trans` says. The body models put it at `trans` + J₀, where J₀ is the pelvis' place in the
+//! The pelvis is placed at `trans`. The body models place it at `trans` + J₀, where J₀ is the pelvis' place in the
 //! model's own rest pose: some 0.2 to 0.4 m below the model's origin, the same vector in every frame of a file. J₀ belongs
 //! to the body model, whose numbers may not be used here, and differs with the shape. What is missing is one constant
-//! shift of the whole clip, sideways in a world of +Z up and downwards in one of +Y up; it leaves poses, speeds and ways
-//! alone, and the height is found from the feet ([`plant`](crate::retarget::feet::plant)).
+//! shift of the whole clip, sideways in a world of +Z up and downwards in one of +Y up; it leaves poses, speeds and paths
+//! unchanged, and the height is found from the feet ([`plant`](crate::retarget::feet::plant)).
 
 mod array;
 mod motion;
@@ -18,6 +18,9 @@ mod smpl;
 mod tests;
 
 use super::kind::{Description, Holds};
+use crate::error::NpzError;
+
+type Result<T> = std::result::Result<T, NpzError>;
 
 pub(super) const NPZ: Description = Description {
     ending: "npz",

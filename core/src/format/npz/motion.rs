@@ -1,38 +1,43 @@
-//! The arrays of an archive as a motion of the skeleton that their number of joints tells.
+//! The arrays of an archive as a motion of the skeleton that has their number of joints.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
 
 use super::array::Archive;
-use super::smpl;
+use super::smpl::{self, BodyModel};
+use crate::Error;
 use crate::clip::MAX_FRAMES;
-use crate::error::Outcome;
+use crate::error::{Fault, Located, NpzError};
 use crate::format::motion::raw::{RawMotion, Recorder};
 use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
+use crate::format::npz::Result;
 use crate::math::Rotation;
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
 
 /// Reads an archive; the clip is named after the file.
-pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<RawMotion> {
-    motion(bytes, &clip_name(path), options).map_err(|message| Error::file(path, message))
+pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
+    motion(bytes, &clip_name(path), options).map_err(|error| Error::file(path, error))
 }
 
-fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
     check_start(bytes, &[b"PK\x03\x04", b"PK\x05\x06"], "a zip archive")?;
     let mut archive = Archive::open(bytes)?;
     let poses = read_poses(&mut archive)?;
-    let skeleton = smpl::skeleton(poses.width / 3).ok_or_else(|| {
-        let width = poses.width;
-        format!("poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got {width}")
-    })?;
+    let Some(BodyModel { name: model, skeleton }) = smpl::body_model(poses.width / 3)? else {
+        let expected = "66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X)";
+        return wrong("poses", expected, poses.width);
+    };
     let Some((key, trans)) = archive.first(&["trans", "transl", "smpl_trans"])? else {
         return Err(archive.missing("trans"));
     };
     if trans.shape.len() != 2 || trans.width() != 3 || trans.rows() != poses.frames {
-        let frames = poses.frames;
-        return Err(format!("{key}: expected a shape of ({frames}, 3), got {:?}", trans.shape));
+        return wrong(
+            key,
+            format_args!("a shape of ({}, 3)", poses.frames),
+            format_args!("{:?}", trans.shape),
+        );
     }
     let mut rate_found = Found::File;
     let rate = match options.frames_per_second {
@@ -45,15 +50,16 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
                 [rate] if (0.1..=1000.0).contains(rate) => *rate,
                 other => {
                     let got = other.iter().take(3).collect::<Vec<_>>();
-                    return Err(format!("{key}: expected one number of 0.1 to 1000, got {got:?}"));
+                    return wrong(key, "one number of 0.1 to 1000", format_args!("{got:?}"));
                 }
             },
             None => return Err(archive.missing("mocap_framerate")),
         },
     };
 
-    let mut recorder = Recorder::new(skeleton.rest.len());
-    let mut pose = skeleton.rest.clone();
+    let mut recorder = Recorder::new(skeleton.len());
+    let rest = &skeleton.rest_pose().locals;
+    let mut pose = rest.clone();
     for (turns, at) in poses.values.chunks_exact(poses.width).zip(trans.values.chunks_exact(3)) {
         for (local, turn) in pose.iter_mut().zip(turns.chunks_exact(3)) {
             local.rotation = rotation(DVec3::from_slice(turn));
@@ -61,13 +67,10 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
         pose[0].translation = DVec3::from_slice(at).as_vec3();
         recorder.push(&pose);
     }
-    let take = recorder.take(name.to_owned(), rate, &skeleton.rest);
+    let take = recorder.take(name.to_owned(), rate, rest);
     Ok(RawMotion {
-        format: skeleton.model,
-        names: skeleton.names,
-        parents: skeleton.parents,
-        rest: skeleton.rest,
-        ends: skeleton.ends,
+        format: model,
+        skeleton,
         takes: vec![take],
         unit: Some(Unit::Metre),
         up: Some(Axis::Z),
@@ -76,12 +79,16 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Outcome<RawMotion>
         warnings: vec![
             "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
             format!(
-                "`{key}` is taken for the place of the pelvis: the {} body model adds a constant of its own, by which the \
-                 whole clip is shifted",
-                skeleton.model
+                "`{key}` is taken for the place of the pelvis: the {model} body model adds a constant of its own, by which the \
+                 whole clip is shifted"
             ),
         ],
     })
+}
+
+/// The error for an array that is not as expected.
+fn wrong<T>(array: &str, expected: impl Display, found: impl Display) -> Result<T> {
+    Err(NpzError::from(Fault::unexpected(expected, found)).within(array.to_owned()))
 }
 
 /// A turn about an axis by its length; `NaN` where it is not finite.
@@ -101,8 +108,8 @@ struct Poses {
     values: Vec<f64>,
 }
 
-/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body may lack.
-fn read_poses(archive: &mut Archive) -> Outcome<Poses> {
+/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body are optional.
+fn read_poses(archive: &mut Archive) -> Result<Poses> {
     if let Some((key, poses)) = archive.first(&["poses", "smpl_poses", "fullpose"])? {
         let (frames, width) = (poses.rows(), poses.width());
         check_frames(key, &poses.shape, frames)?;
@@ -133,7 +140,7 @@ fn read_poses(archive: &mut Archive) -> Outcome<Poses> {
     }
     for (key, part) in &parts {
         if part.rows() != frames {
-            return Err(format!("{key}: expected {frames} frames, got a shape of {:?}", part.shape));
+            return wrong(key, format_args!("{frames} frames"), format_args!("a shape of {:?}", part.shape));
         }
     }
     let width = parts.iter().map(|(_, part)| part.width()).sum();
@@ -147,9 +154,10 @@ fn read_poses(archive: &mut Archive) -> Outcome<Poses> {
     Ok(Poses { frames, width, values })
 }
 
-fn check_frames(key: &str, shape: &[u64], frames: usize) -> Outcome<()> {
+fn check_frames(key: &str, shape: &[u64], frames: usize) -> Result<()> {
     if shape.len() < 2 || frames == 0 || frames > MAX_FRAMES {
-        return Err(format!("{key}: expected 1 to {MAX_FRAMES} frames by joints, got a shape of {shape:?}"));
+        let expected = format!("1 to {MAX_FRAMES} frames by joints");
+        return wrong(key, expected, format_args!("a shape of {shape:?}"));
     }
     Ok(())
 }

@@ -1,21 +1,20 @@
 //! Skeletons of the SMPL family: public names and hierarchy of joints, places of our own.
 //!
 //! The body models' own joint places are under licences that forbid their use in products, and differ from body to
-//! body anyway. These are round numbers for somebody 1.70 m tall in a T-pose, from everyday proportions: legs about
-//! half of the height, arms' span about the height. Retargeting scales by legs, so that only ratios matter.
+//! body anyway. These are round numbers for a person 1.70 m tall in a T-pose, from everyday proportions: legs about
+//! half of the height, arm span about the height. Retargeting scales by legs, so that only ratios matter.
 
 use glam::Vec3;
 
+use super::Result;
 use crate::Side;
 use crate::math::{RigidTransform, Rotation};
+use crate::skeleton::Skeleton;
 
 /// A rest pose: +Y up, facing +Z, metres; joints rest unturned.
-pub(super) struct Skeleton {
-    pub(super) model: &'static str,
-    pub(super) names: Vec<String>,
-    pub(super) parents: Vec<Option<u32>>,
-    pub(super) rest: Vec<RigidTransform>,
-    pub(super) ends: Vec<Option<Vec3>>,
+pub(super) struct BodyModel {
+    pub(super) name: &'static str,
+    pub(super) skeleton: Skeleton,
 }
 
 /// A joint: name, parent, place. Of a pair only the left one is written; `left_` becomes `right_` and x changes sign.
@@ -65,11 +64,11 @@ const FINGERS: [(&str, [f32; 3], [f32; 3]); 5] = [
     ("thumb", [0.72, 1.39, 0.02], [0.04, 0.03, 0.025]),
 ];
 
-/// The skeleton of so many joints: body alone, SMPL, SMPL-H or SMPL-X.
-pub(super) fn skeleton(joints: usize) -> Option<Skeleton> {
+/// The body model of so many joints: body alone, SMPL, SMPL-H or SMPL-X.
+pub(super) fn body_model(joints: usize) -> Result<Option<BodyModel>> {
     let mut found = Building::default();
     found.extend(&BODY);
-    let model = match joints {
+    let name = match joints {
         22 => "AMASS (body)",
         24 => {
             found.extend(&PALMS);
@@ -84,9 +83,9 @@ pub(super) fn skeleton(joints: usize) -> Option<Skeleton> {
             found.add_hands();
             "SMPL-X"
         }
-        _ => return None,
+        _ => return Ok(None),
     };
-    Some(found.skeleton(model))
+    Ok(Some(BodyModel { name, skeleton: found.skeleton()? }))
 }
 
 #[derive(Default)]
@@ -136,12 +135,12 @@ impl Building {
         }
     }
 
-    fn skeleton(self, model: &'static str) -> Skeleton {
+    fn skeleton(self) -> Result<Skeleton> {
         let step = |(place, parent): (&Vec3, &Option<u32>)| {
             let from = parent.map_or(Vec3::ZERO, |p| self.places[p as usize]);
             RigidTransform { rotation: Rotation::IDENTITY, translation: *place - from }
         };
         let rest = self.places.iter().zip(&self.parents).map(step).collect();
-        Skeleton { model, names: self.names, parents: self.parents, rest, ends: self.ends }
+        Ok(Skeleton::new(self.names, self.parents, rest, self.ends).map_err(Box::new)?)
     }
 }

@@ -1,31 +1,33 @@
 //! Wavefront OBJ: polygons, one mesh per `o` or `g` section that has faces.
 //!
 //! A mesh has the vertices that its section declares and those that its faces use, in the file's order, so that a file
-//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are passed over.
+//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are ignored.
 
 use std::{collections::BTreeMap, path::Path};
 
 use glam::Vec3;
 
 use super::write::COUNTS;
-use crate::error::Outcome;
+use crate::Error;
+use crate::error::{Fault, ObjError};
 use crate::format::limits::MAX_ELEMENTS;
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
-use crate::{Error, Result};
 
 /// Reads an `.obj`; `path` is for messages. All meshes have one material, white.
 ///
 /// # Errors
 /// [`Error::File`] with the line for a number that is none or not finite, an index of nothing, too few corners, a
 /// file of ours that lost its end, or a file without any vertices.
-pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Scene> {
+pub(super) fn read(bytes: &[u8], path: &Path) -> crate::Result<Scene> {
     let mut reader = Reader::default();
     for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
-        reader.line(line).map_err(|message| Error::file(path, format!("line {}: {message}", i + 1)))?;
+        reader.line(line).map_err(|fault| Error::file(path, ObjError::Line { line: i + 1, fault }))?;
     }
-    reader.finish().map_err(|message| Error::file(path, message))
+    reader.finish().map_err(|fault| Error::file(path, ObjError::Whole(fault)))
 }
+
+type Result<T> = std::result::Result<T, Fault>;
 
 /// A corner: places in `positions` and, maybe, in `normals`.
 type Corner = (u32, Option<u32>);
@@ -51,18 +53,18 @@ struct Reader {
 }
 
 impl Reader {
-    fn line(&mut self, line: &[u8]) -> Outcome<()> {
+    fn line(&mut self, line: &[u8]) -> Result<()> {
         let Ok(line) = std::str::from_utf8(line) else {
             // Names and comments come in any encoding; they alone may.
             return match line.first() {
                 Some(b'#' | b'o' | b'g' | b'u' | b'm') => self.statement(&String::from_utf8_lossy(line)),
-                _ => Err("is not text".into()),
+                _ => Err(Fault::unexpected("text in UTF-8", "other bytes")),
             };
         };
         self.statement(line)
     }
 
-    fn statement(&mut self, line: &str) -> Outcome<()> {
+    fn statement(&mut self, line: &str) -> Result<()> {
         let line = line.trim();
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         match keyword {
@@ -84,13 +86,16 @@ impl Reader {
                 if let Some(counts) = line.strip_prefix(COUNTS) {
                     let mut counts = counts.split_ascii_whitespace().map(str::parse);
                     let (Some(Ok(vertices)), Some(Ok(faces))) = (counts.next(), counts.next()) else {
-                        return Err("expected two counts".into());
+                        return Err(Fault::unexpected("two counts", "something else"));
                     };
                     self.announced = Some((vertices, faces));
                 } else if !keyword.starts_with('#')
                     && !keyword.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
                 {
-                    return Err(format!("expected a statement, got `{}`", keyword.escape_debug()));
+                    return Err(Fault::unexpected(
+                        "a statement",
+                        format_args!("`{}`", keyword.escape_debug()),
+                    ));
                 }
             }
         }
@@ -105,26 +110,23 @@ impl Reader {
         &mut self.sections[last]
     }
 
-    fn face(&mut self, rest: &str) -> Outcome<()> {
+    fn face(&mut self, rest: &str) -> Result<()> {
         let corners =
-            rest.split_ascii_whitespace().map(|text| self.corner(text)).collect::<Outcome<Vec<_>>>()?;
-        let [first, fan @ ..] = corners.as_slice() else {
-            return Err("expected a face of at least 3 corners, got none".into());
+            rest.split_ascii_whitespace().map(|text| self.corner(text)).collect::<Result<Vec<_>>>()?;
+        let (Some((first, fan)), 3..) = (corners.split_first(), corners.len()) else {
+            return Err(Fault::unexpected("a face of at least 3 corners", corners.len()));
         };
-        if fan.len() < 2 {
-            return Err(format!("expected a face of at least 3 corners, got {}", corners.len()));
-        }
         self.faces += 1;
         self.triangles += fan.len() - 1;
         if self.triangles > MAX_ELEMENTS {
-            return Err(format!("expected at most {MAX_ELEMENTS} triangles"));
+            return Err(Fault::too_many(format_args!("{MAX_ELEMENTS} triangles"), "more"));
         }
         self.section().triangles.extend(fan.windows(2).map(|pair| [*first, pair[0], pair[1]]));
         Ok(())
     }
 
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&self, text: &str) -> Outcome<Corner> {
+    fn corner(&self, text: &str) -> Result<Corner> {
         let mut parts = text.split('/');
         let position = place(parts.next().unwrap_or_default(), self.positions.len(), "vertex")?;
         if let Some(uv) = parts.next().filter(|uv| !uv.is_empty()) {
@@ -134,18 +136,17 @@ impl Reader {
         Ok((position, normal.transpose()?))
     }
 
-    fn finish(self) -> Outcome<Scene> {
+    fn finish(self) -> Result<Scene> {
         if let Some((vertices, faces)) = self.announced
             && (vertices, faces) != (self.positions.len(), self.faces)
         {
-            let came = (self.positions.len(), self.faces);
-            return Err(format!(
-                "expected {vertices} vertices and {faces} faces, got {} and {}",
-                came.0, came.1
+            return Err(Fault::truncated(
+                format_args!("{vertices} vertices and {faces} faces"),
+                format_args!("{} and {}", self.positions.len(), self.faces),
             ));
         }
         if self.positions.is_empty() {
-            return Err("holds no vertices".into());
+            return Err(Fault::missing("vertices"));
         }
         // A file of points alone has one mesh without faces.
         let any_faces = self.sections.iter().any(|s| !s.triangles.is_empty());
@@ -198,13 +199,16 @@ impl Reader {
 }
 
 /// The first three numbers of a statement.
-fn vector(rest: &str) -> Outcome<Vec3> {
+fn vector(rest: &str) -> Result<Vec3> {
     let mut parts = rest.split_ascii_whitespace();
     let mut vector = Vec3::ZERO;
     for axis in ["x", "y", "z"] {
-        let text = parts.next().ok_or_else(|| format!("{axis} is missing"))?;
-        let value = text.parse::<f32>().ok().filter(|v| v.is_finite());
-        let value = value.ok_or_else(|| format!("{axis}: expected a finite number, got `{text}`"))?;
+        let text = parts.next().ok_or_else(|| Fault::missing(axis))?;
+        let fault = |_| Fault::unexpected(format_args!("a number for {axis}"), format_args!("`{text}`"));
+        let value = text.parse::<f32>().map_err(fault)?;
+        if !value.is_finite() {
+            return Err(Fault::not_finite(axis, format_args!("`{text}`")));
+        }
         vector = match axis {
             "x" => vector.with_x(value),
             "y" => vector.with_y(value),
@@ -215,13 +219,16 @@ fn vector(rest: &str) -> Outcome<Vec3> {
 }
 
 /// An index as OBJ counts: from 1, or backwards from −1.
-fn place(text: &str, len: usize, what: &str) -> Outcome<u32> {
-    let index: i64 = text.parse().map_err(|_| format!("expected the number of a {what}, got `{text}`"))?;
+fn place(text: &str, len: usize, what: &str) -> Result<u32> {
+    let index: i64 = text
+        .parse()
+        .map_err(|_| Fault::unexpected(format_args!("the number of a {what}"), format_args!("`{text}`")))?;
     let place = if index < 0 { len as i64 + index } else { index - 1 };
-    u32::try_from(place)
-        .ok()
-        .filter(|p| (*p as usize) < len)
-        .ok_or_else(|| format!("{what} {index} of {len} so far"))
+    u32::try_from(place).ok().filter(|p| (*p as usize) < len).ok_or_else(|| Fault::Dangling {
+        what: what.to_owned(),
+        index,
+        count: len,
+    })
 }
 
 #[cfg(test)]
@@ -230,8 +237,8 @@ mod tests {
     use crate::format::obj::to_obj;
     use crate::testing::scene::arm;
 
-    fn read(text: &str) -> std::result::Result<Scene, String> {
-        super::read(text.as_bytes(), Path::new("a.obj")).map_err(|e| e.to_string())
+    fn read(text: &str) -> crate::Result<Scene> {
+        super::read(text.as_bytes(), Path::new("a.obj"))
     }
 
     #[test]
@@ -275,26 +282,26 @@ mod tests {
     #[test]
     fn says_what_is_wrong_and_in_which_line() {
         for (text, expected) in [
-            ("", "a.obj: holds no vertices"),
-            ("# v 1 2 3", "a.obj: holds no vertices"),
-            ("v 1 2", "line 1: z is missing"),
-            ("v 1 2 3\nv 1 nan 3", "line 2: y: expected a finite number, got `nan`"),
-            ("v 1 1e99 3", "line 1: y: expected a finite number, got `1e99`"),
-            ("v 1 x 3", "y: expected a finite number, got `x`"),
-            ("v 1 2 3\nf 1 1 2", "line 2: vertex 2 of 1 so far"),
-            ("v 1 2 3\nf 1 1 0", "vertex 0 of 1 so far"),
-            ("v 1 2 3\nf 1 1 -2", "vertex -2 of 1 so far"),
+            ("", "a.obj: has no vertices"),
+            ("# v 1 2 3", "a.obj: has no vertices"),
+            ("v 1 2", "line 1: has no z"),
+            ("v 1 2 3\nv 1 nan 3", "line 2: y: `nan` is not finite"),
+            ("v 1 1e99 3", "line 1: y: `1e99` is not finite"),
+            ("v 1 x 3", "expected a number for y, got `x`"),
+            ("v 1 2 3\nf 1 1 2", "line 2: vertex 2 does not exist, there are 1"),
+            ("v 1 2 3\nf 1 1 0", "vertex 0 does not exist"),
+            ("v 1 2 3\nf 1 1 -2", "vertex -2 does not exist"),
             ("v 1 2 3\nf 1 1", "line 2: expected a face of at least 3 corners, got 2"),
-            ("v 1 2 3\nf 1/1 1/1 1/1", "texture coordinate 1 of 0"),
-            ("v 1 2 3\nf 1//9 1//9 1//9", "normal 9 of 0"),
+            ("v 1 2 3\nf 1/1 1/1 1/1", "texture coordinate 1 does not exist, there are 0"),
+            ("v 1 2 3\nf 1//9 1//9 1//9", "normal 9 does not exist"),
             ("v 1 2 3\nf 1 1 99999999999999999999", "expected the number of a vertex"),
             ("v 1 2 3\n\u{1}\u{2}", "line 2: expected a statement"),
         ] {
-            let message = read(text).unwrap_err();
+            let message = read(text).unwrap_err().to_string();
             assert!(message.contains(expected), "`{expected}` in `{message}`");
         }
         let message = super::read(b"v 1 2 3\n\xff\xfe", Path::new("a.obj")).unwrap_err().to_string();
-        assert!(message.contains("line 2: is not text"), "{message}");
+        assert!(message.contains("line 2: expected text"), "{message}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: the bind pose for programs that know no skeletons.
+//! Wavefront OBJ: the bind pose for programs without skeletons.
 //!
 //! One `o` object per mesh, the body first with its vertices in the scene's order and unsplit, quads kept, texture
 //! coordinates with v upwards as OBJ has them. Metres. Numbers have as many digits as their `f32` needs to come back
@@ -19,7 +19,7 @@ struct Offsets {
 
 /// The scene's meshes as one OBJ file.
 ///
-/// Its first line but one tells how many `v` and `f` lines follow, so that a truncated file can be told.
+/// Its second line holds the numbers of `v` and `f` lines that follow, so that a truncated file is noticed.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the scene does not [validate](Scene::validate).

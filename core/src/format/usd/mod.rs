@@ -10,10 +10,12 @@ use std::path::Path;
 use self::document::Document;
 use super::kind::{Description, Holds, Write};
 use super::motion::clip_name;
-use crate::error::Outcome;
-use crate::{Error, Result};
+use crate::Error;
+use crate::error::UsdError;
 
 pub use write::{to_usda, to_usdc, to_usdz};
+
+type Result<T> = std::result::Result<T, UsdError>;
 
 pub(super) const USDA: Description = Description {
     ending: "usda",
@@ -42,6 +44,6 @@ pub(super) const USDZ: Description = Description {
 };
 
 /// Parses a file and reads something of it.
-fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Outcome<T>) -> Result<T> {
-    Document::open(bytes).and_then(|document| read(&document)).map_err(|message| Error::file(path, message))
+fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
+    Document::open(bytes).and_then(|document| read(&document)).map_err(|error| Error::file(path, error))
 }

@@ -1,4 +1,4 @@
-//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which says who made the figure and which of its nodes are
+//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which names the author of the character and the nodes that are
 //! the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
 //!
 //! Our bind pose is the T-pose facing +Z that the specification wants. It wants no motion in the file: a scene with
@@ -16,7 +16,7 @@ use crate::{Error, Result};
 
 const NAME: &str = "VRMC_vrm";
 
-/// Read as the glTF that it is, but for motion, for which VRM has no words.
+/// Read as the glTF that it is, except for motion, which VRM cannot hold.
 pub(super) const VRM: Description = Description {
     ending: "vrm",
     title: "VRM 1.0",
@@ -26,24 +26,24 @@ pub(super) const VRM: Description = Description {
     ..gltf::GLB
 };
 
-/// Who made a figure, and what others may do with it.
+/// The author and the licence of a character.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VrmMeta {
-    /// Title of the figure; the scene's name if empty.
+    /// Title of the character; the scene's name if empty.
     pub name: String,
-    /// Version of the figure, in any form; left out if empty.
+    /// Version of the character, in any form; left out if empty.
     pub version: String,
     /// Its authors, at least one.
     pub authors: Vec<String>,
-    /// Licence of the figure, which has to be the one that VRM 1.0 knows.
+    /// Licence of the character, which has to be the one that VRM 1.0 defines.
     pub license_url: String,
-    /// Whether everybody may use, change and pass on the figure, for money too. If not, the file says what VRM's
-    /// defaults are: only its author, for no profit.
+    /// Whether everybody may use, change and redistribute the character, commercially too. If not, the file has VRM's
+    /// defaults: only its author, and not commercially.
     pub free: bool,
 }
 
 impl Default for VrmMeta {
-    /// A free figure by AnthroNet.
+    /// A free character by AnthroNet.
     fn default() -> Self {
         Self {
             name: String::new(),
@@ -60,7 +60,7 @@ impl Default for VrmMeta {
 ///
 /// # Errors
 /// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips, without one of the bones that VRM
-/// requires; for a figure without author or with an empty name.
+/// requires; for a character without author or with an empty name.
 pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
     if let Some(clip) = scene.clips.first() {
         let message = format!("`{}`: a .vrm holds no motion, write it to a .glb", clip.name());

@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use super::Slot;
+use crate::error::FormatError;
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
@@ -14,9 +15,7 @@ pub type Overrides = BTreeMap<String, Option<String>>;
 /// # Errors
 /// [`Error::File`] with line and column when it is not a JSON object of names and nulls.
 pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
-    serde_json::from_str(json).map_err(|e| {
-        Error::file(path, format!(r#"expected {{"source joint": "joint of ours" or null}}: {e}"#))
-    })
+    serde_json::from_str(json).map_err(|error| Error::file(path, FormatError::Mapping(error)))
 }
 
 /// Resolves the names of a mapping: source joints by slot, and source joints that are to drive nothing.

@@ -12,7 +12,8 @@ use gltf_json::{Animation, animation::Property};
 
 use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
 use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 use crate::format::gltf::animation::{self, Keys, MAX_NUMBERS, ON_FRAME, Timing, Track};
 use crate::format::gltf::document::Document;
 use crate::format::gltf::weights::{self, WeightKeys};
@@ -39,7 +40,7 @@ pub(super) struct NodeWeights {
 }
 
 /// All animations that move a joint or weigh a morph target.
-pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Read>> {
+pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Result<Vec<Read>> {
     if document.root.animations.is_empty() {
         return Ok(Vec::new());
     }
@@ -49,19 +50,20 @@ pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Read
         skeleton.locals.clone(),
         vec![None; skeleton.joints.len()],
     );
-    let rest = Arc::new(rest.map_err(|e| e.to_string())?);
+    let rest = Arc::new(rest.map_err(Box::new)?);
     let mut motions = Vec::new();
     let (mut left, mut keys) = (MAX_ROTATIONS, MAX_NUMBERS);
     for (i, animation) in document.root.animations.iter().enumerate() {
-        let fault = |m: String| format!("animations[{i}]: {m}");
-        let Some(motion) = Motion::read(document, skeleton, animation, &mut keys).map_err(fault)? else {
-            continue;
-        };
+        let motion = Motion::read(document, skeleton, animation, &mut keys);
+        let Some(motion) = motion.within(format_args!("animations[{i}]"))? else { continue };
         let (frames, joints) = (motion.frames, skeleton.joints.len());
         // A weight costs less than a rotation.
         let numbers = joints + motion.weights.iter().map(|keys| keys.targets).sum::<usize>();
         let rotations = frames.checked_mul(numbers).and_then(|rotations| left.checked_sub(rotations));
-        left = rotations.ok_or_else(|| fault(format!("{frames} frames of {joints} joints are too many")))?;
+        left = rotations.ok_or_else(|| {
+            let most = format!("{MAX_ROTATIONS} rotations in all clips");
+            Fault::too_many(most, format_args!("{frames} frames of {joints} joints in animations[{i}] alone"))
+        })?;
         motions.push((i, animation, motion));
     }
     let mut names = Titles::default();
@@ -69,7 +71,7 @@ pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Outcome<Vec<Read
     for (i, animation, motion) in motions {
         let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));
         let clip = motion.clip(document, skeleton, &rest, name);
-        let clip = clip.map_err(|m| format!("animations[{i}]: {m}"))?;
+        let clip = clip.within(format_args!("animations[{i}]"))?;
         clips.push(Read { clip, weights: motion.node_weights() });
     }
     Ok(clips)
@@ -97,7 +99,7 @@ impl Motion {
         skeleton: &Skeleton,
         animation: &Animation,
         left: &mut usize,
-    ) -> Outcome<Option<Self>> {
+    ) -> Result<Option<Self>> {
         let mut nodes: BTreeMap<usize, NodeTracks> = BTreeMap::new();
         for node in skeleton.chains.iter().flatten() {
             nodes.entry(*node).or_default();
@@ -105,7 +107,7 @@ impl Motion {
         let mut tracks = animation::read(document, animation, left)?;
         tracks.retain(|track| nodes.contains_key(&track.node));
         let weights = weights::read(document, animation, left)?;
-        // Joints tell the frames where there are any.
+        // The times of joints decide where any moves; else those of weights.
         let keys: Vec<&Keys> = match tracks.is_empty() {
             true => weights.iter().map(|weights| &weights.keys).collect(),
             false => tracks.iter().map(|track| &track.keys).collect(),
@@ -123,18 +125,21 @@ impl Motion {
                 _ => {
                     let mut scale = track.key_values().flat_map(|[x, y, z, _]| [x, y, z]);
                     if let Some(scale) = scale.find(|s| (s - 1.0).abs() > SCALE_TOLERANCE) {
-                        let node = named(document, node);
-                        return Err(format!("{node} is scaled by {scale}, expected a rigid skeleton"));
+                        let found = format!("a scale of {scale}");
+                        return Err(Fault::unexpected("a rigid skeleton", found).into())
+                            .within(named(document, node));
                     }
                     continue;
                 }
             };
             if place.replace(track).is_some() {
-                return Err(format!("a second track of {}", named(document, node)));
+                let message = format!("a second track of {}", named(document, node));
+                return Err(Fault::inconsistent(message).into());
             }
         }
         if !(1.0..=MAX_FRAMES as f64).contains(&frames) {
-            return Err(format!("expected 1 to {MAX_FRAMES} frames, got {frames} at {rate} a second"));
+            let found = format!("{frames} at {rate} a second");
+            return Err(Fault::unexpected(format_args!("1 to {MAX_FRAMES} frames"), found).into());
         }
         Ok(Some(Self { nodes, weights, start, rate, frames: frames as usize }))
     }
@@ -145,7 +150,7 @@ impl Motion {
         skeleton: &Skeleton,
         rest: &Arc<RestSkeleton>,
         name: String,
-    ) -> Outcome<Clip> {
+    ) -> Result<Clip> {
         let joints = skeleton.joints.len();
         let mut rotations = vec![Rotation::IDENTITY; self.frames * joints];
         let mut translations = Vec::new();
@@ -153,7 +158,7 @@ impl Motion {
             let still = chain.iter().all(|n| self.nodes.get(n).is_none_or(|t| t.is_still()));
             let locals: Vec<RigidTransform> = (0..if still { 1 } else { self.frames })
                 .map(|frame| self.local(document, chain, frame))
-                .collect::<Outcome<_>>()?;
+                .collect::<Result<_>>()?;
             let local = |frame: usize| locals[frame.min(locals.len() - 1)];
             for frame in 0..self.frames {
                 rotations[frame * joints + j] = local(frame).rotation;
@@ -163,7 +168,7 @@ impl Motion {
                 translations.push(TranslationTrack { joint: j as u32, values });
             }
         }
-        Clip::new(name, rest.clone(), self.rate, rotations, translations).map_err(|e| e.to_string())
+        Ok(Clip::new(name, rest.clone(), self.rate, rotations, translations).map_err(Box::new)?)
     }
 
     /// The weights at the frames.
@@ -179,7 +184,7 @@ impl Motion {
     }
 
     /// A joint in its parent.
-    fn local(&self, document: &Document, chain: &[usize], frame: usize) -> Outcome<RigidTransform> {
+    fn local(&self, document: &Document, chain: &[usize], frame: usize) -> Result<RigidTransform> {
         let time = self.start + frame as f64 / self.rate;
         let near = ON_FRAME / self.rate;
         let mut product: Option<DAffine3> = None;

@@ -9,17 +9,18 @@ use gltf_json::{
 };
 
 use self::clips::NodeWeights;
-use self::skeleton::{Skeleton, hung_on};
+use self::skeleton::{Skeleton, joint_above};
 use super::document::{Document, Tree};
-use super::meshes::{Part, attribute, bring_normals_to_length, merge_copies, parts, place, with_materials};
-use crate::error::Outcome;
+use super::meshes::{Part, attribute, merge_copies, normalize_normals, parts, place, with_materials};
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 use crate::scene::{MorphTrack, Scene, SceneMesh};
 
 /// How far weights may sum away from 1 to be taken as they are; those of others are made to.
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// Joints, meshes with texture coordinates and weights, materials, clips.
-pub(super) fn scene(document: &Document) -> Outcome<Scene> {
+pub(super) fn scene(document: &Document) -> Result<Scene> {
     let tree = document.tree()?;
     let skeleton = Skeleton::read(document, &tree)?;
     let world = document.world_from_nodes(&tree);
@@ -31,7 +32,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
             // Where it is in the scene.
             None => still(part, &world[node]),
         };
-        meshes.push(mesh.map_err(|m| format!("nodes[{node}].mesh: {m}"))?);
+        meshes.push(mesh.within(format_args!("nodes[{node}].mesh"))?);
         nodes.push(node);
     }
     let mut scene = with_materials(document, meshes)?;
@@ -42,7 +43,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
         }
         scene.joints = skeleton.joints;
     }
-    scene.validate().map_err(|e| e.to_string())?;
+    scene.validate().map_err(Box::new)?;
     Ok(scene)
 }
 
@@ -61,22 +62,22 @@ fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<NodeWeights>, nod
     }
 }
 
-fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Outcome<SceneMesh> {
+fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Result<SceneMesh> {
     let Part { mut mesh, vertices, .. } = part;
     place(&mut mesh, world_from_node)?;
-    bring_normals_to_length(&mut mesh);
+    normalize_normals(&mut mesh);
     merge_copies(&mut mesh, vertices)?;
     Ok(mesh)
 }
 
-/// A mesh with its own weights, or one without that hangs on a joint.
-fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>) -> Outcome<SceneMesh> {
+/// A mesh with its own weights, or one without that is below a joint.
+fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>) -> Result<SceneMesh> {
     let Part { node, primitive, mut mesh, vertices } = part;
     let written = mesh.positions.len();
     match document.root.nodes[node].skin {
         Some(skin) => weights(document, skeleton, skin.value(), &sets(primitive), &mut mesh)?,
         None => {
-            let (joint, model_from_node) = hung_on(document, tree, skeleton, node)?;
+            let (joint, model_from_node) = joint_above(document, tree, skeleton, node)?;
             place(&mut mesh, &model_from_node)?;
             mesh.influences_per_vertex = 4;
             mesh.joint_indices = [joint, 0, 0, 0].repeat(written);
@@ -85,9 +86,10 @@ fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>
     }
     let slots = written * mesh.influences_per_vertex;
     if mesh.joint_indices.len() != slots {
-        return Err(format!("JOINTS: expected {slots} slots, got {}", mesh.joint_indices.len()));
+        let found = mesh.joint_indices.len();
+        return Err(Fault::unexpected(format_args!("{slots} slots"), found).into()).within("JOINTS");
     }
-    bring_normals_to_length(&mut mesh);
+    normalize_normals(&mut mesh);
     merge_copies(&mut mesh, vertices)?;
     Ok(mesh)
 }
@@ -111,35 +113,37 @@ fn weights(
     skin: usize,
     sets: &[(Index<Accessor>, Index<Accessor>)],
     out: &mut SceneMesh,
-) -> Outcome<()> {
-    let skin = document.root.skins.get(skin).ok_or("skin does not exist")?;
+) -> Result<()> {
+    let skin = document.root.skins.get(skin);
+    let skin = skin.ok_or_else(|| Fault::missing("skin that exists"))?;
     let places: Vec<u16> =
         skin.joints.iter().filter_map(|joint| skeleton.places.get(&joint.value())).copied().collect();
     if sets.is_empty() {
-        return Err("has a skin, but no JOINTS_0 and WEIGHTS_0".into());
+        return Err(Fault::missing("JOINTS_0 and WEIGHTS_0, but a skin").into());
     }
     let mut rows: Vec<Vec<(u16, f32)>> = Vec::new();
     for (set, (joints, weights)) in sets.iter().enumerate() {
-        let joints = document.quadruples(*joints).map_err(|m| format!("JOINTS_{set}: {m}"))?;
-        let weights = document.numbers::<4>(*weights).map_err(|m| format!("WEIGHTS_{set}: {m}"))?;
+        let joints = document.quadruples(*joints).within(format_args!("JOINTS_{set}"))?;
+        let weights = document.numbers::<4>(*weights).within(format_args!("WEIGHTS_{set}"))?;
         if joints.len() != weights.len() || (set > 0 && joints.len() != rows.len()) {
-            return Err(format!(
-                "JOINTS_{set}, WEIGHTS_{set}: {} and {} of them",
-                joints.len(),
-                weights.len()
-            ));
+            let found = format!("{} and {}", joints.len(), weights.len());
+            return Err(Fault::unexpected("as many as vertices", found).into())
+                .within(format_args!("JOINTS_{set}, WEIGHTS_{set}"));
         }
         rows.resize(joints.len(), Vec::new());
         for (v, (row, (joints, weights))) in rows.iter_mut().zip(joints.iter().zip(&weights)).enumerate() {
             for (joint, weight) in joints.iter().zip(weights) {
                 if *weight < 0.0 {
-                    return Err(format!("WEIGHTS_{set}: element {v} is negative"));
+                    return Err(Fault::unexpected("weights of at least 0", weight).into())
+                        .within(format_args!("WEIGHTS_{set}: element {v}"));
                 }
                 // What an unused slot says does not matter.
                 if *weight > 0.0 {
                     let place = places.get(usize::from(*joint));
-                    let place = place
-                        .ok_or_else(|| format!("JOINTS_{set}: element {v} is {joint} of {}", places.len()))?;
+                    let Some(place) = place else {
+                        return Err(Fault::dangling("joint", usize::from(*joint), places.len()).into())
+                            .within(format_args!("JOINTS_{set}: element {v}"));
+                    };
                     match row.iter_mut().find(|(joint, _)| joint == place) {
                         Some((_, sum)) => *sum += weight,
                         None => row.push((*place, *weight)),
@@ -154,7 +158,8 @@ fn weights(
         row.truncate(out.influences_per_vertex);
         let sum: f64 = row.iter().map(|(_, w)| f64::from(*w)).sum();
         if row.is_empty() || !sum.is_finite() {
-            return Err(format!("WEIGHTS: those of vertex {v} sum to {sum}, expected 1"));
+            return Err(Fault::unexpected("a sum of 1", sum).into())
+                .within(format_args!("WEIGHTS: vertex {v}"));
         }
         if (sum - 1.0).abs() > SUM_TOLERANCE {
             row.iter_mut().for_each(|(_, w)| *w = (f64::from(*w) / sum) as f32);

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf_json::{Index, Node, Skin, Value};
 
-use crate::error::Outcome;
+use crate::error::{Fault, GltfError, Within};
+use crate::format::gltf::Result;
 use crate::format::gltf::document::{Document, Tree};
 use crate::math::{RigidTransform, Rotation};
 use crate::scene::SceneJoint;
@@ -33,7 +34,7 @@ pub(super) struct Skeleton {
 
 impl Skeleton {
     /// `None` for a document in which no mesh has a skin.
-    pub(super) fn read(document: &Document, tree: &Tree) -> Outcome<Option<Self>> {
+    pub(super) fn read(document: &Document, tree: &Tree) -> Result<Option<Self>> {
         let root = &document.root;
         let mut used: Vec<usize> = root.nodes.iter().filter_map(|n| n.skin).map(|s| s.value()).collect();
         used.sort_unstable();
@@ -41,11 +42,14 @@ impl Skeleton {
         let mut nodes: Vec<usize> = Vec::new();
         let mut binds: BTreeMap<usize, DAffine3> = BTreeMap::new();
         for skin in used {
-            for (node, bind) in skin_joints(document, skin).map_err(|m| format!("skins[{skin}]: {m}"))? {
+            for (node, bind) in skin_joints(document, skin).within(format_args!("skins[{skin}]"))? {
                 match binds.insert(node, bind) {
                     None => nodes.push(node),
                     Some(other) if close(&other, &bind) => {}
-                    Some(_) => return Err(format!("{} has two bind poses", named(document, node))),
+                    Some(_) => {
+                        return Err(Fault::inconsistent("has two bind poses").into())
+                            .within(named(document, node));
+                    }
                 }
             }
         }
@@ -53,7 +57,7 @@ impl Skeleton {
             return Ok(None);
         }
         if nodes.len() > usize::from(u16::MAX) {
-            return Err(format!("expected at most {} joints, got {}", u16::MAX, nodes.len()));
+            return Err(Fault::too_many(format_args!("{} joints", u16::MAX), nodes.len()).into());
         }
         let mut above: Vec<Option<usize>> = vec![None; root.nodes.len()];
         for &node in &tree.order {
@@ -68,9 +72,8 @@ impl Skeleton {
         let mut roots = nodes.iter().filter(|n| above[**n].is_none());
         if let (Some(a), Some(b)) = (roots.next(), roots.next()) {
             let [a, b] = [a, b].map(|n| named(document, *n));
-            return Err(format!(
-                "the skeleton has several roots, {a} and {b}; expected one above all joints"
-            ));
+            let found = format!("several roots, {a} and {b}");
+            return Err(Fault::unexpected("one joint above all others", found).into());
         }
         let places: BTreeMap<usize, u16> = (0u16..).zip(&nodes).map(|(i, n)| (*n, i)).collect();
         let parent = |node: &usize| above[*node].and_then(|a| places.get(&a)).map(|p| u32::from(*p));
@@ -93,8 +96,7 @@ impl Skeleton {
                 name: names.unique(&name),
                 parent: *parent,
                 model_from_joint,
-                bone_length: bone_length(&root.nodes[*node])
-                    .map_err(|message| format!("{}: {message}", named(document, *node)))?,
+                bone_length: bone_length(&root.nodes[*node]).within(named(document, *node))?,
             });
         }
         let mut skeleton = Self { joints, locals, chains, places };
@@ -108,7 +110,7 @@ impl Skeleton {
         document: &Document,
         nodes: &[usize],
         binds: &BTreeMap<usize, DAffine3>,
-    ) -> Outcome<()> {
+    ) -> Result<()> {
         let bind: Vec<DAffine3> = nodes.iter().filter_map(|n| binds.get(n)).copied().collect();
         let same = |(bind, joint): (&DAffine3, &SceneJoint)| {
             rounded(bind).abs_diff_eq(joint.model_from_joint, BIND_TOLERANCE)
@@ -118,8 +120,10 @@ impl Skeleton {
         }
         for (i, node) in nodes.iter().enumerate() {
             let rigid = rigid(&bind[i]).ok_or_else(|| {
-                format!("{}: its inverse bind matrix is no rigid motion", named(document, *node))
-            })?;
+                let found = format!("{}", bind[i].inverse());
+                GltfError::from(Fault::unexpected("a rigid inverse bind matrix", found))
+            });
+            let rigid = rigid.within(named(document, *node))?;
             let parent = self.joints[i].parent.map_or(DAffine3::IDENTITY, |p| bind[p as usize]);
             self.locals[i] = to_local(&(parent.inverse() * rigid));
             self.joints[i].model_from_joint = rounded(&rigid);
@@ -129,7 +133,7 @@ impl Skeleton {
 }
 
 /// For each joint the nodes from below the joint above it, or from the top of the scene, down to its own.
-fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Outcome<Vec<Vec<usize>>> {
+fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Result<Vec<Vec<usize>>> {
     let mut chains = Vec::with_capacity(joints.len());
     let mut links = 0;
     for &joint in joints {
@@ -138,7 +142,8 @@ fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Ou
         chain.reverse();
         links += chain.len();
         if links > MAX_LINKS {
-            return Err(format!("more than {MAX_LINKS} nodes between the joints"));
+            let most = format!("{MAX_LINKS} nodes between the joints");
+            return Err(Fault::too_many(most, "more").into());
         }
         chains.push(chain);
     }
@@ -146,64 +151,63 @@ fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Ou
 }
 
 /// What our own files say of the length of a joint's bone.
-fn bone_length(node: &Node) -> Outcome<Option<f32>> {
+fn bone_length(node: &Node) -> Result<Option<f32>> {
     let extras = node.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let Some(length) = extras.as_ref().and_then(|e| e.pointer("/anthronet/bone_length")) else {
         return Ok(None);
     };
     match length.as_f64().map(|length| length as f32) {
         Some(length) if (0.0..f32::INFINITY).contains(&length) => Ok(Some(length)),
-        _ => Err(format!("extras.anthronet.bone_length: expected metres, got {length}")),
+        _ => Err(Fault::unexpected("metres", length).into()).within("extras.anthronet.bone_length"),
     }
 }
 
 /// The joints of a skin: nodes and `model_from_joint` of the bind pose.
-fn skin_joints(document: &Document, skin: usize) -> Outcome<Vec<(usize, DAffine3)>> {
+fn skin_joints(document: &Document, skin: usize) -> Result<Vec<(usize, DAffine3)>> {
     let nodes = document.root.nodes.len();
     let found = document.root.skins.get(skin);
-    let skin: &Skin = found.ok_or_else(|| format!("of {}", document.root.skins.len()))?;
+    let skin: &Skin = found.ok_or_else(|| Fault::dangling("skin", skin, document.root.skins.len()))?;
     if skin.joints.is_empty() {
-        return Err("joints: is empty".into());
+        return Err(Fault::missing("joints").into());
     }
     let matrices = match skin.inverse_bind_matrices {
-        Some(matrices) => {
-            document.numbers::<16>(matrices).map_err(|m| format!("inverseBindMatrices: {m}"))?
-        }
+        Some(matrices) => document.numbers::<16>(matrices).within("inverseBindMatrices")?,
         None => vec![glam::Mat4::IDENTITY.to_cols_array(); skin.joints.len()],
     };
     if matrices.len() < skin.joints.len() {
-        return Err(format!("{} inverseBindMatrices for {} joints", matrices.len(), skin.joints.len()));
+        let expected = format!("{}, one per joint", skin.joints.len());
+        return Err(Fault::unexpected(expected, matrices.len()).into()).within("inverseBindMatrices");
     }
     let joint = |(joint, matrix): (&Index<Node>, &[f32; 16])| {
         let node = joint.value();
         if node >= nodes {
-            return Err(format!("joints: {node} of {nodes}"));
+            return Err(Fault::dangling("node", node, nodes).into()).within("joints");
         }
         let inverse = DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))).inverse();
         if inverse.is_finite() {
             Ok((node, inverse))
         } else {
-            Err(format!("inverse bind matrix of nodes[{node}] has no inverse"))
+            Err(Fault::unexpected("a matrix with an inverse", format_args!("{matrix:?}")).into())
+                .within(format_args!("inverse bind matrix of nodes[{node}]"))
         }
     };
     skin.joints.iter().zip(&matrices).map(joint).collect()
 }
 
 /// Product of the transforms of a chain of nodes, from its top down; they have to be rigid.
-pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Outcome<DAffine3> {
+pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Result<DAffine3> {
     chain.iter().try_fold(DAffine3::IDENTITY, |above, &i| {
         let node = &document.root.nodes[i];
         let local = match (node.matrix, written(node)) {
             (None, Some(written)) => written.to_affine(),
             _ => transform_f64(node),
         };
-        let fault = || {
-            let scale = local.matrix3.x_axis.length() as f32;
-            let node = named(document, i);
-            let expected = "expected a rotation and a translation, got scale";
-            format!("{node}: {expected} ({scale}) or shear; apply it to the mesh first")
-        };
-        rigid(&local).map(|_| above * local).ok_or_else(fault)
+        if rigid(&local).is_some() {
+            return Ok(above * local);
+        }
+        let scale = local.matrix3.x_axis.length() as f32;
+        let found = format!("scale ({scale}) or shear; apply it to the mesh first");
+        Err(Fault::unexpected("a rotation and a translation", found).into()).within(named(document, i))
     })
 }
 
@@ -274,13 +278,13 @@ pub(super) fn named(document: &Document, node: usize) -> String {
     }
 }
 
-/// From a node below the skeleton to model space in the bind pose, and the joint that it hangs on.
-pub(super) fn hung_on(
+/// From a node below the skeleton to model space in the bind pose, and the joint that it is below.
+pub(super) fn joint_above(
     document: &Document,
     tree: &Tree,
     skeleton: &Skeleton,
     node: usize,
-) -> Outcome<(u16, Affine3A)> {
+) -> Result<(u16, Affine3A)> {
     let mut joint_from_node = DAffine3::IDENTITY;
     let mut at = Some(node);
     while let Some(n) = at {
@@ -291,5 +295,6 @@ pub(super) fn hung_on(
         joint_from_node = transform_f64(&document.root.nodes[n]) * joint_from_node;
         at = tree.parents[n];
     }
-    Err(format!("{}: its mesh has no skin and hangs on no joint", named(document, node)))
+    Err(Fault::inconsistent("its mesh has no skin and is below no joint").into())
+        .within(named(document, node))
 }

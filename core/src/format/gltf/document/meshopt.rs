@@ -5,13 +5,14 @@ use gltf_json::{Buffer, Root, validation::USize64};
 use serde::Deserialize;
 
 use super::slice;
-use crate::error::Outcome;
+use crate::error::{Fault, GltfError, ParserError, Within};
+use crate::format::gltf::Result;
 
 pub(crate) const NAME: &str = "EXT_meshopt_compression";
 
 /// Most bytes of all views of a document together.
 const MAX_BYTES: usize = 1 << 30;
-/// A byte of the codec stands for no more than this many bytes, a header aside.
+/// A byte of the codec decodes to no more than this many bytes, a header aside.
 const MAX_RATIO: usize = 256;
 
 /// The extension of a buffer view.
@@ -36,41 +37,48 @@ pub(crate) fn is_placeholder(buffer: &Buffer) -> bool {
 }
 
 /// What every compressed view holds; `None` for the others.
-pub(crate) fn decode_views(root: &Root, buffers: &[Vec<u8>]) -> Outcome<Vec<Option<Vec<u8>>>> {
+pub(crate) fn decode_views(root: &Root, buffers: &[Vec<u8>]) -> Result<Vec<Option<Vec<u8>>>> {
     let mut left = MAX_BYTES;
     let mut views = Vec::new();
     for (i, view) in root.buffer_views.iter().enumerate() {
         let extension = view.extensions.as_ref().and_then(|e| e.others.get(NAME));
-        let fault = |message: String| format!("bufferViews[{i}].extensions.{NAME}: {message}");
-        let decoded = match extension {
-            None => None,
-            Some(json) => {
-                let compressed = Compressed::deserialize(json).map_err(|e| fault(e.to_string()))?;
-                Some(decode(&compressed, buffers, left).map_err(fault)?)
-            }
-        };
+        let decoded = extension.map(|json| {
+            let compressed = Compressed::deserialize(json).map_err(|e| ParserError::refused(e).into());
+            compressed
+                .and_then(|compressed| decode(&compressed, buffers, left))
+                .within(format_args!("bufferViews[{i}].extensions.{NAME}"))
+        });
+        let decoded = decoded.transpose()?;
         left -= decoded.as_ref().map_or(0, Vec::len);
         views.push(decoded);
     }
     Ok(views)
 }
 
-fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Outcome<Vec<u8>> {
+fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Result<Vec<u8>> {
     let (offset, length) = (Some(USize64(view.byte_offset)), USize64(view.byte_length));
     let encoded = slice(buffers, view.buffer, offset, length)?;
     let &Compressed { count, byte_stride: stride, .. } = view;
     let size = count.checked_mul(stride).filter(|size| *size <= most);
-    let size = size.ok_or_else(|| format!("{count} elements of {stride} bytes are too many"))?;
+    let size = size.ok_or_else(|| {
+        Fault::too_many(format_args!("{most} bytes"), format_args!("{count} elements of {stride} bytes"))
+    })?;
     if size / MAX_RATIO > encoded.len() {
-        return Err(format!("{size} bytes cannot come of {}", encoded.len()));
+        let found = format!("a stream of {}", encoded.len());
+        return Err(Fault::truncated(format_args!("{size} bytes"), found).into());
     }
-    let bad = |_| format!("the {} bytes are not a valid stream of {}", encoded.len(), view.mode);
+    let bad = |error: meshopt::Error| {
+        let stream = format!("the {} bytes are not a valid stream of {}", encoded.len(), view.mode);
+        GltfError::from(ParserError::refused(format_args!("{stream}: {error}")))
+    };
     let filter = view.filter.as_deref().unwrap_or("NONE");
     if !matches!((filter, view.mode.as_str()), ("NONE", _) | ("EXPONENTIAL", "ATTRIBUTES")) {
-        return Err(format!("filter {filter} of mode {} is not supported", view.mode));
+        return Err(Fault::unsupported(format_args!("filter {filter} of mode {}", view.mode)).into());
     }
     match (view.mode.as_str(), stride) {
-        ("TRIANGLES", 2 | 4) if count % 3 != 0 => Err(format!("{count} corners make no triangles")),
+        ("TRIANGLES", 2 | 4) if count % 3 != 0 => {
+            Err(Fault::unexpected("three corners per triangle", format_args!("{count} in all")).into())
+        }
         ("TRIANGLES", 2) => meshopt::decode_index_buffer::<u16>(encoded, count).map_err(bad).map(le_u16),
         ("TRIANGLES", 4) => meshopt::decode_index_buffer::<u32>(encoded, count).map_err(bad).map(le_u32),
         ("INDICES", 2) => meshopt::decode_index_sequence::<u16>(encoded, count).map_err(bad).map(le_u16),
@@ -80,11 +88,13 @@ fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Outcome<Vec<u8
         ("ATTRIBUTES", 12) => vertices::<3>(encoded, count, filter).map_err(bad),
         ("ATTRIBUTES", 16) => vertices::<4>(encoded, count, filter).map_err(bad),
         ("ATTRIBUTES", 64) => vertices::<16>(encoded, count, filter).map_err(bad),
-        (mode, _) => Err(format!("mode {mode} with a byteStride of {stride} is not supported")),
+        (mode, _) => {
+            Err(Fault::unsupported(format_args!("mode {mode} with a byteStride of {stride}")).into())
+        }
     }
 }
 
-/// Rows of `N` words, whose bytes stand in memory as in the file.
+/// Rows of `N` words, whose bytes are in memory as in the file.
 fn vertices<const N: usize>(encoded: &[u8], count: usize, filter: &str) -> meshopt::Result<Vec<u8>>
 where
     [u32; N]: Default + bytemuck::Pod,

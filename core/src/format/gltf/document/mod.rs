@@ -15,10 +15,13 @@ use gltf_json::{
     validation::{Checked, USize64},
 };
 
-use crate::error::Outcome;
+use self::uri::Source;
+use crate::Error;
+use crate::error::{GltfError, Within};
+use crate::format::gltf::Result;
 use crate::format::limits::MAX_ELEMENTS;
+use crate::format::{Fault, disk};
 use crate::math::Rotation;
-use crate::{Error, Result};
 
 /// Required extensions that change no geometry.
 const HARMLESS_EXTENSIONS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
@@ -40,37 +43,31 @@ pub(crate) struct Tree {
 
 impl Document {
     /// The document of a `.glb` or `.gltf`. Buffers of a `.gltf` are looked for beside `path`.
-    pub(crate) fn open(bytes: &[u8], path: &Path) -> Result<Self> {
-        let fault = |message: String| Error::file(path, message);
-        let (json, chunk) =
-            if bytes.starts_with(b"glTF") { split_glb(bytes).map_err(fault)? } else { (bytes, None) };
-        let root: Root = gltf_json::deserialize::from_slice(json)
-            .map_err(|e| fault(format!("is neither a binary glTF nor valid glTF JSON: {e}")))?;
-        if !root.asset.version.starts_with("2.") {
-            return Err(fault(format!("asset.version: expected 2.x, got `{}`", root.asset.version)));
-        }
-        let unknown = |name: &&String| {
-            *name != meshopt::NAME && !HARMLESS_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix))
-        };
-        if let Some(name) = root.extensions_required.iter().find(unknown) {
-            return Err(fault(format!("extensionsRequired: {name} is not supported")));
-        }
+    pub(crate) fn open(bytes: &[u8], path: &Path) -> crate::Result<Self> {
+        let fault = |error: GltfError| Error::file(path, error);
+        let (root, chunk) = parse(bytes).map_err(fault)?;
         let mut buffers = Vec::new();
         for (i, buffer) in root.buffers.iter().enumerate() {
-            let data = match &buffer.uri {
-                _ if meshopt::is_placeholder(buffer) => {
-                    buffers.push(Vec::new());
-                    continue;
-                }
-                Some(uri) => uri::load(uri, path)
-                    .map_err(|e| e.unwrap_or_else(|m| fault(format!("buffers[{i}].uri: {m}"))))?,
-                None => chunk.filter(|_| i == 0).map(<[u8]>::to_vec).ok_or_else(|| {
-                    fault(format!("buffers[{i}]: expected a uri, as the file holds no binary chunk for it"))
-                })?,
+            if meshopt::is_placeholder(buffer) {
+                buffers.push(Vec::new());
+                continue;
+            }
+            let source = match &buffer.uri {
+                Some(uri) => uri::source(uri, path).within("uri"),
+                None => match chunk.filter(|_| i == 0) {
+                    Some(chunk) => Ok(Source::Data(chunk.to_vec())),
+                    None => Err(Fault::missing("uri, and the file no binary chunk for it").into()),
+                },
             };
-            if (data.len() as u64) < buffer.byte_length.0 {
-                let (expected, came) = (buffer.byte_length.0, data.len());
-                return Err(fault(format!("buffers[{i}]: expected {expected} bytes, got {came}")));
+            let source = source.within(format_args!("buffers[{i}]")).map_err(fault)?;
+            let data = match source {
+                Source::Data(data) => data,
+                Source::File(path) => disk::read(&path)?,
+            };
+            let expected = buffer.byte_length.0;
+            if (data.len() as u64) < expected {
+                let short = Fault::truncated(format_args!("{expected} bytes"), data.len());
+                return Err(short.into()).within(format_args!("buffers[{i}]")).map_err(fault);
             }
             buffers.push(data);
         }
@@ -79,19 +76,25 @@ impl Document {
     }
 
     /// The nodes' hierarchy.
-    pub(crate) fn tree(&self) -> Outcome<Tree> {
+    pub(crate) fn tree(&self) -> Result<Tree> {
         let nodes = &self.root.nodes;
         let mut parents = vec![None; nodes.len()];
         for (i, node) in nodes.iter().enumerate() {
             for child in node.children.iter().flatten() {
                 match parents.get_mut(child.value()) {
-                    None => return Err(format!("nodes[{i}].children: {} of {}", child.value(), nodes.len())),
-                    Some(Some(_)) => return Err(format!("nodes[{}] has two parents", child.value())),
+                    None => {
+                        return Err(Fault::dangling("node", child.value(), nodes.len()).into())
+                            .within(format_args!("nodes[{i}].children"));
+                    }
+                    Some(Some(_)) => {
+                        return Err(Fault::inconsistent("has two parents").into())
+                            .within(format_args!("nodes[{}]", child.value()));
+                    }
                     Some(parent) => *parent = Some(i),
                 }
             }
         }
-        // From the roots down; what is never reached hangs in a ring.
+        // From the roots down; what is never reached is part of a cycle.
         let mut order = Vec::with_capacity(nodes.len());
         let mut open: Vec<usize> = (0..nodes.len()).rev().filter(|i| parents[*i].is_none()).collect();
         while let Some(i) = open.pop() {
@@ -102,7 +105,8 @@ impl Document {
             let mut reached = vec![false; nodes.len()];
             order.iter().for_each(|i| reached[*i] = true);
             let ring = reached.iter().position(|reached| !reached).unwrap_or_default();
-            return Err(format!("nodes[{ring}] is its own ancestor"));
+            return Err(Fault::inconsistent("is its own ancestor").into())
+                .within(format_args!("nodes[{ring}]"));
         }
         Ok(Tree { parents, order })
     }
@@ -118,10 +122,10 @@ impl Document {
     }
 
     /// An accessor of finite `f32` vectors.
-    pub(crate) fn vectors(&self, index: Index<Accessor>) -> Outcome<Vec<Vec3>> {
+    pub(crate) fn vectors(&self, index: Index<Accessor>) -> Result<Vec<Vec3>> {
         let (accessor, component) = self.accessor(index)?;
         if accessor.type_ != Checked::Valid(Type::Vec3) || component != ComponentType::F32 {
-            return Err(format!("accessor {} is not of f32 vectors", index.value()));
+            return Err(wrong_type("f32 vectors", accessor, component)).within(named(index));
         }
         let mut vectors = Vec::new();
         for (i, bytes) in self.elements(index, accessor, 12)?.enumerate() {
@@ -130,20 +134,20 @@ impl Document {
                 &[0, 1, 2].map(|axis| numbers.get(axis).map_or(f32::NAN, |b| f32::from_le_bytes(*b))),
             );
             if !vector.is_finite() {
-                return Err(format!("element {i} is not finite: {vector}"));
+                return Err(Fault::not_finite(format_args!("element {i}"), vector).into());
             }
             vectors.push(vector);
         }
         Ok(vectors)
     }
 
-    /// An accessor of finite rows of `N` numbers: `f32`, or integers that stand for fractions.
-    pub(crate) fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Outcome<Vec<[f32; N]>> {
+    /// An accessor of finite rows of `N` numbers: `f32`, or normalised integers.
+    pub(crate) fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>> {
         let (accessor, component) = self.accessor(index)?;
         let fraction = component != ComponentType::F32;
         if multiplicity(accessor) != Some(N) || fraction != accessor.normalized {
-            let wanted = "numbers or normalised integers";
-            return Err(format!("accessor {} is not of rows of {N} {wanted}", index.value()));
+            let expected = format!("rows of {N} numbers or normalised integers");
+            return Err(wrong_type(&expected, accessor, component)).within(named(index));
         }
         let size = component.size();
         let number = |bytes: &[u8]| match (component, bytes) {
@@ -159,7 +163,7 @@ impl Document {
             let row =
                 std::array::from_fn(|n| number(bytes.get(n * size..(n + 1) * size).unwrap_or_default()));
             if !row.iter().all(|value| value.is_finite()) {
-                return Err(format!("element {i} is not finite: {row:?}"));
+                return Err(Fault::not_finite(format_args!("element {i}"), format_args!("{row:?}")).into());
             }
             rows.push(row);
         }
@@ -167,12 +171,12 @@ impl Document {
     }
 
     /// An accessor of rows of four small unsigned integers.
-    pub(crate) fn quadruples(&self, index: Index<Accessor>) -> Outcome<Vec<[u16; 4]>> {
+    pub(crate) fn quadruples(&self, index: Index<Accessor>) -> Result<Vec<[u16; 4]>> {
         let (accessor, component) = self.accessor(index)?;
         let size = component.size();
         let unsigned = matches!(component, ComponentType::U8 | ComponentType::U16);
         if multiplicity(accessor) != Some(4) || !unsigned {
-            return Err(format!("accessor {} is not of rows of four u8 or u16", index.value()));
+            return Err(wrong_type("rows of four u8 or u16", accessor, component)).within(named(index));
         }
         let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u16::from(*byte));
         let rows = self.elements(index, accessor, 4 * size)?;
@@ -183,7 +187,7 @@ impl Document {
     }
 
     /// An accessor of indices, each below `limit`.
-    pub(crate) fn indices(&self, index: Index<Accessor>, limit: usize) -> Outcome<Vec<u32>> {
+    pub(crate) fn indices(&self, index: Index<Accessor>, limit: usize) -> Result<Vec<u32>> {
         let (accessor, component) = self.accessor(index)?;
         let width = match component {
             ComponentType::U8 => 1,
@@ -192,29 +196,30 @@ impl Document {
             _ => 0,
         };
         if accessor.type_ != Checked::Valid(Type::Scalar) || width == 0 {
-            return Err(format!("accessor {} is not of unsigned integers", index.value()));
+            return Err(wrong_type("unsigned integers", accessor, component)).within(named(index));
         }
         let mut indices = Vec::new();
         for (i, bytes) in self.elements(index, accessor, width)?.enumerate() {
             let corner = bytes.iter().rev().fold(0u32, |word, byte| word << 8 | u32::from(*byte));
             if corner as usize >= limit {
-                return Err(format!("element {i} is {corner}, of {limit} vertices"));
+                return Err(Fault::dangling("vertex", corner as usize, limit).into())
+                    .within(format_args!("element {i}"));
             }
             indices.push(corner);
         }
         Ok(indices)
     }
 
-    pub(crate) fn accessor(&self, index: Index<Accessor>) -> Outcome<(&Accessor, ComponentType)> {
+    pub(crate) fn accessor(&self, index: Index<Accessor>) -> Result<(&Accessor, ComponentType)> {
         let accessor: Option<&Accessor> = self.root.get(index);
         let accessor =
-            accessor.ok_or_else(|| format!("accessor {} of {}", index.value(), self.root.accessors.len()))?;
+            accessor.ok_or_else(|| Fault::dangling("accessor", index.value(), self.root.accessors.len()))?;
         if accessor.sparse.is_some() {
-            return Err(format!("accessor {} is sparse, which is not supported", index.value()));
+            return Err(Fault::unsupported("sparse").into()).within(named(index));
         }
         match accessor.component_type {
             Checked::Valid(component) => Ok((accessor, component.0)),
-            Checked::Invalid => Err(format!("accessor {} has an unknown component type", index.value())),
+            Checked::Invalid => Err(unknown_component()).within(named(index)),
         }
     }
 
@@ -224,37 +229,45 @@ impl Document {
         index: Index<Accessor>,
         accessor: &Accessor,
         width: usize,
-    ) -> Outcome<impl Iterator<Item = &[u8]>> {
-        let fault = |message: &str| format!("accessor {}: {message}", index.value());
-        let size = |value: u64| usize::try_from(value).map_err(|_| fault("is too large"));
-        let place = accessor.buffer_view.ok_or_else(|| fault("has no bufferView"))?;
-        let view = self.root.get(place).ok_or_else(|| fault("bufferView does not exist"))?;
-        let view = match self.decoded.get(place.value()) {
-            Some(Some(decoded)) => decoded.as_slice(),
-            _ => slice(&self.buffers, view.buffer.value(), view.byte_offset, view.byte_length)
-                .map_err(|m| fault(&m))?,
-        };
+    ) -> Result<impl Iterator<Item = &[u8]>> {
+        self.elements_of(accessor, width).within(named(index))
+    }
+
+    fn elements_of(&self, accessor: &Accessor, width: usize) -> Result<impl Iterator<Item = &[u8]>> {
+        let view = accessor.buffer_view.ok_or_else(|| Fault::missing("bufferView"))?;
+        let view = self.view(view.value())?;
         let stride = self.stride(accessor).unwrap_or(width);
         if stride < width {
-            return Err(fault("byteStride is smaller than an element"));
+            return Err(Fault::unexpected(format_args!("a byteStride of at least {width}"), stride).into());
         }
-        let (start, count) = (size(accessor.byte_offset.unwrap_or_default().0)?, size(accessor.count.0)?);
+        // What does not fit a `usize` is beyond every view.
+        let size = |value: u64| usize::try_from(value).unwrap_or(usize::MAX);
+        let (start, count) = (size(accessor.byte_offset.unwrap_or_default().0), size(accessor.count.0));
         if count > MAX_ELEMENTS * 3 {
-            return Err(fault(&format!("count {count} is beyond {}", MAX_ELEMENTS * 3)));
+            return Err(Fault::too_many(format_args!("{} elements", MAX_ELEMENTS * 3), count).into());
         }
         // The last element need not fill its stride.
         let end = count
             .checked_sub(1)
             .and_then(|last| last.checked_mul(stride)?.checked_add(width)?.checked_add(start));
         if count > 0 && end.is_none_or(|end| end > view.len()) {
-            return Err(fault(&format!(
-                "count {count} reaches beyond the {} bytes of its bufferView",
-                view.len()
-            )));
+            let expected = format!("{count} elements");
+            let found = format!("the {} bytes of the bufferView", view.len());
+            return Err(Fault::truncated(expected, found).into());
         }
         Ok((0..count).map(move |i| {
             view.get(start + i * stride..).and_then(|rest| rest.get(..width)).unwrap_or_default()
         }))
+    }
+
+    /// The bytes of a buffer view, decoded where it is compressed.
+    fn view(&self, index: usize) -> Result<&[u8]> {
+        let views = &self.root.buffer_views;
+        let view = views.get(index).ok_or_else(|| Fault::dangling("bufferView", index, views.len()))?;
+        match self.decoded.get(index) {
+            Some(Some(decoded)) => Ok(decoded),
+            _ => slice(&self.buffers, view.buffer.value(), view.byte_offset, view.byte_length),
+        }
     }
 
     fn stride(&self, accessor: &Accessor) -> Option<usize> {
@@ -271,18 +284,39 @@ fn multiplicity(accessor: &Accessor) -> Option<usize> {
     }
 }
 
-/// The bytes of a buffer that a view speaks of.
+/// The bytes of a buffer view.
 pub(crate) fn slice(
     buffers: &[Vec<u8>],
     buffer: usize,
     offset: Option<USize64>,
     length: USize64,
-) -> Outcome<&[u8]> {
-    let buffer = buffers.get(buffer).ok_or("buffer does not exist")?;
+) -> Result<&[u8]> {
+    let buffer = buffers.get(buffer).ok_or_else(|| Fault::dangling("buffer", buffer, buffers.len()))?;
     let start = usize::try_from(offset.unwrap_or_default().0).unwrap_or(usize::MAX);
     let length = usize::try_from(length.0).unwrap_or(usize::MAX);
     let bytes = buffer.get(start..).and_then(|rest| rest.get(..length));
-    bytes.ok_or_else(|| "bufferView reaches beyond its buffer".into())
+    bytes.ok_or_else(|| {
+        let found = format!("a buffer of {}", buffer.len());
+        Fault::truncated(format_args!("{length} bytes of a bufferView from byte {start}"), found).into()
+    })
+}
+
+/// An accessor for a message.
+fn named(index: Index<Accessor>) -> impl std::fmt::Display {
+    format!("accessor {}", index.value())
+}
+
+/// The error for an accessor of another type.
+fn wrong_type(expected: &str, accessor: &Accessor, component: ComponentType) -> GltfError {
+    let shape = match accessor.type_ {
+        Checked::Valid(shape) => format!("{shape:?}"),
+        Checked::Invalid => "an unknown type".to_owned(),
+    };
+    Fault::unexpected(expected, format_args!("{shape} of {component:?}")).into()
+}
+
+fn unknown_component() -> GltfError {
+    Fault::unexpected("a componentType of glTF 2.0", "another").into()
 }
 
 /// A node's transform to its parent.
@@ -297,29 +331,51 @@ pub(crate) fn local_transform(node: &Node) -> Affine3A {
     )
 }
 
-/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4).
-fn split_glb(bytes: &[u8]) -> Outcome<(&[u8], Option<&[u8]>)> {
+/// The JSON of a file as a document that can be read, and the binary chunk of a `.glb`.
+fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
+    let (json, chunk) = if bytes.starts_with(b"glTF") { split_glb(bytes)? } else { (bytes, None) };
+    let root: Root = gltf_json::deserialize::from_slice(json)?;
+    if !root.asset.version.starts_with("2.") {
+        let found = format!("`{}`", root.asset.version);
+        return Err(Fault::unexpected("2.x", found).into()).within("asset.version");
+    }
+    let unknown = |name: &&String| {
+        *name != meshopt::NAME && !HARMLESS_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix))
+    };
+    match root.extensions_required.iter().find(unknown) {
+        Some(name) => Err(Fault::unsupported(name).into()).within("extensionsRequired"),
+        None => Ok((root, chunk)),
+    }
+}
+
+/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). Not by the crate `gltf`, which refuses chunks of
+/// unknown kinds, computes with lengths that it has not checked, and does not say where a file ends too early.
+fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     let word = |at: usize| {
         let word = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
-        word.ok_or_else(|| format!("truncated: expected a header at byte {at} of {}", bytes.len()))
+        word.ok_or_else(|| {
+            Fault::truncated(format_args!("a header at byte {at}"), format_args!("{} bytes", bytes.len()))
+        })
     };
     let (version, length) = (word(4)?, word(8)? as usize);
     if version != 2 {
-        return Err(format!("expected binary glTF version 2, got {version}"));
+        return Err(Fault::unexpected("binary glTF version 2", version).into());
     }
     if length > bytes.len() {
-        return Err(format!("truncated: expected {length} bytes, got {}", bytes.len()));
+        return Err(Fault::truncated(format_args!("{length} bytes"), bytes.len()).into());
     }
-    let chunk = |at: usize| -> Outcome<(u32, &[u8])> {
+    let chunk = |at: usize| -> Result<(u32, &[u8])> {
         let (size, kind) = (word(at)? as usize, word(at + 4)?);
         let data = bytes.get(at + 8..).and_then(|rest| rest.get(..size)).ok_or_else(|| {
-            format!("truncated: chunk at byte {at} should have {size} bytes, the file has {}", bytes.len())
+            let expected = format!("a chunk of {size} bytes at byte {at}");
+            Fault::truncated(expected, format_args!("a file of {}", bytes.len()))
         })?;
         Ok((kind, data))
     };
     let (kind, json) = chunk(12)?;
     if kind != u32::from_le_bytes(*b"JSON") {
-        return Err(format!("expected the first chunk to be JSON, got kind {kind:#010x}"));
+        let found = format!("one of kind {kind:#010x}");
+        return Err(Fault::unexpected("a first chunk of JSON", found).into());
     }
     let mut at = 20 + json.len();
     while at < length {

@@ -1,75 +1,78 @@
 //! Content of a buffer's URI (glTF 2.0, section 3.6.1.2).
 
-use std::path::{Component as PathComponent, Path};
+use std::path::{Component as PathComponent, Path, PathBuf};
 
-use crate::Error;
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
 
-/// Base64 data, or a file beside or below the document.
-pub(crate) fn load(
-    uri: &str,
-    document: &Path,
-) -> std::result::Result<Vec<u8>, std::result::Result<Error, String>> {
+use crate::error::Fault;
+use crate::format::gltf::Result;
+
+/// RFC 4648, section 4; padding is optional.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Where the bytes of a buffer are.
+pub(crate) enum Source {
+    /// In the URI itself.
+    Data(Vec<u8>),
+    /// In a file beside or below the document.
+    File(PathBuf),
+}
+
+/// What a URI in a document refers to.
+pub(crate) fn source(uri: &str, document: &Path) -> Result<Source> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (_, base64) = data.split_once(";base64,").ok_or(Err("expected base64 data".to_owned()))?;
-        return base64_decoded(base64).ok_or(Err("expected base64 data, got other characters".into()));
+        let (_, data) = data
+            .split_once(";base64,")
+            .ok_or_else(|| Fault::unexpected("base64 data", "data of another encoding"))?;
+        let fault = |error| Fault::unexpected("base64 data", format_args!("other characters: {error}"));
+        return Ok(Source::Data(BASE64.decode(data).map_err(fault)?));
     }
-    let relative = percent_decoded(uri).ok_or_else(|| Err(format!("`{uri}` is not valid Unicode")))?;
-    let relative = Path::new(&relative);
+    let relative = percent_decode_str(uri)
+        .decode_utf8()
+        .map_err(|_| Fault::unexpected("a name in Unicode", format_args!("`{uri}`")))?;
+    let relative = Path::new(&*relative);
     if uri.contains(':')
         || !relative.components().all(|c| matches!(c, PathComponent::Normal(_) | PathComponent::CurDir))
     {
-        return Err(Err(format!("expected a file beside or below the document, got `{uri}`")));
+        let expected = "a file beside or below the document";
+        return Err(Fault::unexpected(expected, format_args!("`{uri}`")).into());
     }
-    crate::format::disk::read(&document.with_file_name("").join(relative)).map_err(Ok)
-}
-
-fn percent_decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, tail @ ..] = rest {
-        let escaped = (*first == b'%').then(|| tail.get(..2)).flatten();
-        let escaped = escaped
-            .and_then(|hex| std::str::from_utf8(hex).ok())
-            .and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        bytes.push(escaped.unwrap_or(*first));
-        rest = if escaped.is_some() { &tail[2..] } else { tail };
-    }
-    String::from_utf8(bytes).ok()
-}
-
-/// RFC 4648, section 4; padding is optional.
-pub(crate) fn base64_decoded(text: &str) -> Option<Vec<u8>> {
-    let text = text.trim_end_matches('=').as_bytes();
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
-    for group in text.chunks(4) {
-        let mut word = 0u32;
-        for character in group {
-            let value = match character {
-                b'A'..=b'Z' => character - b'A',
-                b'a'..=b'z' => character - b'a' + 26,
-                b'0'..=b'9' => character - b'0' + 52,
-                b'+' => 62,
-                b'/' => 63,
-                _ => return None,
-            };
-            word = word << 6 | u32::from(value);
-        }
-        let [_, decoded @ ..] = (word << (6 * (4 - group.len()))).to_be_bytes();
-        bytes.extend_from_slice(decoded.get(..(group.len() * 6) / 8)?);
-    }
-    Some(bytes)
+    Ok(Source::File(document.with_file_name("").join(relative)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn load(uri: &str) -> Result<Source> {
+        source(uri, Path::new("folder/a.gltf"))
+    }
+
     #[test]
-    fn decodes_the_base64_of_the_standard() {
-        // RFC 4648, section 10.
+    fn data_comes_with_padding_or_without() {
         for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob")] {
-            assert_eq!(base64_decoded(text).unwrap(), bytes.as_bytes());
+            let data = load(&format!("data:application/octet-stream;base64,{text}"));
+            assert!(matches!(data, Ok(Source::Data(data)) if data == bytes.as_bytes()), "{text}");
         }
-        assert_eq!(base64_decoded("Zm9*"), None);
+        for uri in ["data:;base64,Zm9*", "data:;base64,Z", "data:,Zg=="] {
+            assert!(load(uri).is_err(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn names_are_escaped_and_stay_below_the_document() {
+        for (uri, path) in
+            [("a%20b.bin", "folder/a b.bin"), ("100%.bin", "folder/100%.bin"), ("%+5", "folder/%+5")]
+        {
+            assert!(matches!(load(uri), Ok(Source::File(file)) if file == Path::new(path)), "{uri}");
+        }
+        for uri in ["%ff", "../a.bin", "%2e%2e/a.bin", "/a.bin", "file:a.bin"] {
+            assert!(load(uri).is_err(), "{uri}");
+        }
     }
 }

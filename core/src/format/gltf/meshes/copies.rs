@@ -3,7 +3,7 @@
 use crate::scene::SceneMesh;
 
 /// For every vertex the one of the first `vertices` that it is a copy of: the first at the same place that is the same in
-/// what else is asked for. `Err` has a vertex that is no copy.
+/// the sense of `same`. `Err` has a vertex that is no copy.
 pub(super) fn originals(
     mesh: &SceneMesh,
     vertices: usize,

@@ -15,7 +15,8 @@ use gltf_json::{
 use self::copies::{merge, originals};
 use self::targets::Targets;
 use super::document::Document;
-use crate::error::Outcome;
+use crate::error::{Fault, GltfError, ParserError, Within};
+use crate::format::gltf::Result;
 use crate::format::limits::{MAX_ELEMENTS, MAX_MESHES};
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMesh};
@@ -23,17 +24,17 @@ use crate::scene::{Corners, Scene, SceneMesh};
 /// How far a normal's length may be from 1 to be taken as it is.
 const LENGTH_TOLERANCE: f32 = 1e-3;
 
-/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes put them.
-pub(super) fn scene(document: &Document) -> Outcome<Scene> {
+/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes place them.
+pub(super) fn scene(document: &Document) -> Result<Scene> {
     let world = document.world_from_nodes(&document.tree()?);
     let mut meshes = Vec::new();
     for Part { node, mut mesh, vertices, .. } in parts(document)? {
         // glTF 2.0, section 3.7.3.3: the transform of a skinned mesh's own node is ignored.
         let skinned = document.root.nodes[node].skin.is_some();
         if !skinned {
-            place(&mut mesh, &world[node]).map_err(|m| format!("nodes[{node}]: {m}"))?;
+            place(&mut mesh, &world[node]).within(format_args!("nodes[{node}]"))?;
         }
-        bring_normals_to_length(&mut mesh);
+        normalize_normals(&mut mesh);
         // Where a tool has moved a copy away from what it was one of, the vertices stay as they are.
         let bits = |v: usize| mesh.positions[v].map(f32::to_bits);
         if let Ok(originals) = originals(&mesh, vertices, |a, b| bits(a) == bits(b)) {
@@ -47,7 +48,7 @@ pub(super) fn scene(document: &Document) -> Outcome<Scene> {
 }
 
 /// A scene of meshes whose materials are places in the document's, one beyond the last for none.
-pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Outcome<Scene> {
+pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Result<Scene> {
     let root = &document.root;
     let mut names = Titles::default();
     let mut materials: Vec<_> = root.materials.iter().map(|m| material::read(m, &mut names)).collect();
@@ -56,7 +57,10 @@ pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Out
     }
     let name = root.scene.and_then(|s| root.get(s)).or(root.scenes.first()).and_then(|s| s.name.clone());
     let extras = match &root.extras {
-        Some(raw) => gltf_json::deserialize::from_str(raw.get()).map_err(|e| format!("extras: {e}"))?,
+        Some(raw) => {
+            let extras = gltf_json::deserialize::from_str(raw.get());
+            extras.map_err(|e| GltfError::from(ParserError::refused(e))).within("extras")?
+        }
         None => Value::Null,
     };
     Ok(Scene { name: name.unwrap_or_default(), meshes, materials, extras, ..Scene::default() })
@@ -64,7 +68,7 @@ pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Out
 
 /// A primitive as a mesh of its own.
 pub(super) struct Part<'a> {
-    /// The node that it hangs on.
+    /// Its node.
     pub(super) node: usize,
     pub(super) primitive: &'a Primitive,
     /// In the space of the mesh, with the file's vertices; its name is unique.
@@ -75,7 +79,7 @@ pub(super) struct Part<'a> {
 }
 
 /// The primitives of all nodes, in the file's order; at least one.
-pub(super) fn parts(document: &Document) -> Outcome<Vec<Part<'_>>> {
+pub(super) fn parts(document: &Document) -> Result<Vec<Part<'_>>> {
     let root = &document.root;
     let (mut names, mut targets) = (Titles::default(), Targets::of(document));
     let mut parts = Vec::new();
@@ -83,37 +87,52 @@ pub(super) fn parts(document: &Document) -> Outcome<Vec<Part<'_>>> {
     for (node, of_node) in root.nodes.iter().enumerate() {
         let Some(index) = of_node.mesh else { continue };
         let Some(of_mesh) = root.get(index) else {
-            return Err(format!("nodes[{node}].mesh: {} of {}", index.value(), root.meshes.len()));
+            return Err(Fault::dangling("mesh", index.value(), root.meshes.len()).into())
+                .within(format_args!("nodes[{node}].mesh"));
         };
         for primitive in &of_mesh.primitives {
-            let fault = |message: String| format!("nodes[{node}].mesh: {message}");
-            let mut mesh = surface(document, primitive).map_err(fault)?;
-            mesh.morph_targets = targets.read(of_mesh, primitive, &mesh).map_err(fault)?;
+            let mut part = part(document, &mut targets, of_mesh, primitive, node)
+                .within(format_args!("nodes[{node}].mesh"))?;
             let name = of_mesh.name.as_deref().or(of_node.name.as_deref()).unwrap_or_default();
-            mesh.name = names.unique(name);
-            vertices += mesh.positions.len();
-            triangles += mesh.triangles.positions.len();
+            part.mesh.name = names.unique(name);
+            vertices += part.mesh.positions.len();
+            triangles += part.mesh.triangles.positions.len();
             if vertices.max(triangles) > MAX_ELEMENTS {
-                return Err(format!("expected at most {MAX_ELEMENTS} vertices and triangles in all"));
+                let most = format!("{MAX_ELEMENTS} vertices and triangles in all");
+                return Err(Fault::too_many(most, "more").into());
             }
-            let of_model = model_vertices(of_mesh, mesh.positions.len()).map_err(fault)?;
-            parts.push(Part { node, primitive, mesh, vertices: of_model });
+            parts.push(part);
             if parts.len() > MAX_MESHES {
-                return Err(format!("expected at most {MAX_MESHES} meshes"));
+                return Err(Fault::too_many(format_args!("{MAX_MESHES} meshes"), "more").into());
             }
         }
     }
-    if parts.is_empty() { Err("holds no mesh".into()) } else { Ok(parts) }
+    if parts.is_empty() { Err(Fault::missing("mesh").into()) } else { Ok(parts) }
+}
+
+/// A primitive of a mesh at a node, without a name.
+fn part<'a>(
+    document: &'a Document,
+    targets: &mut Targets,
+    of_mesh: &'a gltf_json::Mesh,
+    primitive: &'a Primitive,
+    node: usize,
+) -> Result<Part<'a>> {
+    let mut mesh = surface(document, primitive)?;
+    mesh.morph_targets = targets.read(of_mesh, primitive, &mesh)?;
+    let vertices = model_vertices(of_mesh, mesh.positions.len())?;
+    Ok(Part { node, primitive, mesh, vertices })
 }
 
 /// How many of its vertices are the model's, which our own files say.
-fn model_vertices(mesh: &gltf_json::Mesh, written: usize) -> Outcome<usize> {
+fn model_vertices(mesh: &gltf_json::Mesh, written: usize) -> Result<usize> {
     let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let stated = extras.and_then(|e| e.pointer("/anthronet/vertices").and_then(Value::as_u64));
     match stated.map(usize::try_from) {
         None => Ok(written),
         Some(Ok(stated)) if stated <= written => Ok(stated),
-        Some(_) => Err("extras.anthronet.vertices exceeds the vertices".into()),
+        Some(_) => Err(Fault::too_many(format_args!("{written} vertices"), "more").into())
+            .within("extras.anthronet.vertices"),
     }
 }
 
@@ -123,39 +142,41 @@ pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Ind
 }
 
 /// All but name and morph targets: positions, normals, texture coordinates, triangles, the place of the material.
-fn surface(document: &Document, primitive: &Primitive) -> Outcome<SceneMesh> {
+fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
     if primitive.mode != Checked::Valid(Mode::Triangles) {
-        return Err("expected triangles, got another kind of primitive".into());
+        return Err(Fault::unsupported("a primitive of other than triangles").into());
     }
-    let positions = attribute(primitive, Semantic::Positions).ok_or("has no POSITION")?;
-    let positions = document.vectors(positions).map_err(|m| format!("POSITION: {m}"))?;
+    let positions = attribute(primitive, Semantic::Positions).ok_or_else(|| Fault::missing("POSITION"))?;
+    let positions = document.vectors(positions).within("POSITION")?;
     if positions.is_empty() {
-        return Err("POSITION: is empty".into());
+        return Err(Fault::missing("vertices").into());
     }
     let normals = match attribute(primitive, Semantic::Normals) {
-        Some(normals) => document.vectors(normals).map_err(|m| format!("NORMAL: {m}"))?,
+        Some(normals) => document.vectors(normals).within("NORMAL")?,
         None => Vec::new(),
     };
     let uvs = match attribute(primitive, Semantic::TexCoords(0)) {
-        Some(uvs) => document.numbers::<2>(uvs).map_err(|m| format!("TEXCOORD_0: {m}"))?,
+        Some(uvs) => document.numbers::<2>(uvs).within("TEXCOORD_0")?,
         None => Vec::new(),
     };
     for (name, count) in [("NORMAL", normals.len()), ("TEXCOORD_0", uvs.len())] {
         if count != 0 && count != positions.len() {
-            return Err(format!("{name}: expected {} of them, got {count}", positions.len()));
+            let expected = format!("{} of them", positions.len());
+            return Err(Fault::unexpected(expected, count).into()).within(name);
         }
     }
     let corners = match primitive.indices {
-        Some(indices) => document.indices(indices, positions.len()).map_err(|m| format!("indices: {m}"))?,
+        Some(indices) => document.indices(indices, positions.len()).within("indices")?,
         None => (0..positions.len() as u32).collect(),
     };
     let (triangles, []) = corners.as_chunks::<3>() else {
-        return Err(format!("expected three corners per triangle, got {} corners in all", corners.len()));
+        let found = format!("{} corners in all", corners.len());
+        return Err(Fault::unexpected("three corners per triangle", found).into());
     };
     let materials = document.root.materials.len();
     let material = primitive.material.map_or(materials, |material| material.value());
     if primitive.material.is_some() && material >= materials {
-        return Err(format!("material {material} of {materials}"));
+        return Err(Fault::dangling("material", material, materials).into());
     }
     let uv_corners = if uvs.is_empty() { Vec::new() } else { triangles.to_vec() };
     Ok(SceneMesh {
@@ -168,14 +189,14 @@ fn surface(document: &Document, primitive: &Primitive) -> Outcome<SceneMesh> {
     })
 }
 
-/// Moves a mesh without a skin to where its node puts it.
-pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Outcome<()> {
+/// Moves a mesh without a skin to where its node places it.
+pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Result<()> {
     if *world == Affine3A::IDENTITY {
         return Ok(());
     }
     let inverse = world.matrix3.inverse();
     if !world.is_finite() || !inverse.is_finite() {
-        return Err("its transform is not finite or flattens space".into());
+        return Err(Fault::unexpected("a transform with an inverse", world).into());
     }
     let normal_matrix = inverse.transpose();
     targets::place(mesh, world.matrix3, normal_matrix);
@@ -187,7 +208,7 @@ pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Outcome<()> {
     }
     let targets = mesh.morph_targets.iter().flat_map(|t| t.positions.iter().chain(&t.normals));
     if !mesh.positions.iter().chain(targets).flatten().all(|v| v.is_finite()) {
-        return Err("its transform moves vertices to infinity".into());
+        return Err(Fault::not_finite("a vertex that its transform has moved", "it").into());
     }
     if world.matrix3.determinant() < 0.0 {
         let Corners { positions, uvs } = &mut mesh.triangles;
@@ -197,7 +218,7 @@ pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Outcome<()> {
 }
 
 /// Normals that are clearly longer or shorter than 1 are made to be.
-pub(super) fn bring_normals_to_length(mesh: &mut SceneMesh) {
+pub(super) fn normalize_normals(mesh: &mut SceneMesh) {
     for normal in &mut mesh.normals {
         let vector = Vec3::from_array(*normal);
         if (vector.length() - 1.0).abs() > LENGTH_TOLERANCE {
@@ -207,7 +228,7 @@ pub(super) fn bring_normals_to_length(mesh: &mut SceneMesh) {
 }
 
 /// Puts the copies that texture seams needed back onto what they are copies of, in every respect.
-pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Outcome<()> {
+pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Result<()> {
     let per_vertex = mesh.influences_per_vertex;
     let slots = |v: usize| v * per_vertex..(v + 1) * per_vertex;
     let same = |a: usize, b: usize| {
@@ -217,8 +238,9 @@ pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Outcome<()>
             && mesh.joint_indices[slots(a)] == mesh.joint_indices[slots(b)]
             && mesh.joint_weights[slots(a)] == mesh.joint_weights[slots(b)]
     };
-    let originals = originals(mesh, vertices, same)
-        .map_err(|copy| format!("vertex {copy} is no copy of one of the first {vertices}"))?;
+    let originals = originals(mesh, vertices, same).map_err(|copy| {
+        Fault::inconsistent(format_args!("vertex {copy} is no copy of one of the first {vertices}"))
+    })?;
     merge(mesh, vertices, &originals);
     Ok(())
 }

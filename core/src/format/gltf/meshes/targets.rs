@@ -1,11 +1,12 @@
-//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are passed over, and so are default weights: a scene
+//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are ignored, and so are default weights: a scene
 //! rests without its targets.
 
 use glam::{Mat3A, Vec3};
 use gltf_json::mesh::Primitive;
 use gltf_json::{Mesh, Value};
 
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::gltf::Result;
 use crate::format::gltf::document::Document;
 use crate::scene::titles::Titles;
 use crate::scene::{MorphTarget, SceneMesh};
@@ -31,29 +32,27 @@ impl<'a> Targets<'a> {
         mesh: &Mesh,
         primitive: &Primitive,
         surface: &SceneMesh,
-    ) -> Outcome<Vec<MorphTarget>> {
+    ) -> Result<Vec<MorphTarget>> {
         let Some(targets) = primitive.targets.as_ref().filter(|targets| !targets.is_empty()) else {
             return Ok(Vec::new());
         };
         let count = surface.positions.len();
         let left = targets.len().checked_mul(count).and_then(|vertices| self.left.checked_sub(vertices));
         self.left = left.ok_or_else(|| {
-            format!("targets: expected at most {MAX_TARGET_VERTICES} vertices in all targets of the file")
+            Fault::too_many(format_args!("{MAX_TARGET_VERTICES} vertices in all morph targets"), "more")
         })?;
         let (named, mut names) = (names(mesh), Titles::default());
         let mut read = Vec::with_capacity(targets.len());
         for (i, target) in targets.iter().enumerate() {
-            let fault = |message: String| format!("targets[{i}]: {message}");
+            let offsets = |index, what: &str| {
+                self.document.offsets(index, count).within(format_args!("targets[{i}]: {what}"))
+            };
             let positions = match target.positions {
-                Some(index) => {
-                    self.document.offsets(index, count).map_err(|m| fault(format!("POSITION: {m}")))?
-                }
+                Some(index) => offsets(index, "POSITION")?,
                 None => vec![[0.0; 3]; count],
             };
             let normals = match target.normals {
-                Some(index) if !surface.normals.is_empty() => {
-                    self.document.offsets(index, count).map_err(|m| fault(format!("NORMAL: {m}")))?
-                }
+                Some(index) if !surface.normals.is_empty() => offsets(index, "NORMAL")?,
                 _ => Vec::new(),
             };
             let name = named.get(i).cloned().filter(|name| !name.is_empty());
@@ -64,7 +63,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// What the mesh calls its targets: no part of the standard, but what everybody writes.
+/// What the mesh calls its targets: not part of the standard, but a common convention.
 fn names(mesh: &Mesh) -> Vec<String> {
     let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let names = extras.as_ref().and_then(|e| e.get("targetNames")).and_then(Value::as_array);

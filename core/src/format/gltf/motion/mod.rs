@@ -1,7 +1,7 @@
 //! Animations of glTF 2.0 files, binary or JSON (section 3.11 of the specification).
 //!
-//! Joints are the nodes that skins name, or, where there is no skin, those that are animated and all below them; what
-//! stands between and above them is folded in. They rest in the pose of the nodes, which is the one that the format
+//! Joints are the nodes that skins name, or, where there is no skin, those that are animated and all below them; nodes
+//! between and above them are folded in. They rest in the pose of the nodes, which is the one that the format
 //! calls initial. Every animation is sampled at the rate of its keys.
 
 use std::collections::BTreeSet;
@@ -12,21 +12,22 @@ use gltf_json::animation::Property;
 
 use super::animation::{self, FALLBACK_RATE, Keys, ON_FRAME, Timing, Track, unit};
 use super::document::{Document, Tree};
-use crate::error::Outcome;
+use crate::error::{Fault, GltfError, Within};
+use crate::format::gltf::Result;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
 use crate::format::motion::{Found, ReadOptions};
 use crate::math::RigidTransform;
-use crate::skeleton::MAX_JOINTS;
+use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
 /// Most nodes of a document.
 const MAX_NODES: usize = 1 << 16;
 
 /// Every animation of nodes.
-pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMotion> {
+pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMotion> {
     let nodes = &document.root.nodes;
     if nodes.len() > MAX_NODES {
-        return Err(format!("expected at most {MAX_NODES} nodes, got {}", nodes.len()));
+        return Err(Fault::too_many(format_args!("{MAX_NODES} nodes"), nodes.len()).into());
     }
     let tree = document.tree()?;
     let animations = tracks(document)?;
@@ -61,7 +62,7 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMot
             rate_found = timing.found;
         }
         let frames = raw::frame_count(timing.end - timing.start, timing.rate, rig.order.len());
-        let frames = frames.map_err(|e| format!("`{title}`: {e}"))?;
+        let frames = frames.map_err(GltfError::from).within(format_args!("`{title}`"))?;
         frames_so_far += frames;
         raw::frame_count(frames_so_far as f64, 1.0, rig.order.len())?;
         takes.push(rig.take(title, tracks, &timing, frames, (&at_rest, &rest)));
@@ -69,12 +70,11 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMot
 
     let mut names: Vec<String> = rig.joints.iter().map(|&node| name(&nodes[node], node)).collect();
     raw::make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let skeleton = Skeleton::new(names, rig.parents, rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "glTF",
-        ends: vec![None; names.len()],
-        names,
-        parents: rig.parents,
-        rest,
+        skeleton,
         takes,
         unit: Some(Unit::Metre),
         up: Some(Axis::Y),
@@ -85,15 +85,15 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Outcome<RawMot
 }
 
 /// What moves nodes, of every animation; of one at least something.
-fn tracks(document: &Document) -> Outcome<Vec<Vec<Track>>> {
+fn tracks(document: &Document) -> Result<Vec<Vec<Track>>> {
     let mut left = animation::MAX_NUMBERS;
     let mut animations = Vec::with_capacity(document.root.animations.len());
     for (i, animation) in document.root.animations.iter().enumerate() {
         let tracks = animation::read(document, animation, &mut left);
-        animations.push(tracks.map_err(|e| format!("animations[{i}]: {e}"))?);
+        animations.push(tracks.within(format_args!("animations[{i}]"))?);
     }
     if animations.iter().all(Vec::is_empty) {
-        return Err("expected an animation of nodes, got none".to_owned());
+        return Err(Fault::missing("animation of nodes").into());
     }
     Ok(animations)
 }
@@ -110,7 +110,7 @@ struct Rig<'a> {
 }
 
 impl<'a> Rig<'a> {
-    fn of(document: &Document, tree: &'a Tree, animations: &[Vec<Track>]) -> Outcome<Self> {
+    fn of(document: &Document, tree: &'a Tree, animations: &[Vec<Track>]) -> Result<Self> {
         let joints = joints(document, tree, animations)?;
         let nodes = document.root.nodes.len();
         let mut place = vec![None; nodes];
@@ -166,13 +166,14 @@ impl<'a> Rig<'a> {
 }
 
 /// The nodes that are joints, parents first.
-fn joints(document: &Document, tree: &Tree, animations: &[Vec<Track>]) -> Outcome<Vec<usize>> {
+fn joints(document: &Document, tree: &Tree, animations: &[Vec<Track>]) -> Result<Vec<usize>> {
     let nodes = document.root.nodes.len();
     let mut chosen = BTreeSet::new();
     for (i, skin) in document.root.skins.iter().enumerate() {
         for joint in &skin.joints {
             if joint.value() >= nodes {
-                return Err(format!("skins[{i}].joints: {} of {nodes}", joint.value()));
+                return Err(Fault::dangling("node", joint.value(), nodes).into())
+                    .within(format_args!("skins[{i}].joints"));
             }
             chosen.insert(joint.value());
         }
@@ -186,7 +187,7 @@ fn joints(document: &Document, tree: &Tree, animations: &[Vec<Track>]) -> Outcom
         }
     }
     if chosen.len() > MAX_JOINTS {
-        return Err(format!("expected at most {MAX_JOINTS} joints, got {}", chosen.len()));
+        return Err(Fault::too_many(format_args!("{MAX_JOINTS} joints"), chosen.len()).into());
     }
     Ok(tree.order.iter().copied().filter(|node| chosen.contains(node)).collect())
 }

@@ -1,7 +1,7 @@
 //! EXT_meshopt_compression, by the reference implementation's encoder.
 //!
 //! Every buffer view is encoded by itself. Floating-point numbers of geometry and motion go through the EXPONENTIAL
-//! filter: integers times one power of two per component, still `f32` for who reads them, so that no other extension is
+//! filter: integers times one power of two per component, still `f32` for readers, so that no other extension is
 //! needed. Key times, weights of morph targets, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the codec may
 //! turn the corners of a triangle round. The views lie in a buffer that does not exist: a reader needs the extension.
 
@@ -130,7 +130,7 @@ fn filter_bits(builder: &DocumentBuilder) -> Vec<Option<i32>> {
             if let Some(bits) = sampler.and_then(|s| bits.get_mut(s.output.value())) {
                 *bits = match channel.target.path {
                     Checked::Valid(Property::Rotation) => Some(UNIT_BITS),
-                    // Few numbers, whose rows the filter does not know.
+                    // Few numbers, whose rows the filter does not support.
                     Checked::Valid(Property::MorphTargetWeights) => None,
                     _ => Some(POSITION_BITS),
                 };
@@ -164,7 +164,7 @@ fn filtered<const N: usize>(bytes: &[u8], bits: i32, bounds: &mut Option<(Value,
 }
 
 fn encode_vertices<T>(rows: &[T]) -> Result<Vec<u8>> {
-    // The extension knows version 0 alone.
+    // The extension supports version 0 alone.
     meshopt::encode_vertex_buffer_level(rows, 2, Some(0)).map_err(fault)
 }
 

@@ -22,9 +22,11 @@ mod material;
 mod mesh;
 pub(crate) mod skeleton;
 
+use gltf::binary::{Glb, Header};
 use gltf_json::{
     Asset, Buffer, Extras, Index, Node, Scene as GltfScene, Value, extras::RawValue, validation::USize64,
 };
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::json;
 
 use crate::scene::Scene;
@@ -32,22 +34,25 @@ use crate::skeleton::written::written_joints;
 use crate::{Error, Result};
 use accessor::DocumentBuilder;
 
+/// All but the unreserved characters of URIs (RFC 3986, section 2.3).
+const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+
 /// How a scene is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Whether to use EXT_meshopt_compression, which a reader must know to open the file. It rounds: positions and
+    /// Whether to use EXT_meshopt_compression, which a reader must support to open the file. It rounds: positions and
     /// translations by less than a micrometre, components of rotations and weights by less than a millionth, of
     /// normals by less than a ten-thousandth, texture coordinates by less than a sixty-thousandth of the picture. The
     /// corners of a triangle may start at another one, so that the diagonals of quads are not marked any more.
     pub compress: bool,
 }
 
-/// A `.gltf` document and the buffer that lies beside it.
+/// A `.gltf` document and the buffer beside it.
 #[derive(Clone, Debug)]
 pub struct GltfFiles {
     /// The document, UTF-8 JSON.
     pub json: Vec<u8>,
-    /// The buffer, under the name that was asked for.
+    /// The buffer, under the requested name.
     pub bin: Vec<u8>,
 }
 
@@ -70,24 +75,15 @@ pub fn to_glb_with(scene: &Scene, options: &GltfOptions) -> Result<Vec<u8>> {
 /// The binary container (glTF 2.0, section 4.4).
 pub(crate) fn glb(builder: DocumentBuilder) -> Result<Vec<u8>> {
     let DocumentBuilder { root, bin } = builder;
-    let mut json = gltf_json::serialize::to_vec(&root).map_err(json_fault)?;
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let length = 12 + 8 + json.len() + 8 + bin.len();
+    let json = gltf_json::serialize::to_vec(&root).map_err(json_fault)?;
+    // The crate writes the length itself, and does not notice when it does not fit.
+    let length = 12 + 8 + json.len().next_multiple_of(4) + 8 + bin.len().next_multiple_of(4);
     let too_long =
-        |_| Error::invalid("scene", format!("a .glb holds at most 4 GiB, this needs {length} bytes"));
-    let length = u32::try_from(length).map_err(too_long)?;
-
-    let mut glb = Vec::with_capacity(length as usize);
-    for word in [u32::from_le_bytes(*b"glTF"), 2, length] {
-        glb.extend_from_slice(&word.to_le_bytes());
-    }
-    for (kind, chunk) in [(b"JSON", &json), (b"BIN\0", &bin)] {
-        // Shorter than the whole, which fits.
-        glb.extend_from_slice(&(chunk.len() as u32).to_le_bytes());
-        glb.extend_from_slice(kind);
-        glb.extend_from_slice(chunk);
-    }
-    Ok(glb)
+        || Error::invalid("scene", format!("a .glb holds at most 4 GiB, this needs {length} bytes"));
+    let header =
+        Header { magic: *b"glTF", version: 2, length: u32::try_from(length).map_err(|_| too_long())? };
+    let glb = Glb { header, json: json.into(), bin: Some(bin.into()) };
+    glb.to_vec().map_err(|error| Error::invalid("scene", format!("cannot be written as a .glb: {error}")))
 }
 
 /// The scene as a JSON document that refers to `bin_name`, a plain file name, and the content of that file.
@@ -103,7 +99,8 @@ pub fn to_gltf(scene: &Scene, bin_name: &str) -> Result<GltfFiles> {
 /// # Errors
 /// As [`to_gltf`].
 pub fn to_gltf_with(scene: &Scene, bin_name: &str, options: &GltfOptions) -> Result<GltfFiles> {
-    let builder = finished(document(scene)?, options, Some(percent_encoded(bin_name)))?;
+    let builder =
+        finished(document(scene)?, options, Some(utf8_percent_encode(bin_name, RESERVED).to_string()))?;
     let DocumentBuilder { root, bin } = builder;
     let mut json = gltf_json::serialize::to_vec_pretty(&root).map_err(json_fault)?;
     json.push(b'\n');
@@ -180,20 +177,6 @@ fn raw(value: &Value) -> Result<Extras> {
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn json_fault(error: gltf_json::Error) -> Error {
     Error::invalid("scene", format!("cannot be written as JSON: {error}"))
-}
-
-/// A file name as a relative URI (RFC 3986): everything but unreserved characters as `%XX`.
-fn percent_encoded(name: &str) -> String {
-    use std::fmt::Write;
-    name.bytes().fold(String::new(), |mut uri, byte| {
-        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
-            uri.push(char::from(byte));
-        } else {
-            // Writing to a string cannot fail.
-            let _ = write!(uri, "%{byte:02X}");
-        }
-        uri
-    })
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::skeleton::written::{ParentFromJoint, WrittenJoint, plain};
 
 /// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` says how
-/// long the joint's bone is, which glTF has no word for.
+/// long the joint's bone is, which glTF cannot hold.
 pub(super) fn push(
     builder: &mut DocumentBuilder,
     scene: &Scene,

@@ -1,18 +1,18 @@
-//! From a file's unit and axes to ours: what was asked for, what the file says, or what its body tells.
+//! From a file's unit and axes to ours: what was requested, what the file states, or what its body suggests.
 //!
-//! Files lie about both: programs export centimetres as metres, or stand bodies up along another axis than they say.
-//! People are 1.3 to 2.3 m tall and stand upright most of the time, which tells most such mistakes.
+//! Files are often wrong about both: programs export centimetres as metres, or bodies upright along another axis than
+//! they state.
+//! People are 1.3 to 2.3 m tall and are upright most of the time, which reveals most such mistakes.
 
 use std::sync::Arc;
 
 use super::proportions::Proportions;
 use super::raw::RawMotion;
 use super::{Found, Motion, ReadOptions, ReadReport};
+use crate::Result;
 use crate::clip::Clip;
-use crate::error::Outcome;
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
-use crate::{Error, Result};
 
 /// What a body of unknown unit is taken to be tall, metres.
 const TYPICAL: f64 = 1.7;
@@ -21,23 +21,11 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.4..=3.2;
 /// Bodies for which a found unit is not doubted, metres.
 const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
 
-/// A file's motion as clips in metres, +Y up. An error says what of the joints or motions contradicts itself.
-pub(crate) fn resolve(raw: RawMotion, options: &ReadOptions) -> Outcome<Motion> {
-    convert(raw, options).map_err(|error| match error {
-        Error::Invalid { what, message } => format!("{what}: {message}"),
-        other => other.to_string(),
-    })
-}
-
-fn convert(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
-    let mut rest = Skeleton::new(
-        std::mem::take(&mut raw.names),
-        raw.parents.clone(),
-        std::mem::take(&mut raw.rest),
-        raw.ends.clone(),
-    )?;
-    raw.names = rest.names().to_vec();
-    raw.rest = rest.rest_pose().locals.clone();
+/// A file's motion as clips in metres, +Y up.
+///
+/// # Errors
+/// [`Invalid`](crate::Error::Invalid) says what of the joints or motions contradicts itself.
+pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
     let body = Proportions::of(&raw);
     let height = body.stature(&raw);
     let (unit, unit_found) = unit(&mut raw, &body, height, options);
@@ -48,9 +36,8 @@ fn convert(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
         warnings.push(format!("with lengths in {unit} the body is about {stature:.2} m tall"));
     }
 
-    bring_into_ours(&mut raw, unit, up);
-    rest = Skeleton::new(raw.names, raw.parents, raw.rest, raw.ends)?;
-    let rest = Arc::new(rest);
+    convert_takes(&mut raw, unit, up);
+    let rest = Arc::new(convert_skeleton(&raw, unit, up)?);
     let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
     let clip = |take: super::raw::Take| {
         Clip::new(take.name, Arc::clone(&rest), take.frames_per_second, take.rotations, take.tracks)
@@ -120,24 +107,29 @@ fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, 
     }
 }
 
-/// Scales all lengths, and turns what stands at the roots.
-fn bring_into_ours(raw: &mut RawMotion, unit: Unit, up: Axis) {
+/// The skeleton with all lengths scaled and its roots turned.
+fn convert_skeleton(raw: &RawMotion, unit: Unit, up: Axis) -> Result<Skeleton> {
     let metres = unit.metres() as f32;
-    let turn = up.ours_from_file();
-    for (local, parent) in raw.rest.iter_mut().zip(&raw.parents) {
+    let mut locals = raw.skeleton.rest_pose().locals.clone();
+    for (local, parent) in locals.iter_mut().zip(raw.skeleton.parents()) {
         local.translation *= metres;
         if parent.is_none() && up != Axis::Y && !raw.rest_is_upright {
-            local.rotation = turn * local.rotation;
+            local.rotation = up.ours_from_file() * local.rotation;
             local.translation = up.vector_to_ours(local.translation);
         }
     }
-    for end in raw.ends.iter_mut().flatten() {
-        *end *= metres;
-    }
-    let joints = raw.parents.len();
+    let ends = raw.skeleton.ends().iter().map(|end| end.map(|end| end * metres)).collect();
+    Skeleton::from_rest_pose(raw.skeleton.tree().clone(), locals, ends)
+}
+
+/// Scales all lengths, and turns the roots.
+fn convert_takes(raw: &mut RawMotion, unit: Unit, up: Axis) {
+    let metres = unit.metres() as f32;
+    let turn = up.ours_from_file();
+    let parents = raw.skeleton.parents();
     for take in &mut raw.takes {
         for track in &mut take.tracks {
-            let root = raw.parents.get(track.joint as usize).is_some_and(Option::is_none);
+            let root = parents.get(track.joint as usize).is_some_and(Option::is_none);
             for v in &mut track.values {
                 *v *= metres;
                 if root {
@@ -146,8 +138,8 @@ fn bring_into_ours(raw: &mut RawMotion, unit: Unit, up: Axis) {
             }
         }
         if up != Axis::Y {
-            for frame in take.rotations.chunks_mut(joints) {
-                for (rotation, _) in frame.iter_mut().zip(&raw.parents).filter(|(_, p)| p.is_none()) {
+            for frame in take.rotations.chunks_mut(parents.len()) {
+                for (rotation, _) in frame.iter_mut().zip(parents).filter(|(_, p)| p.is_none()) {
                     *rotation = turn * *rotation;
                 }
             }

@@ -1,11 +1,12 @@
-//! BlendShapes as morph targets. Shapes in between are passed over.
+//! BlendShapes as morph targets. In-between shapes are ignored.
 
 use glam::{DAffine3, DMat3, DVec3};
 use openusd::sdf::{Path, Value};
 
 use super::title;
-use crate::error::Outcome;
+use crate::error::{Fault, UsdError, Within};
 use crate::format::limits::MAX_ELEMENTS;
+use crate::format::usd::Result;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::values;
 use crate::scene::titles::Titles;
@@ -23,24 +24,27 @@ pub(super) fn read(
     mesh: &mut SceneMesh,
     file_normals: &[[f64; 3]],
     ours_from_mesh: &DAffine3,
-) -> Outcome<Vec<String>> {
+) -> Result<Vec<String>> {
     let tokens = layer.tokens(prim, "skel:blendShapes")?.unwrap_or_default();
     let targets = layer.targets(prim, "skel:blendShapeTargets")?;
     if tokens.len() != targets.len() {
-        let (expected, got) = (tokens.len(), targets.len());
-        return Err(format!("{prim}.skel:blendShapeTargets: expected {expected}, one per token, got {got}"));
+        let expected = format!("{}, one per token", tokens.len());
+        return Err(Fault::unexpected(expected, targets.len()).into())
+            .within(format_args!("{prim}.skel:blendShapeTargets"));
     }
     let count = mesh.positions.len();
     if tokens.len().checked_mul(count).is_none_or(|vertices| vertices > MAX_TARGET_VERTICES) {
-        return Err(format!("{prim}: {} blend shapes of {count} points are too many", tokens.len()));
+        let most = format!("{MAX_TARGET_VERTICES} points in all blend shapes");
+        let found = format!("{} shapes of {count}", tokens.len());
+        return Err(Fault::too_many(most, found).into()).within(prim);
     }
     let mut names = Titles::default();
     let normal_matrix = ours_from_mesh.matrix3.inverse().transpose();
     for shape in &targets {
         let indices = indices(layer, shape, count)?;
         let rows = |name: &str| dense(layer, shape, name, indices.as_deref(), count);
-        let offsets =
-            rows("offsets")?.ok_or_else(|| format!("{shape}.offsets: expected a value, found none"))?;
+        let offsets = rows("offsets")?.ok_or_else(|| UsdError::from(Fault::missing("value")));
+        let offsets = offsets.within(format_args!("{shape}.offsets"))?;
         let normals = match rows("normalOffsets")? {
             Some(normals) if mesh.normals.len() == count => turned(&normals, file_normals, normal_matrix),
             _ => Vec::new(),
@@ -66,10 +70,13 @@ fn turned(offsets: &[DVec3], normals: &[[f64; 3]], normal_matrix: DMat3) -> Vec<
 }
 
 /// The points that a shape's offsets are of; `None` for all of them, in order.
-fn indices(layer: &Layer, shape: &Path, count: usize) -> Outcome<Option<Vec<usize>>> {
+fn indices(layer: &Layer, shape: &Path, count: usize) -> Result<Option<Vec<usize>>> {
     let numbers = match layer.default(shape, "pointIndices")? {
         Some(Value::IntVec(numbers)) => numbers,
-        Some(_) => return Err(format!("{shape}.pointIndices: expected integers")),
+        Some(_) => {
+            return Err(Fault::unexpected("integers", "another type").into())
+                .within(format_args!("{shape}.pointIndices"));
+        }
         None => return Ok(None),
     };
     if numbers.is_empty() {
@@ -77,7 +84,8 @@ fn indices(layer: &Layer, shape: &Path, count: usize) -> Outcome<Option<Vec<usiz
     }
     let place = |number: &i32| usize::try_from(*number).ok().filter(|place| *place < count);
     let places: Option<Vec<usize>> = numbers.iter().map(place).collect();
-    places.map(Some).ok_or_else(|| format!("{shape}.pointIndices: expected places among {count} points"))
+    let fault = || UsdError::from(Fault::unexpected(format_args!("places among {count} points"), "others"));
+    places.map(Some).ok_or_else(fault).within(format_args!("{shape}.pointIndices"))
 }
 
 /// An attribute of offsets with a row for every point; `None` where the shape has none.
@@ -87,23 +95,29 @@ fn dense(
     name: &str,
     indices: Option<&[usize]>,
     count: usize,
-) -> Outcome<Option<Vec<DVec3>>> {
+) -> Result<Option<Vec<DVec3>>> {
     let Some(value) = layer.default(shape, name)? else { return Ok(None) };
-    let rows = values::rows::<3>(&value).ok_or_else(|| format!("{shape}.{name}: expected vectors"))?;
-    if rows.is_empty() && name == "normalOffsets" {
+    let rows = values::rows::<3>(&value);
+    if rows.as_ref().is_some_and(Vec::is_empty) && name == "normalOffsets" {
         return Ok(None);
     }
+    spread(rows, indices, count).map(Some).within(format_args!("{shape}.{name}"))
+}
+
+/// A row for each of `count` points, from those of the points of `indices`.
+fn spread(rows: Option<Vec<[f64; 3]>>, indices: Option<&[usize]>, count: usize) -> Result<Vec<DVec3>> {
+    let rows = rows.ok_or_else(|| Fault::unexpected("vectors", "another type"))?;
     let expected = indices.map_or(count, <[usize]>::len);
     if rows.len() != expected {
-        return Err(format!("{shape}.{name}: expected {expected} vectors, got {}", rows.len()));
+        return Err(Fault::unexpected(format_args!("{expected} vectors"), rows.len()).into());
     }
     let mut dense = vec![DVec3::ZERO; count];
     for (i, row) in rows.iter().enumerate() {
         let row = DVec3::from_array(*row);
         if !row.is_finite() {
-            return Err(format!("{shape}.{name}: vector {i} is not finite: {row}"));
+            return Err(Fault::not_finite(format_args!("vector {i}"), row).into());
         }
         dense[indices.map_or(i, |indices| indices[i])] = row;
     }
-    Ok(Some(dense))
+    Ok(dense)
 }

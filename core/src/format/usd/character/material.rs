@@ -3,7 +3,7 @@
 use openusd::sdf::{FieldKey, Path, Value};
 
 use super::title;
-use crate::error::Outcome;
+use crate::format::usd::Result;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::values;
 use crate::format::usd::write::SPECULAR;
@@ -19,7 +19,7 @@ pub(super) struct Materials {
 
 impl Materials {
     /// Place of the material that this mesh is bound to.
-    pub(super) fn of(&mut self, layer: &Layer, mesh: &Path, double_sided: bool) -> Outcome<u32> {
+    pub(super) fn of(&mut self, layer: &Layer, mesh: &Path, double_sided: bool) -> Result<u32> {
         let mut bound = None;
         for prim in mesh.ancestors_below_root() {
             bound = layer.target(&prim, "material:binding")?;
@@ -48,14 +48,14 @@ impl Materials {
     }
 }
 
-fn read(layer: &Layer, path: &Path) -> Outcome<SceneMaterial> {
+fn read(layer: &Layer, path: &Path) -> Result<SceneMaterial> {
     let shader = layer.source(path, "outputs:surface")?.map(|output| output.prim_path());
-    let input = |name: &str, count: usize| -> Outcome<Option<Vec<f64>>> {
+    let input = |name: &str, count: usize| -> Result<Option<Vec<f64>>> {
         let Some(shader) = &shader else { return Ok(None) };
         let value = layer.default(shader, &format!("inputs:{name}"))?;
         Ok(value.and_then(|value| values::numbers(&value)).filter(|numbers| numbers.len() == count))
     };
-    let factor = |name: &str, default: f32| -> Outcome<f32> {
+    let factor = |name: &str, default: f32| -> Result<f32> {
         let value = input(name, 1)?.and_then(|numbers| numbers.first().copied());
         Ok(value.filter(|v| v.is_finite()).map_or(default, |v| v.clamp(0.0, 1.0) as f32))
     };

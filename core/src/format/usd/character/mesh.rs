@@ -4,8 +4,9 @@ use glam::{DAffine3, DMat4, DVec3};
 use openusd::sdf::{Path, Value};
 
 use super::blend_shape;
-use crate::error::Outcome;
+use crate::error::{Fault, Located, UsdError, Within};
 use crate::format::limits::MAX_ELEMENTS;
+use crate::format::usd::Result;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::skeleton::Skeleton;
 use crate::format::usd::document::values;
@@ -34,16 +35,16 @@ pub(super) fn read(
     prim: &Path,
     skin: Option<&Skin>,
     ours_from_file: &DAffine3,
-) -> Outcome<Read> {
-    let fault = |attribute: &str, why: &str| format!("{prim}.{attribute}: {why}");
-    let vectors = |name: &str| -> Outcome<Option<Vec<[f64; 3]>>> {
+) -> Result<Read> {
+    let vectors = |name: &str| -> Result<Option<Vec<[f64; 3]>>> {
         let Some(value) = layer.default(prim, name)? else { return Ok(None) };
-        values::rows::<3>(&value).map(Some).ok_or_else(|| fault(name, "expected vectors"))
+        let rows = values::rows::<3>(&value).map(Some);
+        rows.ok_or_else(|| fault(prim, name, Fault::unexpected("vectors", "another type")))
     };
-    let points = vectors("points")?.ok_or_else(|| fault("points", "expected a value, found none"))?;
+    let points = vectors("points")?.ok_or_else(|| fault(prim, "points", Fault::missing("value")))?;
     if points.is_empty() || points.len() > MAX_ELEMENTS {
-        let why = format!("expected 1 to {MAX_ELEMENTS} of them, got {}", points.len());
-        return Err(fault("points", &why));
+        let expected = format!("1 to {MAX_ELEMENTS} of them");
+        return Err(fault(prim, "points", Fault::unexpected(expected, points.len())));
     }
 
     let mut mesh = SceneMesh::default();
@@ -75,37 +76,40 @@ pub(super) fn read(
         let rigid =
             || Influences { width: 1, joints: vec![0; points.len()], weights: vec![1.0; points.len()] };
         let count = skin.skeleton.joints.names.len();
-        influences.unwrap_or_else(rigid).into_mesh(&mut mesh, count).map_err(|m| format!("{prim}: {m}"))?;
+        influences.unwrap_or_else(rigid).into_mesh(&mut mesh, count).within(prim)?;
     }
     let double_sided = layer.default(prim, "doubleSided")? == Some(Value::Bool(true));
     Ok(Read { mesh, double_sided, tokens })
 }
 
-fn integers(layer: &Layer, prim: &Path, name: &str) -> Outcome<Option<Vec<i32>>> {
+/// What is wrong with an attribute of a prim.
+fn fault(prim: &Path, attribute: &str, fault: Fault) -> UsdError {
+    UsdError::from(fault).within(format!("{prim}.{attribute}"))
+}
+
+fn integers(layer: &Layer, prim: &Path, name: &str) -> Result<Option<Vec<i32>>> {
     match layer.default(prim, name)? {
         Some(Value::IntVec(numbers)) => Ok(Some(numbers)),
         None => Ok(None),
-        Some(_) => Err(format!("{prim}.{name}: expected integers")),
+        Some(_) => Err(fault(prim, name, Fault::unexpected("integers", "another type"))),
     }
 }
 
 /// Faces and texture coordinates.
-fn faces(layer: &Layer, prim: &Path, mesh: &mut SceneMesh) -> Outcome<()> {
-    let required = |name: &str| {
-        integers(layer, prim, name)?.ok_or_else(|| format!("{prim}.{name}: expected a value, found none"))
-    };
-    let (counts, corners) = (required("faceVertexCounts")?, required("faceVertexIndices")?);
+fn faces(layer: &Layer, prim: &Path, mesh: &mut SceneMesh) -> Result<()> {
+    let required =
+        |name: &str| integers(layer, prim, name)?.ok_or_else(|| fault(prim, name, Fault::missing("value")));
+    const CORNERS: &str = "faceVertexIndices";
+    let (counts, corners) = (required("faceVertexCounts")?, required(CORNERS)?);
     let total = counts.iter().try_fold(0_usize, |sum, n| sum.checked_add(usize::try_from(*n).ok()?));
     if total != Some(corners.len()) || corners.len() > 4 * MAX_ELEMENTS {
-        let got = corners.len();
-        return Err(format!(
-            "{prim}.faceVertexIndices: {got} corners are not what faceVertexCounts adds up to"
-        ));
+        let expected = "as many corners as faceVertexCounts adds up to";
+        return Err(fault(prim, CORNERS, Fault::unexpected(expected, corners.len())));
     }
     let vertices = mesh.positions.len();
     let index = |corner: &i32| usize::try_from(*corner).ok().filter(|v| *v < vertices).map(|v| v as u32);
     let corners: Vec<u32> = corners.iter().map(index).collect::<Option<_>>().ok_or_else(|| {
-        format!("{prim}.faceVertexIndices: expected places among {vertices} points, got another")
+        fault(prim, CORNERS, Fault::unexpected(format_args!("places among {vertices} points"), "others"))
     })?;
     let uvs = texture_coordinates(layer, prim, &corners, mesh)?;
     let left_handed = layer.text_value(prim, "orientation")?.as_deref() == Some("leftHanded");
@@ -139,36 +143,38 @@ fn texture_coordinates(
     prim: &Path,
     corners: &[u32],
     mesh: &mut SceneMesh,
-) -> Outcome<Option<Vec<u32>>> {
+) -> Result<Option<Vec<u32>>> {
     let Some(value) = layer.default(prim, "primvars:st")? else { return Ok(None) };
-    let st = values::rows::<2>(&value).ok_or_else(|| format!("{prim}.primvars:st: expected pairs"))?;
+    let st = values::rows::<2>(&value)
+        .ok_or_else(|| fault(prim, "primvars:st", Fault::unexpected("pairs", "another type")))?;
     let indices: Vec<i32> = match integers(layer, prim, "primvars:st:indices")? {
         Some(indices) => indices,
         None => (0..st.len() as i32).collect(),
     };
     let per_corner = indices.len() == corners.len();
     if !per_corner && indices.len() != mesh.positions.len() {
-        let (got, expected) = (indices.len(), corners.len());
-        return Err(format!("{prim}.primvars:st: expected {expected} values, one per corner, got {got}"));
+        let expected = format!("{} values, one per corner", corners.len());
+        return Err(fault(prim, "primvars:st", Fault::unexpected(expected, indices.len())));
     }
     let place = |(corner, vertex): (usize, &u32)| {
         let index = indices.get(if per_corner { corner } else { *vertex as usize })?;
         usize::try_from(*index).ok().filter(|i| *i < st.len()).map(|i| i as u32)
     };
     let places: Option<Vec<u32>> = corners.iter().enumerate().map(place).collect();
-    let places = places
-        .ok_or_else(|| format!("{prim}.primvars:st:indices: expected places among {} values", st.len()))?;
+    let places = places.ok_or_else(|| {
+        let expected = format!("places among {} values", st.len());
+        fault(prim, "primvars:st:indices", Fault::unexpected(expected, "others"))
+    })?;
     mesh.uvs = st.iter().map(|uv| flip_v(uv.map(|n| n as f32))).collect();
     Ok(Some(places))
 }
 
-fn geometry_bind(layer: &Layer, prim: &Path) -> Outcome<DAffine3> {
-    let Some(value) = layer.default(prim, "primvars:skel:geomBindTransform")? else {
-        return Ok(DAffine3::IDENTITY);
-    };
+fn geometry_bind(layer: &Layer, prim: &Path) -> Result<DAffine3> {
+    const BIND: &str = "primvars:skel:geomBindTransform";
+    let Some(value) = layer.default(prim, BIND)? else { return Ok(DAffine3::IDENTITY) };
     let rows = values::rows::<16>(&value).unwrap_or_default();
     let [matrix] = rows[..] else {
-        return Err(format!("{prim}.primvars:skel:geomBindTransform: expected a matrix"));
+        return Err(fault(prim, BIND, Fault::unexpected("a matrix", "another type")));
     };
     Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix)))
 }
@@ -186,7 +192,7 @@ fn influences(
     prim: &Path,
     skeleton: &Skeleton,
     vertices: usize,
-) -> Outcome<Option<Influences>> {
+) -> Result<Option<Influences>> {
     const JOINTS: &str = "primvars:skel:jointIndices";
     const WEIGHTS: &str = "primvars:skel:jointWeights";
     let Some(slots) = integers(layer, prim, JOINTS)? else { return Ok(None) };
@@ -194,7 +200,8 @@ fn influences(
     for above in prim.ancestors_below_root() {
         if let Some(target) = layer.target(&above, "skel:skeleton")? {
             if target != skeleton.prim {
-                return Err(format!("{prim}: is bound to {target}, and {} is read", skeleton.prim));
+                let message = format!("is bound to {target}, and {} is read", skeleton.prim);
+                return Err(Fault::inconsistent(message).into()).within(prim);
             }
             break;
         }
@@ -202,15 +209,14 @@ fn influences(
     let weights = layer.default(prim, WEIGHTS)?.and_then(|value| values::numbers(&value)).unwrap_or_default();
     let count = slots.len();
     if count != weights.len() || count == 0 {
-        return Err(format!(
-            "{prim}.{WEIGHTS}: expected {count} weights, one per joint index, got {}",
-            weights.len()
-        ));
+        let expected = format!("{count} weights, one per joint index");
+        return Err(fault(prim, WEIGHTS, Fault::unexpected(expected, weights.len())));
     }
     let constant = layer.interpolation(prim, JOINTS)?.as_deref() == Some("constant");
     let width = if constant { count } else { count / vertices };
     if !constant && (width == 0 || width * vertices != count) {
-        return Err(format!("{prim}.{JOINTS}: {count} of them for {vertices} points"));
+        let expected = format!("as many for each of {vertices} points");
+        return Err(fault(prim, JOINTS, Fault::unexpected(expected, format_args!("{count} in all"))));
     }
     // Indices are into the mesh's own list of joints where it has one, else into the skeleton's.
     let paths = &skeleton.joints.paths;
@@ -224,16 +230,20 @@ fn influences(
     };
     let joint = |(slot, weight): (&i32, &f64)| {
         let joint = usize::try_from(*slot).ok().and_then(|slot| listed.get(slot).copied().flatten());
-        // What stands in an unused slot does not matter.
+        // The index of an unused slot does not matter.
         joint.or((*weight == 0.0).then_some(0))
     };
     let joints: Option<Vec<usize>> = slots.iter().zip(&weights).map(joint).collect();
-    let mut joints =
-        joints.ok_or_else(|| format!("{prim}.{JOINTS}: expected places among {} joints", listed.len()))?;
+    let mut joints = joints.ok_or_else(|| {
+        let expected = format!("places among {} joints", listed.len());
+        fault(prim, JOINTS, Fault::unexpected(expected, "others"))
+    })?;
     let mut weights = weights;
     if constant {
         if width * vertices > 8 * MAX_ELEMENTS {
-            return Err(format!("{prim}.{JOINTS}: {width} influences for {vertices} points are too many"));
+            let most = format!("{} influences", 8 * MAX_ELEMENTS);
+            let found = format!("{width} for each of {vertices} points");
+            return Err(fault(prim, JOINTS, Fault::too_many(most, found)));
         }
         (joints, weights) = (joints.repeat(vertices), weights.repeat(vertices));
     }
@@ -242,7 +252,7 @@ fn influences(
 
 impl Influences {
     /// The strongest four or eight of each vertex, sorted, with sum 1.
-    fn into_mesh(self, mesh: &mut SceneMesh, joint_count: usize) -> Outcome<()> {
+    fn into_mesh(self, mesh: &mut SceneMesh, joint_count: usize) -> Result<()> {
         let slots = if self.width <= 4 { 4 } else { 8 };
         mesh.influences_per_vertex = slots;
         let mut merged = vec![0.0; joint_count];
@@ -250,7 +260,8 @@ impl Influences {
             self.joints.chunks_exact(self.width).zip(self.weights.chunks_exact(self.width)).enumerate()
         {
             if let Some(weight) = weights.iter().find(|w| !w.is_finite() || **w < 0.0) {
-                return Err(format!("weight {weight} at vertex {vertex}, expected none below 0"));
+                return Err(Fault::unexpected("weights of at least 0", weight).into())
+                    .within(format_args!("vertex {vertex}"));
             }
             // A joint may come twice.
             joints.iter().zip(weights).for_each(|(joint, weight)| merged[*joint] += weight);
@@ -265,7 +276,8 @@ impl Influences {
             used.truncate(slots);
             let sum: f64 = used.iter().map(|slot| slot.1).sum();
             if sum <= 0.0 || sum.is_infinite() {
-                return Err(format!("weights of vertex {vertex} sum to {sum}"));
+                return Err(Fault::unexpected("weights with a positive sum", sum).into())
+                    .within(format_args!("vertex {vertex}"));
             }
             // Weights that sum to 1 but for rounding stay what they are.
             let whole = if (sum - 1.0).abs() < 1e-6 { 1.0 } else { sum };

@@ -1,6 +1,6 @@
 //! Characters from USD: the first skeleton that is animated, or the first at all, with its meshes, materials and clips.
 //!
-//! One layer is read; what it refers to in other files is not. What the writer keeps beside USD's own words comes
+//! One layer is read; what it refers to in other files is not. What the writer keeps beside USD's own attributes comes
 //! back: display names, joint names, extras. Characters of other programs come in the bind pose, without scale; faces
 //! of more than four corners as fans of triangles, materials that are no UsdPreviewSurface in grey.
 
@@ -14,15 +14,15 @@ use std::sync::Arc;
 use glam::{DAffine3, DQuat, DVec3};
 use openusd::sdf::{FieldKey, Path as PrimPath, Value};
 
+use super::Result;
 use super::document::layer::Layer;
 use super::document::skeleton::{Joints, Skeleton};
 use super::document::{Document, values};
 use super::motion;
 use super::write::EXTRAS;
 use super::write::skeleton::BONE_LENGTHS;
-use crate::Result;
 use crate::clip::{Clip, TranslationTrack};
-use crate::error::Outcome;
+use crate::error::{Fault, ParserError, UsdError, Within};
 use crate::format::limits::MAX_MESHES;
 use crate::format::motion::raw::WeightTrack;
 use crate::format::motion::{ReadOptions, clip_name, units_and_axes};
@@ -34,8 +34,8 @@ use crate::space::{Axis, Unit};
 /// Where a rest pose leaves the bind pose by so many metres, a clip says where its joints are.
 const REST_TOLERANCE: f32 = 1e-6;
 
-/// The meshes alone: those with a skin in the bind pose, the others where the file puts them.
-pub(super) fn meshes(document: &Document) -> Outcome<Scene> {
+/// The meshes alone: those with a skin in the bind pose, the others where the file places them.
+pub(super) fn meshes(document: &Document) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;
     scene.joints.clear();
@@ -48,7 +48,7 @@ pub(super) fn meshes(document: &Document) -> Outcome<Scene> {
 }
 
 /// The whole character. Its clips are those of the same skeleton; `path` names those that have no name.
-pub(super) fn scene(document: &Document, path: &Path) -> Outcome<Scene> {
+pub(super) fn scene(document: &Document, path: &Path) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let skeleton = document.skeleton()?;
     let (mut scene, tokens) = still(document, &space, skeleton.as_ref())?;
@@ -58,10 +58,10 @@ pub(super) fn scene(document: &Document, path: &Path) -> Outcome<Scene> {
         for (clip, take) in (0u32..).zip(&mut raw.takes) {
             add_morph_tracks(&mut scene, clip, std::mem::take(&mut take.weights), &tokens);
         }
-        let clips = units_and_axes::resolve(raw, &options)?.clips;
-        scene.clips = in_bind_pose(&scene, clips).map_err(|error| error.to_string())?;
+        let clips = units_and_axes::resolve(raw, &options).map_err(Box::new)?.clips;
+        scene.clips = in_bind_pose(&scene, clips).map_err(Box::new)?;
     }
-    scene.validate().map_err(|error| error.to_string())?;
+    scene.validate().map_err(Box::new)?;
     Ok(scene)
 }
 
@@ -86,11 +86,12 @@ struct Space {
 }
 
 impl Space {
-    fn read(layer: &Layer) -> Outcome<Self> {
+    fn read(layer: &Layer) -> Result<Self> {
         // USD's own default is the centimetre.
         let metres = layer.number("metersPerUnit")?.unwrap_or(0.01);
         let unit = Unit::from_metres(metres)
-            .ok_or_else(|| format!("metersPerUnit: expected a positive number, got {metres}"))?;
+            .ok_or_else(|| UsdError::from(Fault::unexpected("a positive number", metres)))
+            .within("metersPerUnit")?;
         let up = match layer.text(&PrimPath::abs_root(), "upAxis")?.as_deref() {
             Some("Z") => Axis::Z,
             _ => Axis::Y,
@@ -111,15 +112,12 @@ fn still(
     document: &Document,
     space: &Space,
     skeleton: Option<&Skeleton>,
-) -> Outcome<(Scene, Vec<Vec<String>>)> {
+) -> Result<(Scene, Vec<Vec<String>>)> {
     let Document { layer, prims, meshes, .. } = document;
     let ours_from_file = space.ours_from_file();
     if meshes.is_empty() || meshes.len() > MAX_MESHES {
-        return Err(format!(
-            "expected 1 to {MAX_MESHES} meshes, found {} in {} prims",
-            meshes.len(),
-            prims.len()
-        ));
+        let found = format!("{} in {} prims", meshes.len(), prims.len());
+        return Err(Fault::unexpected(format_args!("1 to {MAX_MESHES} meshes"), found).into());
     }
 
     let mut scene = Scene { name: "Character".into(), ..Scene::default() };
@@ -128,7 +126,9 @@ fn still(
         if let Some(Value::Dictionary(data)) = layer.field(&root, FieldKey::CustomData.as_str())?
             && let Some(Value::String(text)) = data.get(EXTRAS)
         {
-            scene.extras = serde_json::from_str(text).map_err(|e| format!("{root}: {EXTRAS}: {e}"))?;
+            let refused = |e: serde_json::Error| UsdError::from(ParserError::refused(e));
+            scene.extras =
+                serde_json::from_str(text).map_err(refused).within(format_args!("{root}: {EXTRAS}"))?;
         }
     }
     let skin = match skeleton {
@@ -174,12 +174,13 @@ fn bone_lengths(
     prim: &PrimPath,
     joints: &Joints,
     scene_joints: &mut [SceneJoint],
-) -> Outcome<()> {
+) -> Result<()> {
     let Some(value) = layer.default(prim, BONE_LENGTHS)? else { return Ok(()) };
     let lengths = values::rows::<1>(&value).unwrap_or_default();
     if lengths.len() != joints.places.len() {
-        let (expected, got) = (joints.places.len(), lengths.len());
-        return Err(format!("{prim}.{BONE_LENGTHS}: expected {expected} numbers, got {got}"));
+        let expected = format!("{} numbers", joints.places.len());
+        return Err(Fault::unexpected(expected, lengths.len()).into())
+            .within(format_args!("{prim}.{BONE_LENGTHS}"));
     }
     for (joint, place) in scene_joints.iter_mut().zip(&joints.places) {
         let [length] = lengths[*place];
@@ -189,7 +190,7 @@ fn bone_lengths(
 }
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
-fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
+fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> crate::Result<Vec<Clip>> {
     let rest = Arc::new(scene.skeleton(str::to_owned)?);
     let mut titles = Titles::default();
     let mut out: Vec<Clip> = Vec::with_capacity(clips.len());
@@ -211,7 +212,7 @@ fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> Result<Vec<Clip>> {
 }
 
 /// A prim's display name, else its name.
-fn title(layer: &Layer, prim: &PrimPath) -> Outcome<String> {
+fn title(layer: &Layer, prim: &PrimPath) -> Result<String> {
     let shown = layer.text(prim, FieldKey::DisplayName.as_str())?.filter(|name| !name.is_empty());
     Ok(shown.unwrap_or_else(|| prim.name().unwrap_or("prim").to_owned()))
 }

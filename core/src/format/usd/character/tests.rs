@@ -11,7 +11,7 @@ fn moving(influences: usize) -> Scene {
     scene
 }
 
-type Writer = fn(&Scene) -> Result<Vec<u8>>;
+type Writer = fn(&Scene) -> crate::Result<Vec<u8>>;
 const WRITERS: [(&str, Writer); 3] = [("a.usda", to_usda), ("a.usdc", to_usdc), ("a.usdz", to_usdz)];
 
 #[test]
@@ -138,7 +138,7 @@ fn names_what_is_wrong_with_blend_shapes() {
             "bulge.pointIndices: expected places among 6",
         ),
         ("pointIndices = [3, 5]", "pointIndices = [3]", "lean_1.offsets: expected 1 vectors, got 2"),
-        ("vector3f[] offsets", "vector3f[] shifts", "bulge.offsets: expected a value, found none"),
+        ("vector3f[] offsets", "vector3f[] shifts", "bulge.offsets: has no value"),
         (
             "skel:blendShapes = [\"bulge\", ",
             "skel:blendShapes = [",
@@ -156,7 +156,7 @@ fn names_what_is_wrong_with_blend_shapes() {
 fn names_what_is_wrong() {
     let text = String::from_utf8(to_usda(&moving(4)).unwrap()).unwrap();
     for (from, to, expected) in [
-        ("point3f[] points", "point3f[] spots", "Sleeve.points: expected a value"),
+        ("point3f[] points", "point3f[] spots", "Sleeve.points: has no value"),
         ("int[] faceVertexCounts = [4", "int[] faceVertexCounts = [5", "faceVertexCounts adds up to"),
         ("int[] faceVertexIndices = [0", "int[] faceVertexIndices = [99", "places among 15 points"),
         ("metersPerUnit = 1", "metersPerUnit = 0", "metersPerUnit: expected a positive number, got 0"),

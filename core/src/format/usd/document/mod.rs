@@ -9,11 +9,11 @@ use openusd::sdf::Path;
 
 use self::layer::Layer;
 use self::skeleton::Skeleton;
-use crate::error::Outcome;
+use crate::format::usd::Result;
 
 /// One layer; what it refers to in other files is not read.
 pub(super) struct Document {
-    /// Values are decoded when they are asked for.
+    /// Its values are decoded on demand.
     pub(super) layer: Layer,
     /// All active, defined prims, parents first, in the file's order.
     pub(super) prims: Vec<Path>,
@@ -24,8 +24,8 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, told apart by how they start.
-    pub(super) fn open(bytes: &[u8]) -> Outcome<Self> {
+    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, recognised by their first bytes.
+    pub(super) fn open(bytes: &[u8]) -> Result<Self> {
         let layer = Layer::open(bytes)?;
         let prims = layer.prims()?;
         let (mut skeletons, mut animations, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
@@ -46,7 +46,7 @@ impl Document {
     }
 
     /// The first skeleton with an animation of its own, else the first.
-    pub(super) fn skeleton(&self) -> Outcome<Option<Skeleton>> {
+    pub(super) fn skeleton(&self) -> Result<Option<Skeleton>> {
         Skeleton::read(&self.layer, &self.skeletons)
     }
 }

@@ -8,8 +8,9 @@ use openusd::sdf::Path;
 use super::layer::Layer;
 use super::values;
 use super::xform::Xforms;
-use crate::error::Outcome;
+use crate::error::{Fault, UsdError, Within};
 use crate::format::motion::raw::Rigid;
+use crate::format::usd::Result;
 use crate::math::RigidTransform;
 use crate::skeleton::MAX_JOINTS;
 
@@ -19,20 +20,20 @@ pub(crate) struct Skeleton {
     /// The animation that is bound to it.
     pub(crate) animation: Option<Path>,
     pub(crate) joints: Joints,
-    /// What stands above it.
+    /// The transforms of the prims above it.
     pub(crate) above: Xforms,
 }
 
 impl Skeleton {
     /// Of these the first with an animation of its own, else the first.
-    pub(super) fn read(layer: &Layer, skeletons: &[Path]) -> Outcome<Option<Self>> {
+    pub(super) fn read(layer: &Layer, skeletons: &[Path]) -> Result<Option<Self>> {
         let Some((prim, animation)) = chosen(layer, skeletons)? else { return Ok(None) };
         let (joints, above) = (Joints::read(layer, prim)?, Xforms::read(layer, prim)?);
         Ok(Some(Self { prim: prim.clone(), animation, joints, above }))
     }
 }
 
-fn chosen<'a>(layer: &Layer, skeletons: &'a [Path]) -> Outcome<Option<(&'a Path, Option<Path>)>> {
+fn chosen<'a>(layer: &Layer, skeletons: &'a [Path]) -> Result<Option<(&'a Path, Option<Path>)>> {
     for skeleton in skeletons {
         // The binding is inherited from the prims above.
         for prim in skeleton.ancestors_below_root() {
@@ -75,21 +76,24 @@ pub(crate) struct Joints {
     pub(crate) parents: Vec<Option<u32>>,
     /// Rest pose.
     pub(crate) rest: Vec<Transform>,
-    /// Where each joint stands in the file's own list.
+    /// The index of each joint in the file's own list.
     pub(crate) places: Vec<usize>,
 }
 
 impl Joints {
-    pub(crate) fn read(layer: &Layer, prim: &Path) -> Outcome<Self> {
+    pub(crate) fn read(layer: &Layer, prim: &Path) -> Result<Self> {
         let listed = layer.tokens(prim, "joints")?.unwrap_or_default();
         if listed.is_empty() || listed.len() > MAX_JOINTS {
-            return Err(format!("{prim}.joints: expected 1 to {MAX_JOINTS} joints, got {}", listed.len()));
+            let expected = format!("1 to {MAX_JOINTS} joints");
+            return Err(Fault::unexpected(expected, listed.len()).into())
+                .within(format_args!("{prim}.joints"));
         }
-        // A parent's path is shorter than its joint's; where it stands first already nothing is moved.
+        // A parent's path is shorter than its joint's; where parents are first already the order is kept.
         let place_of: BTreeMap<&str, usize> =
             listed.iter().enumerate().map(|(i, path)| (path.as_str(), i)).collect();
         if place_of.len() != listed.len() {
-            return Err(format!("{prim}.joints: a joint is listed twice"));
+            return Err(Fault::inconsistent("a joint is listed twice").into())
+                .within(format_args!("{prim}.joints"));
         }
         let parent_of = |path: &str| {
             let mut above = path;
@@ -120,9 +124,9 @@ impl Joints {
         Ok(Self { paths, names, parents, rest, places })
     }
 
-    /// The bind pose, `model_from_joint` without scale, below what stands above the skeleton; the file's own numbers where
+    /// The bind pose, `model_from_joint` without scale, below the prims above the skeleton; the file's own numbers where
     /// it has none. The rest pose where the file has no other.
-    pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Outcome<Vec<DAffine3>> {
+    pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Result<Vec<DAffine3>> {
         let world: Vec<DAffine3> = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
             Some(bind) => bind.iter().map(|joint| *above * *joint).collect(),
             None => self.world(above),
@@ -133,18 +137,14 @@ impl Joints {
             .collect())
     }
 
-    fn rest(
-        layer: &Layer,
-        prim: &Path,
-        places: &[usize],
-        parents: &[Option<u32>],
-    ) -> Outcome<Vec<Transform>> {
+    fn rest(layer: &Layer, prim: &Path, places: &[usize], parents: &[Option<u32>]) -> Result<Vec<Transform>> {
         let locals = match Self::matrices(layer, prim, "restTransforms", places)? {
             Some(locals) => locals,
             None => {
                 let bind = Self::matrices(layer, prim, "bindTransforms", places)?.ok_or_else(|| {
-                    format!("{prim}: expected restTransforms or bindTransforms, one per joint")
-                })?;
+                    UsdError::from(Fault::missing("restTransforms or bindTransforms, one per joint"))
+                });
+                let bind = bind.within(prim)?;
                 let local = |(joint, parent): (&DAffine3, &Option<u32>)| match parent {
                     Some(parent) => bind[*parent as usize].inverse() * *joint,
                     None => *joint,
@@ -158,7 +158,8 @@ impl Joints {
             if rest.rotation.is_finite() && scale.is_finite() && translation.is_finite() {
                 return Ok(rest);
             }
-            Err(format!("{prim}: rest transform of joint {joint} is not finite or flattens space"))
+            Err(Fault::unexpected("a transform with an inverse", local).into())
+                .within(format_args!("{prim}: rest transform of joint {joint}"))
         };
         locals.into_iter().enumerate().map(transform).collect()
     }
@@ -168,28 +169,26 @@ impl Joints {
         prim: &Path,
         attribute: &str,
         places: &[usize],
-    ) -> Outcome<Option<Vec<DAffine3>>> {
+    ) -> Result<Option<Vec<DAffine3>>> {
         let Some(value) = layer.default(prim, attribute)? else { return Ok(None) };
         let rows = values::rows::<16>(&value).unwrap_or_default();
         if rows.is_empty() {
             return Ok(None);
         }
         if rows.len() != places.len() {
-            let (expected, got) = (places.len(), rows.len());
-            return Err(format!("{prim}.{attribute}: expected {expected} matrices, got {got}"));
+            return Err(Fault::unexpected(format_args!("{} matrices", places.len()), rows.len()).into())
+                .within(format_args!("{prim}.{attribute}"));
         }
         let matrices = places.iter().map(|&i| DAffine3::from_mat4(DMat4::from_cols_array(&rows[i])));
         let matrices: Vec<DAffine3> = matrices.collect();
         match matrices.iter().position(|m| !m.is_finite() || m.matrix3.determinant() == 0.0) {
-            Some(joint) => {
-                let place = places[joint];
-                Err(format!("{prim}.{attribute}: matrix {place} is not finite or flattens space"))
-            }
+            Some(joint) => Err(Fault::unexpected("a matrix with an inverse", matrices[joint]).into())
+                .within(format_args!("{prim}.{attribute}: matrix {}", places[joint])),
             None => Ok(Some(matrices)),
         }
     }
 
-    /// The rest pose without scale, which goes into the translations, below what stands above the skeleton.
+    /// The rest pose without scale, which goes into the translations, below the prims above the skeleton.
     pub(crate) fn locals(&self, above: &DAffine3) -> Vec<RigidTransform> {
         let rigid: Vec<Rigid> = self.world(above).iter().map(Rigid::of).collect();
         Rigid::locals(&rigid, &self.parents)

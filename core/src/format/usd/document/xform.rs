@@ -1,15 +1,16 @@
-//! What stands above a prim: the xformOps of it and of its ancestors (openusd.org, UsdGeomXformable).
+//! The transform of a prim: the xformOps of it and of its ancestors (openusd.org, UsdGeomXformable).
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use openusd::sdf::{Path, Value};
 
 use super::layer::Layer;
 use super::values;
-use crate::error::Outcome;
+use crate::error::{Fault, UsdError, Within};
+use crate::format::usd::Result;
 
 /// One operation; its numbers over time codes, at least one sample.
 struct Op {
-    /// Where it stands, for messages.
+    /// Its path, for messages.
     path: String,
     kind: String,
     inverted: bool,
@@ -22,7 +23,7 @@ pub(crate) struct Xforms(Vec<Op>);
 
 impl Xforms {
     /// Those of the prim and all above it.
-    pub(crate) fn read(layer: &Layer, prim: &Path) -> Outcome<Self> {
+    pub(crate) fn read(layer: &Layer, prim: &Path) -> Result<Self> {
         let mut ops = Vec::new();
         let mut prims: Vec<Path> = prim.ancestors_below_root().collect();
         prims.reverse();
@@ -53,7 +54,7 @@ impl Xforms {
     }
 
     /// World from prim, for column vectors.
-    pub(crate) fn at(&self, time: f64) -> Outcome<DAffine3> {
+    pub(crate) fn at(&self, time: f64) -> Result<DAffine3> {
         let mut world = DAffine3::IDENTITY;
         for op in &self.0 {
             world *= op.at(time)?;
@@ -62,17 +63,18 @@ impl Xforms {
     }
 
     /// World from prim at the first time.
-    pub(crate) fn at_start(&self) -> Outcome<DAffine3> {
+    pub(crate) fn at_start(&self) -> Result<DAffine3> {
         self.at(self.first_time().unwrap_or(0.0))
     }
 }
 
 impl Op {
-    fn read(layer: &Layer, prim: &Path, attribute: &str, kind: String, inverted: bool) -> Outcome<Self> {
+    fn read(layer: &Layer, prim: &Path, attribute: &str, kind: String, inverted: bool) -> Result<Self> {
         let path = format!("{prim}.{attribute}");
         let numbers = |value: &Value| {
             let numbers = values::numbers(value).filter(|n| !n.is_empty() && n.iter().all(|n| n.is_finite()));
-            numbers.ok_or_else(|| format!("{path}: expected finite numbers"))
+            let fault = || UsdError::from(Fault::unexpected("finite numbers", "something else"));
+            numbers.ok_or_else(fault).within(&path)
         };
         let mut samples = Vec::new();
         for (time, value) in layer.samples(prim, attribute)? {
@@ -81,17 +83,18 @@ impl Op {
         let animated = !samples.is_empty();
         if !animated {
             let value = layer.default(prim, attribute)?;
-            let value = value.ok_or_else(|| format!("{path}: xformOpOrder names it, but it has no value"))?;
-            samples.push((0.0, numbers(&value)?));
+            let fault = || UsdError::from(Fault::missing("value, but xformOpOrder names it"));
+            samples.push((0.0, numbers(&value.ok_or_else(fault).within(&path)?)?));
         }
         Ok(Self { path, kind, inverted, samples, animated })
     }
 
-    fn at(&self, time: f64) -> Outcome<DAffine3> {
-        let fault = || format!("{}: is no xformOp that is known, or has too few numbers", self.path);
-        let matrix = self.matrix(&self.numbers(time)).ok_or_else(fault)?;
+    fn at(&self, time: f64) -> Result<DAffine3> {
+        let fault = || UsdError::from(Fault::unsupported("this xformOp, or it has too few numbers: it"));
+        let matrix = self.matrix(&self.numbers(time)).ok_or_else(fault).within(&self.path)?;
         if !matrix.is_finite() || matrix.matrix3.determinant() == 0.0 {
-            return Err(format!("{}: flattens space at time code {time}", self.path));
+            return Err(Fault::unexpected("a matrix with an inverse", matrix).into())
+                .within(format_args!("{} at time code {time}", self.path));
         }
         Ok(if self.inverted { matrix.inverse() } else { matrix })
     }
@@ -123,7 +126,7 @@ impl Op {
             }
             "transform" => DAffine3::from_mat4(DMat4::from_cols_array(numbers.first_chunk::<16>()?)),
             kind => {
-                // The axes in the order in which they turn a point: the last stands leftmost.
+                // The axes in the order in which they turn a point: the last is leftmost.
                 let axes = kind.strip_prefix("rotate")?.chars();
                 let mut rotation = DQuat::IDENTITY;
                 for axis in axes.clone() {

@@ -9,28 +9,30 @@ use glam::DAffine3;
 use openusd::sdf::Path;
 
 use self::track::{Track, merged};
+use super::Result;
 use super::document::Document;
 use super::document::layer::Layer;
 use super::document::skeleton::{Joints, Skeleton};
 use super::document::xform::Xforms;
-use crate::error::Outcome;
+use crate::error::{Fault, UsdError, Within};
 use crate::format::motion::raw::{
     RawMotion, Recorder, Rigid, Take, WeightTrack, frame_count, make_unique, snapped_rate,
 };
 use crate::format::motion::{Found, ReadOptions};
 use crate::space::{Axis, Unit};
 
-/// Most joints of an animation; those beyond the skeleton's are for nobody.
+/// Most joints of an animation; those that the skeleton does not have are ignored.
 const MAX_JOINTS: usize = crate::skeleton::MAX_JOINTS;
-/// Below this, keys stand for poses to blend between, not for frames.
+/// Below this, keys are poses to interpolate, not frames.
 const LEAST_FRAME_RATE: f64 = 10.0;
 
 /// Every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
-pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Outcome<RawMotion> {
+pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Result<RawMotion> {
     if document.animations.is_empty() {
-        return Err(format!("expected a SkelAnimation, found none among {} prims", document.prims.len()));
+        let prims = document.prims.len();
+        return Err(Fault::missing(format_args!("SkelAnimation among {prims} prims")).into());
     }
-    let skeleton = document.skeleton()?.ok_or("expected a Skeleton beside the SkelAnimation, found none")?;
+    let skeleton = document.skeleton()?.ok_or_else(|| Fault::missing("Skeleton beside the SkelAnimation"))?;
     of_skeleton(document, &skeleton, name, options)
 }
 
@@ -40,7 +42,7 @@ pub(super) fn of_skeleton(
     skeleton: &Skeleton,
     name: &str,
     options: &ReadOptions,
-) -> Outcome<RawMotion> {
+) -> Result<RawMotion> {
     let (layer, Skeleton { prim, joints, above, animation: bound }) = (&document.layer, skeleton);
     let mut warnings = Vec::new();
     let skeletons = document.skeleton_count();
@@ -63,16 +65,16 @@ pub(super) fn of_skeleton(
         takes.push(animation.take(title, joints, above, &rate, options)?);
     }
     if takes.is_empty() {
-        return Err(format!("no SkelAnimation moves a joint of {prim}"));
+        return Err(Fault::missing(format_args!("SkelAnimation that moves a joint of {prim}")).into());
     }
     let mut names = joints.names.clone();
     make_unique(&mut names, &mut warnings);
+    let ends = vec![None; names.len()];
+    let rest_skeleton =
+        crate::skeleton::Skeleton::new(names, joints.parents.clone(), rest, ends).map_err(Box::new)?;
     Ok(RawMotion {
         format: "USD",
-        parents: joints.parents.clone(),
-        ends: vec![None; names.len()],
-        names,
-        rest,
+        skeleton: rest_skeleton,
         takes,
         unit: layer.number("metersPerUnit")?.and_then(Unit::from_metres),
         up: match layer.text(&Path::abs_root(), "upAxis")?.as_deref() {
@@ -93,17 +95,18 @@ struct TimeCodes {
 }
 
 impl TimeCodes {
-    fn read(layer: &Layer) -> Outcome<Self> {
-        let told = match layer.number("timeCodesPerSecond")? {
+    fn read(layer: &Layer) -> Result<Self> {
+        let stated = match layer.number("timeCodesPerSecond")? {
             Some(rate) => Some(rate),
             None => layer.number("framesPerSecond")?,
         };
         // USD's own default.
-        let per_second = told.unwrap_or(24.0);
+        let per_second = stated.unwrap_or(24.0);
         if !(1e-3..=1e6).contains(&per_second) {
-            return Err(format!("timeCodesPerSecond: expected a positive number, got {per_second}"));
+            return Err(Fault::unexpected("a positive number", per_second).into())
+                .within("timeCodesPerSecond");
         }
-        Ok(Self { per_second, found: if told.is_some() { Found::File } else { Found::Assumed } })
+        Ok(Self { per_second, found: if stated.is_some() { Found::File } else { Found::Assumed } })
     }
 }
 
@@ -120,10 +123,11 @@ struct Animation {
 }
 
 impl Animation {
-    fn read(layer: &Layer, path: &Path, skeleton: &Joints) -> Outcome<Self> {
+    fn read(layer: &Layer, path: &Path, skeleton: &Joints) -> Result<Self> {
         let own = layer.tokens(path, "joints")?.unwrap_or_default();
         if own.is_empty() || own.len() > MAX_JOINTS {
-            return Err(format!("{path}.joints: expected 1 to {MAX_JOINTS} joints, got {}", own.len()));
+            return Err(Fault::unexpected(format_args!("1 to {MAX_JOINTS} joints"), own.len()).into())
+                .within(format_args!("{path}.joints"));
         }
         let place: std::collections::BTreeMap<&str, usize> =
             own.iter().enumerate().map(|(i, joint)| (joint.as_str(), i)).collect();
@@ -148,20 +152,21 @@ impl Animation {
         above: &Xforms,
         rate: &TimeCodes,
         options: &ReadOptions,
-    ) -> Outcome<Take> {
+    ) -> Result<Take> {
         let times = merged(
             [self.rotations.times(), self.translations.times(), self.scales.times()]
                 .into_iter()
                 .chain(above.times()),
         );
-        // Joints tell the frames where any moves.
+        // The times of joints decide where any moves; else those of weights.
         let times = if times.is_empty() { self.weights.times() } else { times };
         let (start, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
         let seconds = (end - start) / rate.per_second;
         let frames_per_second =
             options.frames_per_second.unwrap_or_else(|| frame_rate(&times, rate.per_second));
         let frames = frame_count(seconds, frames_per_second, joints.parents.len())
-            .map_err(|message| format!("`{name}`: {message}"))?;
+            .map_err(UsdError::from)
+            .within(format_args!("`{name}`"))?;
 
         let rest = joints.locals(&above.at_start()?);
         let mut recorder = Recorder::new(joints.parents.len());

@@ -3,7 +3,8 @@
 use glam::{DQuat, DVec4};
 use openusd::sdf::{Path, Value};
 
-use crate::error::Outcome;
+use crate::error::{Fault, Within};
+use crate::format::usd::Result;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::values;
 
@@ -12,35 +13,37 @@ type Rows<const N: usize> = Vec<[f64; N]>;
 
 /// Samples of numbers (`N` = 1), vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint or blend shape.
 pub(super) struct Track<const N: usize> {
-    /// In order of time; one at time 0 stands for a value that does not change, none for no value.
+    /// In order of time; one at time 0 is a value that does not change; empty without a value.
     samples: Vec<(f64, Rows<N>)>,
     animated: bool,
 }
 
 impl<const N: usize> Track<N> {
     /// An attribute with a value for each of `count` joints or blend shapes, or without any.
-    pub(super) fn read(layer: &Layer, prim: &Path, attribute: &str, count: usize) -> Outcome<Self> {
+    pub(super) fn read(layer: &Layer, prim: &Path, attribute: &str, count: usize) -> Result<Self> {
         let rows = |value: &Value| {
-            let rows =
-                values::rows::<N>(value).ok_or("holds no numbers, vectors or quaternions".to_owned())?;
+            let rows = values::rows::<N>(value)
+                .ok_or_else(|| Fault::unexpected("numbers, vectors or quaternions", "another type"))?;
             if rows.len() != count {
-                return Err(format!("expected {count} values, one per joint, got {}", rows.len()));
+                let expected = format!("{count} values, one per joint");
+                return Err(Fault::unexpected(expected, rows.len()).into());
             }
             if let Some(joint) = rows.iter().position(|row| !row.iter().all(|n| n.is_finite())) {
-                return Err(format!("value {joint} is not finite: {:?}", rows[joint]));
+                let value = format!("value {joint}");
+                return Err(Fault::not_finite(value, format_args!("{:?}", rows[joint])).into());
             }
-            Ok(rows)
+            Result::Ok(rows)
         };
         let mut samples = Vec::new();
         for (time, value) in layer.samples(prim, attribute)? {
-            let rows = rows(&value).map_err(|m| format!("{prim}.{attribute} at time code {time}: {m}"))?;
+            let rows = rows(&value).within(format_args!("{prim}.{attribute} at time code {time}"))?;
             samples.push((time, rows));
         }
         let animated = !samples.is_empty();
         if let (false, Some(value)) = (animated, layer.default(prim, attribute)?) {
             // An empty array is how some programs leave an attribute out.
             if values::numbers(&value).is_none_or(|n| !n.is_empty()) {
-                samples.push((0.0, rows(&value).map_err(|m| format!("{prim}.{attribute}: {m}"))?));
+                samples.push((0.0, rows(&value).within(format_args!("{prim}.{attribute}"))?));
             }
         }
         Ok(Self { samples, animated })

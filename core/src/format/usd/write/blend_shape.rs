@@ -1,7 +1,7 @@
 //! Morph targets as BlendShapes below their meshes, and their weights in the SkelAnimations (openusd.org, "UsdSkel: Schemas
 //! In-Depth").
 //!
-//! A weight goes by a token, which stands for the same shape in the mesh's `skel:blendShapes` and in the animation's
+//! A weight is identified by a token, which names the same shape in the mesh's `skel:blendShapes` and in the animation's
 //! `blendShapes`. Targets of one name share a token where their weights are the same in all clips, as those of a face and its
 //! teeth are; else each has a token of its own. Programs show tokens as names.
 
@@ -80,7 +80,7 @@ fn shape(layer: &mut Layer, path: &str, target: &MorphTarget) -> Result<()> {
     };
     let mut moved: Vec<usize> = (0..target.positions.len()).filter(|vertex| !stays(vertex)).collect();
     if moved.is_empty() {
-        // No indices would stand for all vertices.
+        // No indices would mean all vertices.
         moved.push(0);
     }
     let offsets = |rows: &[[f32; 3]]| {

@@ -115,7 +115,7 @@ fn shares(scene: &Scene, mesh: usize) -> Vec<Share> {
     tracks.map(share).collect()
 }
 
-/// Where morph targets may put a vertex in the bind pose.
+/// Where morph targets may move a vertex in the bind pose.
 fn reach(mesh: &SceneMesh, vertex: usize, shares: &[Share]) -> Bounds {
     let position = Vec3A::from_array(mesh.positions[vertex]);
     let mut bounds = Bounds { low: position, high: position };

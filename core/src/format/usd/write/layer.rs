@@ -9,7 +9,7 @@ use openusd::sdf::{
 
 use crate::{Error, Result};
 
-/// What USD makes of a wrong path or value; a scene that validates leads to none.
+/// The error for a path or value that USD refuses; a scene that validates has none.
 pub(super) fn fault(error: impl Display) -> Error {
     Error::invalid("USD layer", error.to_string())
 }
@@ -69,7 +69,7 @@ impl Layer {
         self.declare(prim, name, type_name, Variability::Uniform, Some(value))
     }
 
-    /// An attribute that no schema knows and that never changes over time.
+    /// An attribute that no schema has and that never changes over time.
     pub(super) fn custom(&mut self, prim: &str, name: &str, type_name: &str, value: Value) -> Result<()> {
         let path = format!("{prim}.{name}");
         AttributeSpecMut::new(&mut self.0, path.as_str(), type_name, Variability::Uniform, true)

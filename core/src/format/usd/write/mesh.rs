@@ -9,7 +9,7 @@ use crate::Result;
 use crate::scene::SceneMesh;
 use crate::scene::flip_v;
 
-/// What a mesh hangs on.
+/// What a mesh is bound to.
 pub(super) struct Binding<'a> {
     /// Path of the skeleton; `None` for a mesh without a skin.
     pub(super) skeleton: Option<&'a str>,
@@ -51,7 +51,7 @@ fn skin(layer: &mut Layer, path: &str, mesh: &SceneMesh, skeleton: &str) -> Resu
     layer.relate(path, "skel:skeleton", skeleton)?;
     let identity = Matrix4d(glam::DMat4::IDENTITY.to_cols_array());
     layer.attribute(path, "primvars:skel:geomBindTransform", "matrix4d", Value::Matrix4d(identity))?;
-    // What stands in an unused slot is nobody's business, but must be a joint.
+    // The index of an unused slot does not matter, but must be that of a joint.
     let joint = |(joint, weight): (&u16, &f32)| if *weight > 0.0 { i32::from(*joint) } else { 0 };
     let joints = mesh.joint_indices.iter().zip(&mesh.joint_weights).map(joint).collect();
     let weights = mesh.joint_weights.clone();

@@ -17,7 +17,7 @@
 //! `anthronetExtras`. A character without joints is an `Xform` with meshes alone.
 //!
 //! Time codes are frames of the first clip; a further clip of another rate keeps its seconds. Bytes depend on the
-//! scene alone: nothing in a file tells when it was made.
+//! scene alone: no file holds the time of its making.
 
 mod animation;
 mod blend_shape;
@@ -41,7 +41,7 @@ use crate::scene::Scene;
 
 /// Key of the root prim's `customData` under which the scene's extras are, as JSON.
 pub(crate) const EXTRAS: &str = "anthronetExtras";
-/// Key of a material's `customData` for the strength of its reflection, which UsdPreviewSurface does not know.
+/// Key of a material's `customData` for the strength of its reflection, which UsdPreviewSurface does not have.
 pub(crate) const SPECULAR: &str = "anthronetSpecular";
 /// The layer's name inside a package.
 const PACKAGED_LAYER: &str = "character.usdc";
@@ -127,7 +127,7 @@ fn layer_metadata(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> {
     if let Some(clip) = scene.clips.first() {
         layer.set("/", FieldKey::StartTimeCode, Value::Double(0.0))?;
         layer.set("/", FieldKey::EndTimeCode, Value::Double((clip.frame_count() - 1) as f64))?;
-        // One time code is one frame; viewers that know only one of the two play at the right pace.
+        // One time code is one frame; viewers that read only one of the two play at the right pace.
         for rate in [FieldKey::TimeCodesPerSecond, FieldKey::FramesPerSecond] {
             layer.set("/", rate, Value::Double(clip.frames_per_second()))?;
         }

@@ -25,7 +25,7 @@ pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene, tokens: &[Vec<
     layer.uniform(path, "joints", "token[]", joints.clone())?;
     let names = scene.joints.iter().map(|joint| joint.name.as_str());
     layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
-    // USD has no word for where a bone ends either; a negative length stands for none.
+    // USD has no attribute for the end of a bone either; a negative length means none.
     if scene.joints.iter().any(|joint| joint.bone_length.is_some()) {
         let lengths = scene.joints.iter().map(|joint| joint.bone_length.unwrap_or(-1.0)).collect();
         layer.custom(path, BONE_LENGTHS, "float[]", Value::FloatVec(lengths))?;

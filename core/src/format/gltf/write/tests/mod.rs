@@ -9,13 +9,13 @@ use super::*;
 use crate::scene::SceneJoint;
 use crate::testing::scene::{arm, sleeve};
 
-pub(super) struct Parsed {
-    pub(super) json: Value,
+struct Parsed {
+    json: Value,
     bin: Vec<u8>,
 }
 
 impl Parsed {
-    pub(super) fn glb(bytes: &[u8]) -> Self {
+    fn glb(bytes: &[u8]) -> Self {
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
         assert_eq!(&bytes[..4], b"glTF");
         assert_eq!((word(4), word(8)), (2, bytes.len()));
@@ -28,12 +28,12 @@ impl Parsed {
         Self { json, bin: bytes[json_end + 8..].to_vec() }
     }
 
-    pub(super) fn size(&self, at: &str) -> usize {
+    fn size(&self, at: &str) -> usize {
         self.json.pointer(at).and_then(Value::as_u64).unwrap_or_else(|| panic!("no {at}")) as usize
     }
 
     /// All components of an accessor as numbers.
-    pub(super) fn accessor(&self, index: usize) -> Vec<f64> {
+    fn accessor(&self, index: usize) -> Vec<f64> {
         let accessor = format!("/accessors/{index}");
         let width = match self.json.pointer(&format!("{accessor}/type")).unwrap().as_str().unwrap() {
             "SCALAR" => 1,

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde_json::json;
 
-use super::*;
+use super::super::*;
+use super::Parsed;
 use crate::clip::{Clip, TranslationTrack};
 use crate::format::vrm::{VrmMeta, to_vrm};
 use crate::math::Rotation;

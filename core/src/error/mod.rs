@@ -1,13 +1,16 @@
 //! The error type of the library: every variant says what is wrong, what was expected and what was found.
 
+mod fault;
+mod format;
+
 use std::path::{Path, PathBuf};
+
+pub use fault::{Fault, ParserError};
+pub use format::{BvhError, FbxError, FormatError, GltfError, NpzError, ObjError, UsdError};
+pub(crate) use format::{Located, Within};
 
 /// What the library's fallible functions return.
 pub type Result<T> = std::result::Result<T, Error>;
-
-/// The result inside file readers: a message that says what is wrong and where in the file. The caller that knows the
-/// path adds it with [`Error::file`].
-pub(crate) type Outcome<T> = std::result::Result<T, String>;
 
 /// Everything that can go wrong, grouped by what the caller can do about it.
 #[derive(Debug, thiserror::Error)]
@@ -33,12 +36,12 @@ pub enum Error {
         message: String,
     },
     /// A file that was read is not what it should be.
-    #[error("{}: {message}", path.display())]
+    #[error("{}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// What was expected and what was found, with line or offset where known.
-        message: String,
+        /// What was expected and what was found, and where in the file.
+        source: FormatError,
     },
     /// The operating system refused to read or write.
     #[error("{}: cannot {action}: {source}", path.display())]
@@ -107,8 +110,8 @@ impl Error {
     }
 
     /// An error about the content of a file.
-    pub fn file(path: impl AsRef<Path>, message: impl Into<String>) -> Self {
-        Self::File { path: path.as_ref().to_path_buf(), message: message.into() }
+    pub fn file(path: impl AsRef<Path>, source: impl Into<FormatError>) -> Self {
+        Self::File { path: path.as_ref().to_path_buf(), source: source.into() }
     }
 
     /// An error about data that contradicts itself.

@@ -1,0 +1,212 @@
+//! The errors of the readers of files, one for each format: a [`Fault`] or the message of a parser, and where in the file
+//! it is.
+
+use std::fmt::Display;
+
+use super::{Error, Fault, ParserError};
+
+/// Why the content of a file was refused: the source of [`Error::File`].
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FormatError {
+    /// The ending of the path is not that of a format for the purpose.
+    #[error("unknown ending, expected one of {expected}")]
+    Ending {
+        /// The endings that would do, with their dots.
+        expected: String,
+    },
+    /// A BVH file.
+    #[error(transparent)]
+    Bvh(#[from] BvhError),
+    /// An FBX file.
+    #[error(transparent)]
+    Fbx(#[from] FbxError),
+    /// A glTF or VRM file.
+    #[error(transparent)]
+    Gltf(#[from] GltfError),
+    /// An archive of numpy arrays.
+    #[error(transparent)]
+    Npz(#[from] NpzError),
+    /// A Wavefront OBJ file.
+    #[error(transparent)]
+    Obj(#[from] ObjError),
+    /// A USD file.
+    #[error(transparent)]
+    Usd(#[from] UsdError),
+    /// A file of any format, as a whole.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// A mapping of joints.
+    #[error(r#"expected {{"source joint": "joint of ours" or null}}: {0}"#)]
+    Mapping(serde_json::Error),
+    /// What the file holds could be read, but contradicts itself or is not what it is to be used for.
+    #[error(transparent)]
+    Content(#[from] Box<Error>),
+}
+
+impl FormatError {
+    /// The kind of fault, whatever the format and the place; `None` where the message is that of a parser or of another
+    /// part of the library.
+    pub fn fault(&self) -> Option<&Fault> {
+        match self {
+            Self::Bvh(error) => Some(&error.fault),
+            Self::Fbx(error) => error.fault(),
+            Self::Gltf(error) => error.fault(),
+            Self::Npz(error) => error.fault(),
+            Self::Obj(error) => Some(error.fault()),
+            Self::Usd(error) => error.fault(),
+            Self::Fault(fault) => Some(fault),
+            Self::Ending { .. } | Self::Mapping(_) | Self::Content(_) => None,
+        }
+    }
+}
+
+/// An error that can say where in its file it is.
+pub(crate) trait Located: Sized {
+    /// The error within a larger part: `place` goes before the place that it has.
+    fn within(self, place: String) -> Self;
+}
+
+/// [`Located`] errors of results.
+pub(crate) trait Within {
+    /// Says in which part of the file the error is, if there is one.
+    fn within(self, place: impl Display) -> Self;
+}
+
+impl<T, E: Located> Within for Result<T, E> {
+    fn within(self, place: impl Display) -> Self {
+        self.map_err(|error| error.within(place.to_string()))
+    }
+}
+
+/// Declares the error of a format whose parts are identified by a path within the file.
+macro_rules! located_error {
+    ($(#[$doc:meta])* $name:ident { $($(#[$attribute:meta])* $variant:ident($($content:tt)*),)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, thiserror::Error)]
+        #[non_exhaustive]
+        pub enum $name {
+            /// Something is wrong in a part of the file.
+            #[error("{path}: {source}")]
+            In {
+                /// The part, from the whole to the detail.
+                path: String,
+                /// What is wrong there.
+                source: Box<Self>,
+            },
+            /// Something is wrong with the file as a whole, or with the part that [`In`](Self::In) names.
+            #[error(transparent)]
+            Fault(#[from] Fault),
+            $($(#[$attribute])* $variant($($content)*),)*
+        }
+
+        impl $name {
+            /// The kind of fault, whatever its place; `None` for the message of a parser.
+            pub fn fault(&self) -> Option<&Fault> {
+                match self {
+                    Self::In { source, .. } => source.fault(),
+                    Self::Fault(fault) => Some(fault),
+                    $(Self::$variant(..) => None,)*
+                }
+            }
+        }
+
+        impl Located for $name {
+            fn within(self, place: String) -> Self {
+                match self {
+                    Self::In { path, source } => Self::In { path: format!("{place}: {path}"), source },
+                    other => Self::In { path: place, source: Box::new(other) },
+                }
+            }
+        }
+    };
+}
+
+/// Something is wrong in a line of a BVH file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {fault}")]
+pub struct BvhError {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong there.
+    #[source]
+    pub fault: Fault,
+}
+
+/// Something is wrong in a Wavefront OBJ file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObjError {
+    /// In one line.
+    #[error("line {line}: {fault}")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong there.
+        #[source]
+        fault: Fault,
+    },
+    /// In the file as a whole.
+    #[error(transparent)]
+    Whole(#[from] Fault),
+}
+
+impl ObjError {
+    /// The kind of fault, whatever its place.
+    pub fn fault(&self) -> &Fault {
+        match self {
+            Self::Line { fault, .. } | Self::Whole(fault) => fault,
+        }
+    }
+}
+
+located_error! {
+    /// Something is wrong in an archive of numpy arrays; parts are identified by the name of the array.
+    NpzError {
+        /// The parser of the archive or of an array cannot read it.
+        #[error("{0}")]
+        Parser(#[from] ParserError),
+        /// The joints contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
+    }
+}
+
+located_error! {
+    /// Something is wrong in an FBX file; parts are identified by the names of animations and nodes.
+    FbxError {
+        /// The parser cannot read it.
+        #[error("is damaged or truncated: {0}")]
+        Parser(#[from] ParserError),
+        /// The joints contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
+    }
+}
+
+located_error! {
+    /// Something is wrong in a glTF or VRM file; parts are identified as in `nodes[3].mesh: POSITION: accessor 7`.
+    GltfError {
+        /// The JSON is not that of a glTF document.
+        #[error("is neither a binary glTF nor valid glTF JSON: {0}")]
+        Json(#[from] gltf_json::Error),
+        /// A compressed buffer view cannot be decoded.
+        #[error("{0}")]
+        Parser(#[from] ParserError),
+        /// The document could be read, but its skeleton, clips or meshes contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
+    }
+}
+
+located_error! {
+    /// Something is wrong in a USD file; parts are identified by the path of the prim or property.
+    UsdError {
+        /// The parser cannot read it.
+        #[error("{0}")]
+        Parser(#[from] ParserError),
+        /// The layer could be read, but its skeleton, clips or meshes contradict each other.
+        #[error("{0}")]
+        Content(#[from] Box<Error>),
+    }
+}
