@@ -129,12 +129,12 @@ fn the_model_is_smaller_than_promised() {
 
 /// The numbers of the card's table of scores and fills are those of the file.
 #[test]
-fn the_card_tells_the_scores_of_the_file() {
+fn the_model_card_has_the_scores_of_the_file() {
     let scores = Model::embedded().unwrap().provenance().scores.clone();
     let card = include_str!("../../model/MODEL_CARD.md");
     for (row, score) in [
         ("mean vertex distance, z = encoder mean", "p2p_mm"),
-        ("mean vertex distance, z = 0 (what 36 measures leave open)", "p2p_z0_mm"),
+        ("mean vertex distance, z = 0 (shape that 36 measures leave undetermined)", "p2p_z0_mm"),
         ("mean vertex distance of the shape space itself", "p2p_shape_space_mm"),
         ("mean error of the 36 measures before the solve", "measures_mean_mm"),
         ("chest circumference before the solve", "chest_circumference_mm"),
@@ -151,10 +151,10 @@ fn the_card_tells_the_scores_of_the_file() {
         let start = format!("| {row} | ");
         let line =
             card.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("no row {row}"));
-        let told = line[start.len()..].split(' ').next().unwrap();
-        let decimals = told.split('.').nth(1).map_or(0, str::len);
+        let stated = line[start.len()..].split(' ').next().unwrap();
+        let decimals = stated.split('.').nth(1).map_or(0, str::len);
         let score = scores.get(score).unwrap_or_else(|| panic!("the file has no score {score}"));
-        assert_eq!(told, format!("{score:.decimals$}"), "{row}");
+        assert_eq!(stated, format!("{score:.decimals$}"), "{row}");
     }
     assert_eq!((scores["bodies"], scores["refused"]), (1000.0, 0.0));
 }
