@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     }
     let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names)?;
     }
     add_clips(&mut scene, &arguments.motion)?;
     write_scene(&scene, &arguments.output, arguments.compress)

@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_ending("OUTPUT", &arguments.output, &endings(Purpose::WriteScene))?;
     let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
-        rename_joints(&mut scene, names);
+        rename_joints(&mut scene, names)?;
     }
     if !holds_motion(&arguments.output) && !scene.clips.is_empty() {
         eprintln!(

@@ -137,10 +137,11 @@ fn parse_rate(text: &str) -> std::result::Result<f64, InvalidValue> {
 }
 
 /// Renames the joints to another naming scheme.
-pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) {
-    for joint in &mut scene.joints {
-        joint.name = renamed(&native_name(&joint.name), names).into_owned();
+pub(crate) fn rename_joints(scene: &mut Scene, names: JointNames) -> Result<()> {
+    if let Some(skeleton) = &mut scene.skeleton {
+        *skeleton = Arc::new(skeleton.renamed(|name| renamed(&native_name(name), names).into_owned())?);
     }
+    Ok(())
 }
 
 /// Adds the requested clips to the scene and writes the report.
@@ -148,7 +149,7 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     if arguments.clips.is_empty() {
         return Ok(());
     }
-    let skeleton = Arc::new(scene.skeleton(|name| native_name(name).into_owned())?);
+    let skeleton = Arc::new(scene.skeleton_with_ends(|name| native_name(name).into_owned())?);
     let mut reports = Vec::new();
     for source in &arguments.clips {
         let (clips, report) = load(source, &skeleton, arguments)?;

@@ -1,9 +1,11 @@
 //! The scene of a body: one level of detail, with accessories, skin weights and materials.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use serde_json::json;
 
-use super::scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
+use super::scene::{AlphaMode, Corners, Scene, SceneMaterial, SceneMesh, flip_v};
 use super::skin_tone::SkinTone;
 use crate::mesh::{Lod, Topology};
 use crate::skeleton::Influences;
@@ -53,14 +55,10 @@ impl Scene {
     /// [`Error::Request`] when the number of influences is neither 4 nor 8.
     pub fn from_body(body: &Body, options: &SceneOptions) -> Result<Self> {
         let skeleton = body.skeleton();
-        let joints = (skeleton.names().iter().zip(skeleton.parents()).zip(skeleton.bind()).enumerate())
-            .map(|(j, ((name, parent), bind))| SceneJoint {
-                name: renamed(name, options.joint_names).into_owned(),
-                parent: *parent,
-                model_from_joint: *bind,
-                bone_length: skeleton.bone_length(j),
-            })
-            .collect();
+        let skeleton = match options.joint_names {
+            JointNames::Native => skeleton.clone(),
+            names => Arc::new(skeleton.renamed(|name| renamed(name, names).into_owned())?),
+        };
         let mut meshes = vec![body_mesh(body, options)?];
         let mut materials = vec![SceneMaterial::skin(options.skin_tone)];
         let character = body.character();
@@ -98,7 +96,14 @@ impl Scene {
                 "seed": report.seed,
             }
         });
-        Ok(Self { name: "Character".into(), joints, meshes, materials, extras, ..Self::default() })
+        Ok(Self {
+            name: "Character".into(),
+            skeleton: Some(skeleton),
+            meshes,
+            materials,
+            extras,
+            ..Self::default()
+        })
     }
 }
 

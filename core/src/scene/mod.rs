@@ -12,6 +12,6 @@ pub(crate) mod titles;
 pub use buffers::{Layout, MeshBuffers};
 pub use character::SceneOptions;
 pub use morph::{MorphTarget, MorphTrack};
-pub use scene::{AlphaMode, Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
+pub use scene::{AlphaMode, Corners, Scene, SceneMaterial, SceneMesh, flip_v};
 pub use skin_tone::SkinTone;
 pub use split::SplitMesh;

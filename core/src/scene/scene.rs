@@ -7,21 +7,19 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
 use super::morph::{MorphTarget, MorphTrack, validate_targets};
 use super::titles::Titles;
 use crate::clip::Clip;
 use crate::scene::SkinTone;
-use crate::skeleton::{JointTree, Skeleton};
+use crate::skeleton::Skeleton;
 use crate::{Error, Result};
 
 /// Tolerance on the sum of one vertex's weights: the rounding of a sum of eight `f32`, with a margin.
 const WEIGHT_SUM_TOLERANCE: f32 = 1e-5;
 /// Tolerance on the length of a normal.
 const NORMAL_LENGTH_TOLERANCE: f32 = 1e-3;
-/// Tolerance on the entries of RᵀR − I of a joint's rotation R.
-const ROTATION_TOLERANCE: f32 = 1e-4;
 /// Largest distance from its parent's +Y axis, divided by the distance along it, of a joint that ends the parent's bone.
 const AXIS_TOLERANCE: f32 = 1e-3;
 /// Tolerance on the entries of `model_from_joint` of a clip's rest pose against the bind pose: the rounding of a chain of
@@ -33,32 +31,20 @@ const REST_TOLERANCE: f32 = 1e-4;
 pub struct Scene {
     /// Name of the character.
     pub name: String,
-    /// The joint tree, parents first; the first joint is the only root. Empty for meshes without a skin.
-    pub joints: Vec<SceneJoint>,
+    /// The joints in the bind pose, which is the rest pose of every written file; the first joint is the only root. `None` for
+    /// meshes without a skin.
+    pub skeleton: Option<Arc<Skeleton>>,
     /// The meshes, the body first.
     pub meshes: Vec<SceneMesh>,
     /// The materials that meshes refer to.
     pub materials: Vec<SceneMaterial>,
-    /// Motions of the joint tree: each clip has the joints of [`Scene::joints`] in the same order, under any names, and the
+    /// Motions of the skeleton: each clip has the joints of [`Scene::skeleton`] in the same order, under any names, and the
     /// bind pose as its rest pose. Names of clips are unique; [`add_clip`](Scene::add_clip) makes them so.
     pub clips: Vec<Clip>,
     /// Weights of the meshes' morph targets over the clips, in any order.
     pub morph_tracks: Vec<MorphTrack>,
     /// Data to be stored in the file, such as the report: an object, or `null` for none.
     pub extras: serde_json::Value,
-}
-
-/// One joint in its bind pose, which is the rest pose of every written file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneJoint {
-    /// Name, unique in the scene.
-    pub name: String,
-    /// Index of the parent in [`Scene::joints`], less than this joint's own; `None` for the root.
-    pub parent: Option<u32>,
-    /// Rotation and translation (metres) from the joint's space to model space, for column vectors; no scale.
-    pub model_from_joint: Affine3A,
-    /// Length of the bone along the joint's +Y axis, metres; `None` where it is unknown.
-    pub bone_length: Option<f32>,
 }
 
 /// One mesh with one material. Positions and texture coordinates are indexed separately.
@@ -209,66 +195,43 @@ impl Scene {
     }
 
     fn validate_joints(&self) -> Result<()> {
-        for (i, joint) in self.joints.iter().enumerate() {
-            let fault =
-                |message: String| Err(Error::invalid("joint", format!("`{}`: {message}", joint.name)));
-            match joint.parent {
-                None if i > 0 => {
-                    return fault(format!("joint {i} has no parent, only joint 0 may be a root"));
-                }
-                Some(parent) if parent as usize >= i => {
-                    return fault(format!("parent {parent} does not come before the joint itself, {i}"));
-                }
-                _ => {}
-            }
-            let transform = joint.model_from_joint;
-            if !transform.is_finite() {
-                return fault("bind pose is not finite".into());
-            }
-            if let Some(length) = joint.bone_length
-                && !(0.0..f32::INFINITY).contains(&length)
-            {
-                return fault(format!("expected a bone length of 0 or more, got {length}"));
-            }
-            let m = transform.matrix3;
-            let off = (m.transpose() * m - glam::Mat3A::IDENTITY).to_cols_array();
-            if off.iter().any(|v| v.abs() > ROTATION_TOLERANCE) || m.determinant() < 0.0 {
-                return fault(
-                    "bind pose must be a rotation and a translation, got scale, shear or a mirror".into(),
-                );
-            }
+        let Some(skeleton) = &self.skeleton else { return Ok(()) };
+        let mut roots = skeleton.parents().iter().enumerate().filter(|(_, parent)| parent.is_none());
+        if let Some((joint, _)) = roots.nth(1) {
+            let message = format!(
+                "`{}`: joint {joint} has no parent, only joint 0 may be a root",
+                skeleton.names()[joint]
+            );
+            return Err(Error::invalid("joint", message));
         }
-        if self.joints.len() > usize::from(u16::MAX) {
-            return Err(Error::invalid(
-                "joints",
-                format!("expected at most 65535, got {}", self.joints.len()),
-            ));
-        }
-        unique("joint", self.joints.iter().map(|j| j.name.as_str()))
+        unique("joint", skeleton.names().iter().map(String::as_str))
     }
 
-    /// The joints as a skeleton with the bind pose as its rest pose, which clips for this scene need; `name` maps the names
-    /// of joints.
+    /// Number of joints; 0 for meshes without a skin.
+    pub fn joint_count(&self) -> usize {
+        self.skeleton.as_ref().map_or(0, |skeleton| skeleton.len())
+    }
+
+    /// The scene's skeleton with the ends of bones that retargeting needs; `name` maps the names of joints.
     ///
     /// Where a bone's length is unknown, as in most characters from other programs, the bone ends at the farthest of its
     /// joint's children on the +Y axis, if there are any.
     ///
     /// # Errors
-    /// As [`Skeleton::new`].
-    pub fn skeleton(&self, name: impl Fn(&str) -> String) -> Result<Skeleton> {
-        let names = self.joints.iter().map(|joint| name(&joint.name)).collect();
-        let tree = JointTree::new(names, self.joints.iter().map(|joint| joint.parent).collect())?;
-        let bind = self.joints.iter().map(|joint| joint.model_from_joint).collect();
-        let mut lengths: Vec<Option<f32>> = self.joints.iter().map(|joint| joint.bone_length).collect();
-        let skeleton = Skeleton::from_bind(Arc::new(tree), bind, lengths.clone())?;
-        if lengths.iter().all(Option::is_some) {
+    /// [`Error::Invalid`] for a scene without joints; otherwise as [`Skeleton::renamed`].
+    pub fn skeleton_with_ends(&self, name: impl Fn(&str) -> String) -> Result<Skeleton> {
+        let skeleton = self.skeleton.as_ref().ok_or_else(|| Error::invalid("scene", "has no joints"))?;
+        let skeleton = skeleton.renamed(name)?;
+        let known: Vec<Option<f32>> = (0..skeleton.len()).map(|joint| skeleton.bone_length(joint)).collect();
+        if known.iter().all(Option::is_some) {
             return Ok(skeleton);
         }
+        let mut lengths = known.clone();
         for (parent, local) in skeleton.parents().iter().zip(&skeleton.rest_pose().locals) {
             let at = local.translation;
             let on_axis = at.y > 0.0 && (at.x * at.x + at.z * at.z).sqrt() < AXIS_TOLERANCE * at.y;
             if let (Some(parent), true) = (*parent, on_axis)
-                && self.joints[parent as usize].bone_length.is_none()
+                && known[parent as usize].is_none()
             {
                 let length = &mut lengths[parent as usize];
                 *length = Some(length.map_or(at.y, |l| l.max(at.y)));
@@ -288,13 +251,14 @@ impl Scene {
             let fault =
                 |message: String| Err(Error::invalid("clip", format!("`{}`: {message}", clip.name())));
             let rest = clip.skeleton();
-            if !rest.parents().iter().eq(self.joints.iter().map(|j| &j.parent)) {
-                let (got, expected) = (rest.len(), self.joints.len());
+            let own = self.skeleton.as_ref().filter(|own| own.parents() == rest.parents());
+            let Some(own) = own else {
+                let (got, expected) = (rest.len(), self.joint_count());
                 return fault(format!("its {got} joints are not the {expected} of the scene"));
-            }
-            for (at, joint) in rest.model_from_joints().iter().zip(&self.joints) {
-                if !at.to_affine().abs_diff_eq(joint.model_from_joint, REST_TOLERANCE) {
-                    return fault(format!("joint `{}` does not rest in the bind pose", joint.name));
+            };
+            for ((at, bind), name) in rest.model_from_joints().iter().zip(own.bind()).zip(own.names()) {
+                if !at.to_affine().abs_diff_eq(*bind, REST_TOLERANCE) {
+                    return fault(format!("joint `{name}` does not rest in the bind pose"));
                 }
             }
         }
@@ -362,10 +326,13 @@ impl Scene {
                 format_args!("influences per vertex must be 4 or 8, or 0 without a skin, got {per_vertex}"),
             ));
         }
-        if (per_vertex == 0) != self.joints.is_empty() {
+        if (per_vertex == 0) != self.skeleton.is_none() {
             return Err(fault(
                 mesh,
-                format_args!("{per_vertex} influences per vertex in a scene of {} joints", self.joints.len()),
+                format_args!(
+                    "{per_vertex} influences per vertex in a scene of {} joints",
+                    self.joint_count()
+                ),
             ));
         }
         let expected = mesh.positions.len() * per_vertex;
@@ -396,10 +363,10 @@ impl Scene {
             }
             let used = &joints[..weights.iter().take_while(|w| **w > 0.0).count()];
             for (slot, joint) in used.iter().enumerate() {
-                if usize::from(*joint) >= self.joints.len() {
+                if usize::from(*joint) >= self.joint_count() {
                     return Err(fault(
                         mesh,
-                        format_args!("vertex {vertex} uses joint {joint} of {}", self.joints.len()),
+                        format_args!("vertex {vertex} uses joint {joint} of {}", self.joint_count()),
                     ));
                 }
                 if used[..slot].contains(joint) {
@@ -460,8 +427,10 @@ fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Resul
 
 #[cfg(test)]
 mod tests {
+    use glam::Affine3A;
+
     use super::*;
-    use crate::testing::scene::{arm, bent};
+    use crate::testing::scene::{arm, bent, edit, rename};
 
     #[test]
     fn the_synthetic_arm_is_valid() {
@@ -475,15 +444,11 @@ mod tests {
         let cases: &[Case] = &[
             ("extras must be an object", |s| s.extras = serde_json::json!([1])),
             ("at least one mesh", |s| s.meshes.clear()),
-            ("two are called `lower`", |s| s.joints[2].name = "lower".into()),
-            ("name \"\" is empty", |s| s.joints[2].name.clear()),
+            ("name \"a\\tb\"", |s| {
+                rename(s, |name| if name == "lower" { "a\tb".into() } else { name.into() });
+            }),
             ("name \"a\\nb\"", |s| s.meshes[1].name = "a\nb".into()),
-            ("`lower`: parent 1 does not come before", |s| s.joints[1].parent = Some(1)),
-            ("only joint 0 may be a root", |s| s.joints[2].parent = None),
-            ("bind pose is not finite", |s| s.joints[1].model_from_joint.translation.x = f32::NAN),
-            ("`lower`: expected a bone length", |s| s.joints[1].bone_length = Some(f32::NAN)),
-            ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3 *= 1.1),
-            ("got scale, shear or a mirror", |s| s.joints[1].model_from_joint.matrix3.x_axis *= -1.0),
+            ("only joint 0 may be a root", |s| edit(s, |joints| joints[2].parent = None)),
             ("`Skin`: expected colours", |s| s.materials[0].base_color[1] = f32::NAN),
             ("refractive index", |s| s.materials[0].ior = 0.5),
             ("`Sleeve`: has no vertices or no faces", |s| s.meshes[0].quads = Corners::default()),
@@ -513,15 +478,15 @@ mod tests {
             }),
             ("its 3 joints are not the 2", |s| {
                 s.clips.push(bent(s));
-                s.joints.pop();
+                edit(s, |joints| drop(joints.pop()));
                 s.meshes.pop();
             }),
             ("`lower` does not rest in the bind pose", |s| {
                 s.clips.push(bent(s));
-                s.joints[1].model_from_joint.translation.x += 0.01;
+                edit(s, |joints| joints[1].model_from_joint.translation.x += 0.01);
             }),
             ("two are called `bent`", |s| s.clips = vec![bent(s); 2]),
-            ("4 influences per vertex in a scene of 0 joints", |s| s.joints.clear()),
+            ("4 influences per vertex in a scene of 0 joints", |s| s.skeleton = None),
         ];
         for (expected, spoil) in cases {
             let mut scene = arm(4);
@@ -546,15 +511,17 @@ mod tests {
     #[test]
     fn bones_without_a_length_end_at_the_next_joint_on_their_axis() {
         let mut scene = arm(4);
-        scene.joints[0].model_from_joint = Affine3A::IDENTITY;
-        scene.joints[1].model_from_joint = Affine3A::from_translation(Vec3::Y * 0.3);
-        for joint in &mut scene.joints {
-            joint.bone_length = None;
-        }
-        let ends = |scene: &Scene| scene.skeleton(str::to_owned).unwrap().ends().to_vec();
+        edit(&mut scene, |joints| {
+            joints[0].model_from_joint = Affine3A::IDENTITY;
+            joints[1].model_from_joint = Affine3A::from_translation(Vec3::Y * 0.3);
+            joints.iter_mut().for_each(|joint| joint.bone_length = None);
+        });
+        let ends = |scene: &Scene| scene.skeleton_with_ends(str::to_owned).unwrap().ends().to_vec();
         assert_eq!(ends(&scene), [Some(Vec3::Y * 0.3), None, None]);
-        scene.joints[0].bone_length = Some(0.25);
-        scene.joints[2].bone_length = Some(0.1);
+        edit(&mut scene, |joints| {
+            joints[0].bone_length = Some(0.25);
+            joints[2].bone_length = Some(0.1);
+        });
         assert_eq!(ends(&scene), [Some(Vec3::Y * 0.25), None, Some(Vec3::Y * 0.1)]);
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Mat3A, Vec3};
 
 use super::{JointTree, Pose, model_from_joints};
 use crate::math::{RigidTransform, Rotation, unit};
@@ -67,12 +67,14 @@ impl Skeleton {
     /// lengths of bones along their joints' +Y axes, metres, where they are known.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// As [`new`](Self::new), and [`Error::Invalid`] naming the joint when a matrix is not a rotation and a translation or a
+    /// length is negative.
     pub fn from_bind(
         tree: Arc<JointTree>,
         bind: Vec<Affine3A>,
         bone_lengths: Vec<Option<f32>>,
     ) -> Result<Self> {
+        check_bind(&tree, &bind, &bone_lengths)?;
         let model: Vec<RigidTransform> = bind
             .iter()
             .map(|model_from_joint| {
@@ -90,6 +92,15 @@ impl Skeleton {
         let ends = bone_lengths.into_iter().map(|length| length.map(|length| Vec3::Y * length)).collect();
         let (locals, ends) = checked(&tree, locals, ends)?;
         Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
+    }
+
+    /// The same skeleton with its joints under other names.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when two joints get the same name, or one an empty name.
+    pub fn renamed(&self, name: impl Fn(&str) -> String) -> Result<Self> {
+        let names = self.names().iter().map(|old| name(old)).collect();
+        Ok(Self { tree: Arc::new(JointTree::new(names, self.parents().to_vec())?), ..self.clone() })
     }
 
     /// The joint tree: names and parents.
@@ -162,6 +173,30 @@ impl Skeleton {
     }
 }
 
+/// Tolerance on the entries of RᵀR − I of a joint's rotation R.
+const ROTATION_TOLERANCE: f32 = 1e-4;
+
+/// Checks that the bind pose consists of rotations and translations, and that lengths of bones are not negative.
+fn check_bind(tree: &JointTree, bind: &[Affine3A], bone_lengths: &[Option<f32>]) -> Result<()> {
+    for ((name, bind), length) in tree.names().iter().zip(bind).zip(bone_lengths) {
+        let fail = |message: &str| Err(Error::invalid("skeleton", format!("joint `{name}`: {message}")));
+        if !bind.is_finite() {
+            return fail("bind pose is not finite");
+        }
+        let m = bind.matrix3;
+        let off = (m.transpose() * m - Mat3A::IDENTITY).to_cols_array();
+        if off.iter().any(|v| v.abs() > ROTATION_TOLERANCE) || m.determinant() < 0.0 {
+            return fail("bind pose must be a rotation and a translation, got scale, shear or a mirror");
+        }
+        if let Some(length) = *length
+            && !(0.0..f32::INFINITY).contains(&length)
+        {
+            return fail(&format!("expected a bone length of 0 or more, got {length}"));
+        }
+    }
+    Ok(())
+}
+
 /// Checks the arrays that accompany a joint tree and normalises rotations.
 fn checked(
     tree: &JointTree,
@@ -215,6 +250,39 @@ mod tests {
             let error = Skeleton::new(parts.0, parts.1, parts.2, parts.3).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         }
+    }
+
+    #[test]
+    fn a_bind_pose_that_is_not_rigid_is_refused() {
+        let (names, parents, ..) = joints();
+        let tree = Arc::new(JointTree::new(names, parents).unwrap());
+        let error = |bind: Affine3A, length: Option<f32>| {
+            let bind = vec![Affine3A::IDENTITY, bind];
+            Skeleton::from_bind(tree.clone(), bind, vec![None, length]).unwrap_err().to_string()
+        };
+        let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        for (bind, length, expected) in [
+            (Affine3A::from_scale(Vec3::splat(1.1)), None, "`leg`: bind pose must be a rotation"),
+            (mirror, None, "got scale, shear or a mirror"),
+            (Affine3A::from_translation(Vec3::NAN), None, "`leg`: bind pose is not finite"),
+            (Affine3A::IDENTITY, Some(-0.1), "`leg`: expected a bone length of 0 or more, got -0.1"),
+            (Affine3A::IDENTITY, Some(f32::NAN), "got NaN"),
+        ] {
+            let error = error(bind, length);
+            assert!(error.contains(expected), "expected `{expected}` in `{error}`");
+        }
+    }
+
+    #[test]
+    fn joints_get_other_names() {
+        let (names, parents, locals, ends) = joints();
+        let skeleton = Skeleton::new(names, parents, locals, ends).unwrap();
+        let renamed = skeleton.renamed(|name| format!("my_{name}")).unwrap();
+        assert_eq!(renamed.names(), ["my_hips", "my_leg"]);
+        assert_eq!((renamed.rest_pose(), renamed.bind()), (skeleton.rest_pose(), skeleton.bind()));
+        assert!(
+            skeleton.renamed(|_| "same".into()).unwrap_err().to_string().contains("`same` is empty or taken")
+        );
     }
 
     #[test]

@@ -7,10 +7,52 @@ use glam::{Affine3A, Vec3};
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::Rotation;
 use crate::scene::{AlphaMode, MorphTarget, MorphTrack, SkinTone};
-use crate::scene::{Corners, Scene, SceneJoint, SceneMaterial, SceneMesh, flip_v};
+use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh, flip_v};
+use crate::skeleton::{JointTree, Skeleton};
 
 /// Sides of the sleeve.
 const SIDES: u32 = 5;
+
+/// One joint of a scene in its bind pose, for tests that change single joints.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    pub(crate) parent: Option<u32>,
+    pub(crate) model_from_joint: Affine3A,
+    pub(crate) bone_length: Option<f32>,
+}
+
+/// The skeleton of these joints.
+pub(crate) fn skeleton(joints: Vec<Joint>) -> Arc<Skeleton> {
+    let parents = joints.iter().map(|joint| joint.parent).collect();
+    let bind = joints.iter().map(|joint| joint.model_from_joint).collect();
+    let lengths = joints.iter().map(|joint| joint.bone_length).collect();
+    let tree = JointTree::new(joints.into_iter().map(|joint| joint.name).collect(), parents).unwrap();
+    Arc::new(Skeleton::from_bind(Arc::new(tree), bind, lengths).unwrap())
+}
+
+/// The joints of a scene; none of one without a skeleton.
+pub(crate) fn joints(scene: &Scene) -> Vec<Joint> {
+    let joint = |skeleton: &Skeleton, j: usize| Joint {
+        name: skeleton.names()[j].clone(),
+        parent: skeleton.parents()[j],
+        model_from_joint: skeleton.bind()[j],
+        bone_length: skeleton.bone_length(j),
+    };
+    scene.skeleton.iter().flat_map(|own| (0..own.len()).map(move |j| joint(own, j))).collect()
+}
+
+/// Changes joints of a scene.
+pub(crate) fn edit(scene: &mut Scene, change: impl FnOnce(&mut Vec<Joint>)) {
+    let mut joints = joints(scene);
+    change(&mut joints);
+    scene.skeleton = Some(skeleton(joints));
+}
+
+/// Renames the joints of a scene.
+pub(crate) fn rename(scene: &mut Scene, name: impl Fn(&str) -> String) {
+    edit(scene, |joints| joints.iter_mut().for_each(|joint| joint.name = name(&joint.name)));
+}
 
 /// Three rotated joints, a sleeve of 3 × 5 vertices with a texture seam, and one triangle without texture coordinates on the
 /// last joint.
@@ -26,7 +68,7 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
             Vec3::from(at),
         )
     };
-    let joint = |name: &str, parent, model_from_joint| SceneJoint {
+    let joint = |name: &str, parent, model_from_joint| Joint {
         name: name.into(),
         parent,
         model_from_joint,
@@ -48,7 +90,7 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
     ];
     Scene {
         name: "Arm".into(),
-        joints,
+        skeleton: Some(skeleton(joints)),
         meshes: vec![tube(influences, rings), cap(influences)],
         materials,
         extras: serde_json::json!({"asked": {"arm_length": 0.6}}),
@@ -58,7 +100,7 @@ pub(crate) fn sleeve(influences: usize, rings: u32) -> Scene {
 
 /// Three frames in which every joint of a scene rotates about its own axis and the root moves.
 pub(crate) fn bent(scene: &Scene) -> Clip {
-    let rest = Arc::new(scene.skeleton(str::to_owned).unwrap());
+    let rest = Arc::new(scene.skeleton_with_ends(str::to_owned).unwrap());
     let rotation = |frame: usize, joint: usize| {
         let axis = Vec3::new(1.0, joint as f32, 0.5).normalize_or_zero();
         Rotation::from_axis_angle(axis, 0.4 * frame as f32 + 0.1 * joint as f32)

@@ -107,7 +107,7 @@ fn meta_json(scene: &Scene, meta: &VrmMeta) -> Result<Value> {
 fn human_bones(scene: &Scene) -> Result<Value> {
     let find = |bone: &HumanoidBone| {
         let names = [&bone.native, &bone.vrm, &bone.unity, &bone.mixamo, &bone.blender];
-        names.into_iter().find_map(|name| scene.joints.iter().position(|joint| joint.name == *name))
+        names.into_iter().find_map(|name| scene.skeleton.as_ref()?.find(name))
     };
     let mut bones = Map::new();
     for bone in humanoid_bones() {

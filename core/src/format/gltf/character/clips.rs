@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use gltf_json::{Animation, animation::Property};
 
-use super::skeleton::{Skeleton, chain_transform, named, to_local, written};
+use super::skeleton::{JointNodes, chain_transform, named, to_local, written};
 use crate::clip::{Clip, MAX_FRAMES, TranslationTrack};
 use crate::error::{Fault, Within};
 use crate::format::gltf::Result;
@@ -19,7 +19,7 @@ use crate::format::gltf::document::Document;
 use crate::format::gltf::weights::{self, WeightKeys};
 use crate::math::{RigidTransform, Rotation};
 use crate::scene::titles::Titles;
-use crate::skeleton::Skeleton as RestSkeleton;
+use crate::skeleton::Skeleton;
 
 /// How far scale may be from 1.
 const SCALE_TOLERANCE: f32 = 1e-4;
@@ -40,29 +40,28 @@ pub(super) struct NodeWeights {
 }
 
 /// All animations that move a joint or weigh a morph target.
-pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Result<Vec<Read>> {
+pub(super) fn read(document: &Document, joints: &JointNodes) -> Result<Vec<Read>> {
     if document.root.animations.is_empty() {
         return Ok(Vec::new());
     }
-    let rest = RestSkeleton::new(
-        skeleton.joints.iter().map(|j| j.name.clone()).collect(),
-        skeleton.joints.iter().map(|j| j.parent).collect(),
-        skeleton.locals.clone(),
-        vec![None; skeleton.joints.len()],
-    );
+    let tree = joints.skeleton.tree().clone();
+    let rest = Skeleton::from_rest_pose(tree, joints.locals.clone(), vec![None; joints.skeleton.len()]);
     let rest = Arc::new(rest.map_err(Box::new)?);
     let mut motions = Vec::new();
     let (mut left, mut keys) = (MAX_ROTATIONS, MAX_NUMBERS);
     for (i, animation) in document.root.animations.iter().enumerate() {
-        let motion = Motion::read(document, skeleton, animation, &mut keys);
+        let motion = Motion::read(document, joints, animation, &mut keys);
         let Some(motion) = motion.within(format_args!("animations[{i}]"))? else { continue };
-        let (frames, joints) = (motion.frames, skeleton.joints.len());
+        let (frames, joint_count) = (motion.frames, joints.skeleton.len());
         // A weight costs less than a rotation.
-        let numbers = joints + motion.weights.iter().map(|keys| keys.targets).sum::<usize>();
+        let numbers = joint_count + motion.weights.iter().map(|keys| keys.targets).sum::<usize>();
         let rotations = frames.checked_mul(numbers).and_then(|rotations| left.checked_sub(rotations));
         left = rotations.ok_or_else(|| {
             let most = format!("{MAX_ROTATIONS} rotations in all clips");
-            Fault::too_many(most, format_args!("{frames} frames of {joints} joints in animations[{i}] alone"))
+            Fault::too_many(
+                most,
+                format_args!("{frames} frames of {joint_count} joints in animations[{i}] alone"),
+            )
         })?;
         motions.push((i, animation, motion));
     }
@@ -70,7 +69,7 @@ pub(super) fn read(document: &Document, skeleton: &Skeleton) -> Result<Vec<Read>
     let mut clips = Vec::new();
     for (i, animation, motion) in motions {
         let name = names.unique(animation.name.as_deref().unwrap_or("Animation"));
-        let clip = motion.clip(document, skeleton, &rest, name);
+        let clip = motion.clip(document, joints, &rest, name);
         let clip = clip.within(format_args!("animations[{i}]"))?;
         clips.push(Read { clip, weights: motion.node_weights() });
     }
@@ -96,12 +95,12 @@ impl Motion {
     /// `None` if no joint moves and no target is weighed.
     fn read(
         document: &Document,
-        skeleton: &Skeleton,
+        joints: &JointNodes,
         animation: &Animation,
         left: &mut usize,
     ) -> Result<Option<Self>> {
         let mut nodes: BTreeMap<usize, NodeTracks> = BTreeMap::new();
-        for node in skeleton.chains.iter().flatten() {
+        for node in joints.chains.iter().flatten() {
             nodes.entry(*node).or_default();
         }
         let mut tracks = animation::read(document, animation, left)?;
@@ -147,21 +146,21 @@ impl Motion {
     fn clip(
         &self,
         document: &Document,
-        skeleton: &Skeleton,
-        rest: &Arc<RestSkeleton>,
+        joints: &JointNodes,
+        rest: &Arc<Skeleton>,
         name: String,
     ) -> Result<Clip> {
-        let joints = skeleton.joints.len();
-        let mut rotations = vec![Rotation::IDENTITY; self.frames * joints];
+        let joint_count = joints.skeleton.len();
+        let mut rotations = vec![Rotation::IDENTITY; self.frames * joint_count];
         let mut translations = Vec::new();
-        for (j, (chain, at_rest)) in skeleton.chains.iter().zip(&skeleton.locals).enumerate() {
+        for (j, (chain, at_rest)) in joints.chains.iter().zip(&joints.locals).enumerate() {
             let still = chain.iter().all(|n| self.nodes.get(n).is_none_or(|t| t.is_still()));
             let locals: Vec<RigidTransform> = (0..if still { 1 } else { self.frames })
                 .map(|frame| self.local(document, chain, frame))
                 .collect::<Result<_>>()?;
             let local = |frame: usize| locals[frame.min(locals.len() - 1)];
             for frame in 0..self.frames {
-                rotations[frame * joints + j] = local(frame).rotation;
+                rotations[frame * joint_count + j] = local(frame).rotation;
             }
             if locals.iter().any(|l| l.translation != at_rest.translation) {
                 let values = (0..self.frames).map(|frame| local(frame).translation).collect();

@@ -9,7 +9,7 @@ use gltf_json::{
 };
 
 use self::clips::NodeWeights;
-use self::skeleton::{Skeleton, joint_above};
+use self::skeleton::{JointNodes, joint_above};
 use super::document::{Document, Tree};
 use super::meshes::{Part, attribute, merge_copies, normalize_normals, parts, place, with_materials};
 use crate::error::{Fault, Within};
@@ -22,7 +22,7 @@ const SUM_TOLERANCE: f64 = 1e-6;
 /// Joints, meshes with texture coordinates and weights, materials, clips.
 pub(super) fn scene(document: &Document) -> Result<Scene> {
     let tree = document.tree()?;
-    let skeleton = Skeleton::read(document, &tree)?;
+    let skeleton = JointNodes::read(document, &tree)?;
     let world = document.world_from_nodes(&tree);
     let (mut meshes, mut nodes) = (Vec::new(), Vec::new());
     for part in parts(document)? {
@@ -41,7 +41,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
             scene.clips.push(read.clip);
             add_morph_tracks(&mut scene, clip, read.weights, &nodes);
         }
-        scene.joints = skeleton.joints;
+        scene.skeleton = Some(skeleton.skeleton);
     }
     scene.validate().map_err(Box::new)?;
     Ok(scene)
@@ -71,7 +71,7 @@ fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Result<SceneMesh> 
 }
 
 /// A mesh with its own weights, or one without that is below a joint.
-fn skinned(document: &Document, skeleton: &Skeleton, tree: &Tree, part: Part<'_>) -> Result<SceneMesh> {
+fn skinned(document: &Document, skeleton: &JointNodes, tree: &Tree, part: Part<'_>) -> Result<SceneMesh> {
     let Part { node, primitive, mut mesh, vertices } = part;
     let written = mesh.positions.len();
     match document.root.nodes[node].skin {
@@ -109,7 +109,7 @@ fn sets(primitive: &Primitive) -> Sets {
 /// made to.
 fn weights(
     document: &Document,
-    skeleton: &Skeleton,
+    skeleton: &JointNodes,
     skin: usize,
     sets: &[(Index<Accessor>, Index<Accessor>)],
     out: &mut SceneMesh,

@@ -1,6 +1,7 @@
 //! The joint tree of a document: the joints of all its skins, each with the nodes between it and the joint above.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf_json::{Index, Node, Skin, Value};
@@ -9,9 +10,9 @@ use crate::error::{Fault, GltfError, Within};
 use crate::format::gltf::Result;
 use crate::format::gltf::document::{Document, Tree};
 use crate::math::{RigidTransform, Rotation};
-use crate::scene::SceneJoint;
 use crate::scene::titles::Titles;
 use crate::skeleton::written::{ParentFromJoint, rounded};
+use crate::skeleton::{JointTree, MAX_JOINTS, Skeleton};
 
 /// How far scale may be from 1, and axes from a right angle.
 const RIGID_TOLERANCE: f64 = 1e-4;
@@ -21,18 +22,19 @@ const BIND_TOLERANCE: f32 = 1e-4;
 /// Most nodes between joints that are followed, one shared by several joints counted for each.
 const MAX_LINKS: usize = 1 << 20;
 
-/// The joints, parents first, with one root.
-pub(super) struct Skeleton {
-    pub(super) joints: Vec<SceneJoint>,
-    /// Where each rests in its parent, which is in the bind pose.
+/// The joints of a document and their nodes.
+pub(super) struct JointNodes {
+    /// The joints in the bind pose, with one root.
+    pub(super) skeleton: Arc<Skeleton>,
+    /// `parent_from_joint` of each in the bind pose, as exact as the file.
     pub(super) locals: Vec<RigidTransform>,
     /// For each joint, the nodes from below its parent (from the top of the scene for the root) down to its own.
     pub(super) chains: Vec<Vec<usize>>,
-    /// Node of a joint to its place in `joints`.
+    /// Node of a joint to its index in `skeleton`.
     pub(super) places: BTreeMap<usize, u16>,
 }
 
-impl Skeleton {
+impl JointNodes {
     /// `None` for a document in which no mesh has a skin.
     pub(super) fn read(document: &Document, tree: &Tree) -> Result<Option<Self>> {
         let root = &document.root;
@@ -56,8 +58,8 @@ impl Skeleton {
         if nodes.is_empty() {
             return Ok(None);
         }
-        if nodes.len() > usize::from(u16::MAX) {
-            return Err(Fault::too_many(format_args!("{} joints", u16::MAX), nodes.len()).into());
+        if nodes.len() > MAX_JOINTS {
+            return Err(Fault::too_many(format_args!("{MAX_JOINTS} joints"), nodes.len()).into());
         }
         let mut above: Vec<Option<usize>> = vec![None; root.nodes.len()];
         for &node in &tree.order {
@@ -83,7 +85,8 @@ impl Skeleton {
         let mut names = Titles::default();
         let mut rest: Vec<DAffine3> = Vec::with_capacity(nodes.len());
         let mut locals = Vec::with_capacity(nodes.len());
-        let mut joints = Vec::with_capacity(nodes.len());
+        let mut joint_names = Vec::with_capacity(nodes.len());
+        let mut lengths = Vec::with_capacity(nodes.len());
         for ((node, parent), chain) in nodes.iter().zip(&parents).zip(&chains) {
             let local = chain_transform(document, chain)?;
             locals.push(local_of(document, chain, &local));
@@ -91,45 +94,41 @@ impl Skeleton {
             let model_from_joint = above * local;
             rest.push(model_from_joint);
             let name = root.nodes[*node].name.clone().unwrap_or_else(|| format!("node {node}"));
-            let model_from_joint = rounded(&model_from_joint);
-            joints.push(SceneJoint {
-                name: names.unique(&name),
-                parent: *parent,
-                model_from_joint,
-                bone_length: bone_length(&root.nodes[*node]).within(named(document, *node))?,
-            });
+            joint_names.push(names.unique(&name));
+            lengths.push(bone_length(&root.nodes[*node]).within(named(document, *node))?);
         }
-        let mut skeleton = Self { joints, locals, chains, places };
-        skeleton.bind(document, &nodes, &binds)?;
-        Ok(Some(skeleton))
-    }
-
-    /// Where the rest pose is not the bind pose, the bind pose is what a scene starts from.
-    fn bind(
-        &mut self,
-        document: &Document,
-        nodes: &[usize],
-        binds: &BTreeMap<usize, DAffine3>,
-    ) -> Result<()> {
+        let mut model: Vec<Affine3A> = rest.iter().map(rounded).collect();
         let bind: Vec<DAffine3> = nodes.iter().filter_map(|n| binds.get(n)).copied().collect();
-        let same = |(bind, joint): (&DAffine3, &SceneJoint)| {
-            rounded(bind).abs_diff_eq(joint.model_from_joint, BIND_TOLERANCE)
-        };
-        if bind.iter().zip(&self.joints).all(same) {
-            return Ok(());
+        let same = |(bind, rest): (&DAffine3, &Affine3A)| rounded(bind).abs_diff_eq(*rest, BIND_TOLERANCE);
+        if !bind.iter().zip(&model).all(same) {
+            (model, locals) = bind_pose(document, &nodes, &parents, &bind)?;
         }
-        for (i, node) in nodes.iter().enumerate() {
-            let rigid = rigid(&bind[i]).ok_or_else(|| {
-                let found = format!("{}", bind[i].inverse());
-                GltfError::from(Fault::unexpected("a rigid inverse bind matrix", found))
-            });
-            let rigid = rigid.within(named(document, *node))?;
-            let parent = self.joints[i].parent.map_or(DAffine3::IDENTITY, |p| bind[p as usize]);
-            self.locals[i] = to_local(&(parent.inverse() * rigid));
-            self.joints[i].model_from_joint = rounded(&rigid);
-        }
-        Ok(())
+        let tree = Arc::new(JointTree::new(joint_names, parents).map_err(Box::new)?);
+        let skeleton = Arc::new(Skeleton::from_bind(tree, model, lengths).map_err(Box::new)?);
+        Ok(Some(Self { skeleton, locals, chains, places }))
     }
+}
+
+/// Where the rest pose is not the bind pose, the bind pose is what a scene starts from: `model_from_joint` and
+/// `parent_from_joint` of each joint.
+fn bind_pose(
+    document: &Document,
+    nodes: &[usize],
+    parents: &[Option<u32>],
+    bind: &[DAffine3],
+) -> Result<(Vec<Affine3A>, Vec<RigidTransform>)> {
+    let (mut model, mut locals) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(nodes.len()));
+    for ((node, parent), bind_of_node) in nodes.iter().zip(parents).zip(bind) {
+        let rigid = rigid(bind_of_node).ok_or_else(|| {
+            let found = format!("{}", bind_of_node.inverse());
+            GltfError::from(Fault::unexpected("a rigid inverse bind matrix", found))
+        });
+        let rigid = rigid.within(named(document, *node))?;
+        let parent = parent.map_or(DAffine3::IDENTITY, |p| bind[p as usize]);
+        locals.push(to_local(&(parent.inverse() * rigid)));
+        model.push(rounded(&rigid));
+    }
+    Ok((model, locals))
 }
 
 /// For each joint the nodes from below the joint above it, or from the top of the scene, down to its own.
@@ -282,14 +281,14 @@ pub(super) fn named(document: &Document, node: usize) -> String {
 pub(super) fn joint_above(
     document: &Document,
     tree: &Tree,
-    skeleton: &Skeleton,
+    joints: &JointNodes,
     node: usize,
 ) -> Result<(u16, Affine3A)> {
     let mut joint_from_node = DAffine3::IDENTITY;
     let mut at = Some(node);
     while let Some(n) = at {
-        if let Some(place) = skeleton.places.get(&n) {
-            let model_from_joint = skeleton.joints[usize::from(*place)].model_from_joint;
+        if let Some(place) = joints.places.get(&n) {
+            let model_from_joint = joints.skeleton.bind()[usize::from(*place)];
             return Ok((*place, model_from_joint * rounded(&joint_from_node)));
         }
         joint_from_node = transform_f64(&document.root.nodes[n]) * joint_from_node;

@@ -9,7 +9,7 @@ use super::super::meshes::tests::{changed_of, pointers};
 use super::*;
 use crate::format::gltf::{GltfOptions, to_glb, to_glb_with};
 use crate::format::read_scene_from_bytes;
-use crate::testing::scene::{arm, bent, bulging, sleeve};
+use crate::testing::scene::{arm, bent, bulging, joints, sleeve};
 
 /// The arm in motion, moved and still.
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
@@ -158,7 +158,7 @@ fn a_scene_comes_back() {
         };
         assert_eq!(corners(read), corners(written));
     }
-    for (read, written) in read.joints.iter().zip(&SCENE.joints) {
+    for (read, written) in joints(&read).iter().zip(&joints(&SCENE)) {
         assert_eq!((&read.name, read.parent), (&written.name, written.parent));
         // A matrix turned into a quaternion of `f32` and back.
         assert!(read.model_from_joint.abs_diff_eq(written.model_from_joint, 3e-7));
@@ -206,7 +206,7 @@ fn compressed_numbers_come_back_as_near_as_promised() {
         assert!(worst(a.uvs.as_flattened(), b.uvs.as_flattened()) < 1.0 / 60_000.0);
         assert!(worst(&a.joint_weights, &b.joint_weights) < 1e-6);
     }
-    assert_eq!(read.joints, plain.joints);
+    assert_eq!(joints(&read), joints(&plain));
     for (a, b) in read.clips.iter().zip(&plain.clips) {
         for (a, b) in (0..3).map(|f| (a.pose(f), b.pose(f))) {
             for (a, b) in a.locals.iter().zip(&b.locals) {
@@ -234,8 +234,9 @@ fn others_lie_out_their_skeleton_in_other_ways() {
         json["animations"][0]["extras"] = Value::Null;
     });
     let scene = read(&strange).unwrap();
-    let names: Vec<_> = scene.joints.iter().map(|j| (j.name.as_str(), j.parent)).collect();
-    assert_eq!(names, [("upper", None), ("lower", Some(0)), ("thumb", Some(1))]);
+    let skeleton = scene.skeleton.as_ref().unwrap();
+    assert_eq!(skeleton.names(), ["upper", "lower", "thumb"]);
+    assert_eq!(skeleton.parents(), [None, Some(0), Some(1)]);
     let clip = &scene.clips[0];
     assert_eq!((clip.frame_count(), clip.frames_per_second()), (3, 25.0), "found by the keys' times");
     let above = glam::Affine3A::from_rotation_translation(
@@ -290,7 +291,7 @@ fn meshes_without_a_skin_hang_on_joints() {
     });
     let scene = read(&hat).unwrap();
     assert_eq!((scene.meshes[1].joint_indices[0], scene.meshes[1].joint_weights[0]), (2, 1.0));
-    let expected = SCENE.joints[2].model_from_joint.transform_point3(glam::vec3(0.6, 1.2, 0.6));
+    let expected = joints(&SCENE)[2].model_from_joint.transform_point3(glam::vec3(0.6, 1.2, 0.6));
     assert!(glam::Vec3::from(scene.meshes[1].positions[0]).distance(expected) < 1e-6);
 }
 

@@ -40,7 +40,7 @@ pub(in crate::format::gltf) fn changed_of(original: &[u8], change: impl FnOnce(&
 fn reads_back_what_was_written() {
     let written = arm(4);
     let scene = read(&GLB).unwrap();
-    assert!(scene.joints.is_empty() && scene.clips.is_empty());
+    assert!(scene.skeleton.is_none() && scene.clips.is_empty());
     assert_eq!(scene.extras["asked"]["arm_length"], 0.6);
     let body = &scene.meshes[0];
     assert_eq!((body.name.as_str(), body.influences_per_vertex), ("Sleeve", 0));
@@ -93,7 +93,7 @@ fn nodes_move_meshes_without_a_skin_only() {
     let scene = read(&moved).unwrap();
     let still = read(&GLB).unwrap();
     assert_eq!(scene.meshes[0], still.meshes[0]);
-    let root = arm(4).joints[0].model_from_joint;
+    let root = arm(4).skeleton.unwrap().bind()[0];
     for (moved, still) in scene.meshes[1].positions.iter().zip(&still.meshes[1].positions) {
         let expected = root.transform_point3(Vec3::from(*still) * Vec3::new(-2.0, 2.0, 2.0));
         assert!(Vec3::from(*moved).distance(expected) < 1e-6);

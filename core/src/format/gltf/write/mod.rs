@@ -115,14 +115,18 @@ pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
         generator: Some(concat!("anthronet ", env!("CARGO_PKG_VERSION")).into()),
         ..Asset::default()
     };
-    let transforms = written_joints(scene.joints.iter().map(|joint| (joint.parent, joint.model_from_joint)));
-    let skin = match scene.joints.is_empty() {
-        true => None,
-        false => Some(skeleton::push(&mut builder, scene, &transforms)?),
+    let (transforms, skin) = match &scene.skeleton {
+        None => (Vec::new(), None),
+        Some(skeleton) => {
+            let joints = skeleton.parents().iter().copied().zip(skeleton.bind().iter().copied());
+            let transforms = written_joints(joints);
+            let skin = skeleton::push(&mut builder, (&scene.name, skeleton), &transforms)?;
+            (transforms, Some(skin))
+        }
     };
     let joints = builder.root.nodes.len() as u32;
     for mesh in &scene.meshes {
-        let mesh = mesh::push(&mut builder, mesh, scene.joints.len())?;
+        let mesh = mesh::push(&mut builder, mesh, scene.joint_count())?;
         let name = builder.root.meshes.get(mesh.value()).and_then(|m| m.name.clone());
         builder.root.push(Node { name, mesh: Some(mesh), skin, ..Node::default() });
     }

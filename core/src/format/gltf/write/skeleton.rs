@@ -6,31 +6,32 @@ use serde_json::json;
 use super::accessor::{DocumentBuilder, Usage};
 use super::raw;
 use crate::Result;
-use crate::scene::Scene;
+use crate::skeleton::Skeleton;
 use crate::skeleton::written::{ParentFromJoint, WrittenJoint, plain};
 
 /// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` says how
 /// long the joint's bone is, which glTF cannot hold.
 pub(super) fn push(
     builder: &mut DocumentBuilder,
-    scene: &Scene,
+    (name, skeleton): (&str, &Skeleton),
     transforms: &[WrittenJoint],
 ) -> Result<Index<Skin>> {
-    let mut children = vec![Vec::new(); scene.joints.len()];
-    for (i, joint) in (0u32..).zip(&scene.joints) {
-        if let Some(siblings) = joint.parent.and_then(|parent| children.get_mut(parent as usize)) {
+    let mut children = vec![Vec::new(); skeleton.len()];
+    for (i, parent) in (0u32..).zip(skeleton.parents()) {
+        if let Some(siblings) = parent.and_then(|parent| children.get_mut(parent as usize)) {
             siblings.push(Index::new(i));
         }
     }
-    for ((joint, written), children) in scene.joints.iter().zip(transforms).zip(children) {
+    let joints = skeleton.names().iter().zip(transforms).zip(children);
+    for (joint, ((name, written), children)) in joints.enumerate() {
         let ParentFromJoint { translation, rotation } = written.parent_from_joint;
         let length = |metres: f32| json!({"anthronet": {"bone_length": f64::from(metres)}});
         builder.root.push(Node {
-            name: Some(joint.name.clone()),
+            name: Some(name.clone()),
             children: (!children.is_empty()).then_some(children),
             translation: Some(translation),
             rotation: (rotation != [0.0, 0.0, 0.0, 1.0]).then_some(UnitQuaternion(rotation)),
-            extras: joint.bone_length.map_or(Ok(None), |metres| raw(&length(metres)))?,
+            extras: skeleton.bone_length(joint).map_or(Ok(None), |metres| raw(&length(metres)))?,
             ..Node::default()
         });
     }
@@ -54,8 +55,8 @@ pub(super) fn push(
         extensions: None,
         extras: None,
         inverse_bind_matrices,
-        joints: (0..scene.joints.len() as u32).map(Index::new).collect(),
-        name: (!scene.name.is_empty()).then(|| scene.name.clone()),
+        joints: (0..skeleton.len() as u32).map(Index::new).collect(),
+        name: (!name.is_empty()).then(|| name.to_owned()),
         skeleton: Some(Index::new(0)),
     }))
 }

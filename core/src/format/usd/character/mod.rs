@@ -27,7 +27,8 @@ use crate::format::limits::MAX_MESHES;
 use crate::format::motion::raw::WeightTrack;
 use crate::format::motion::{ReadOptions, clip_name, units_and_axes};
 use crate::scene::titles::Titles;
-use crate::scene::{MorphTrack, Scene, SceneJoint};
+use crate::scene::{MorphTrack, Scene};
+use crate::skeleton::JointTree;
 use crate::skeleton::written::rounded;
 use crate::space::{Axis, Unit};
 
@@ -38,7 +39,7 @@ const REST_TOLERANCE: f32 = 1e-6;
 pub(super) fn meshes(document: &Document) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;
-    scene.joints.clear();
+    scene.skeleton = None;
     for mesh in &mut scene.meshes {
         mesh.influences_per_vertex = 0;
         mesh.joint_indices.clear();
@@ -136,8 +137,9 @@ fn still(
         Some(skeleton) => {
             let Skeleton { prim, joints, above, .. } = skeleton;
             let above = ours_from_file * above.at_start()?;
-            scene.joints = scene_joints(joints, &joints.bind_pose(layer, prim, &above)?);
-            bone_lengths(layer, prim, joints, &mut scene.joints)?;
+            let bind = joints.bind_pose(layer, prim, &above)?;
+            let lengths = bone_lengths(layer, prim, joints)?;
+            scene.skeleton = Some(Arc::new(scene_skeleton(joints, &bind, lengths).map_err(Box::new)?));
             Some(mesh::Skin { skeleton, above })
         }
     };
@@ -155,43 +157,34 @@ fn still(
     Ok((scene, tokens))
 }
 
-fn scene_joints(joints: &Joints, bind: &[DAffine3]) -> Vec<SceneJoint> {
+/// The joints in their bind pose, names made unique.
+fn scene_skeleton(
+    joints: &Joints,
+    bind: &[DAffine3],
+    lengths: Vec<Option<f32>>,
+) -> crate::Result<crate::skeleton::Skeleton> {
     let mut titles = Titles::default();
-    let parts = joints.names.iter().zip(&joints.parents).zip(bind);
-    parts
-        .map(|((name, parent), bind)| SceneJoint {
-            name: titles.unique(name),
-            parent: *parent,
-            model_from_joint: rounded(bind),
-            bone_length: None,
-        })
-        .collect()
+    let names = joints.names.iter().map(|name| titles.unique(name)).collect();
+    let tree = Arc::new(JointTree::new(names, joints.parents.clone())?);
+    crate::skeleton::Skeleton::from_bind(tree, bind.iter().map(rounded).collect(), lengths)
 }
 
 /// What our own files say of the lengths of bones.
-fn bone_lengths(
-    layer: &Layer,
-    prim: &PrimPath,
-    joints: &Joints,
-    scene_joints: &mut [SceneJoint],
-) -> Result<()> {
-    let Some(value) = layer.default(prim, BONE_LENGTHS)? else { return Ok(()) };
+fn bone_lengths(layer: &Layer, prim: &PrimPath, joints: &Joints) -> Result<Vec<Option<f32>>> {
+    let Some(value) = layer.default(prim, BONE_LENGTHS)? else { return Ok(vec![None; joints.names.len()]) };
     let lengths = values::rows::<1>(&value).unwrap_or_default();
     if lengths.len() != joints.places.len() {
         let expected = format!("{} numbers", joints.places.len());
         return Err(Fault::unexpected(expected, lengths.len()).into())
             .within(format_args!("{prim}.{BONE_LENGTHS}"));
     }
-    for (joint, place) in scene_joints.iter_mut().zip(&joints.places) {
-        let [length] = lengths[*place];
-        joint.bone_length = (length >= 0.0).then_some(length as f32);
-    }
-    Ok(())
+    let length = |place: &usize| (lengths[*place][0] >= 0.0).then_some(lengths[*place][0] as f32);
+    Ok(joints.places.iter().map(length).collect())
 }
 
 /// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
 fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> crate::Result<Vec<Clip>> {
-    let rest = Arc::new(scene.skeleton(str::to_owned)?);
+    let rest = Arc::new(scene.skeleton_with_ends(str::to_owned)?);
     let mut titles = Titles::default();
     let mut out: Vec<Clip> = Vec::with_capacity(clips.len());
     for clip in clips {

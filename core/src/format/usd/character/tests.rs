@@ -3,7 +3,7 @@ use std::path::Path;
 use super::super::{to_usda, to_usdc, to_usdz};
 use super::*;
 use crate::format::{read_meshes_from_bytes, read_motion_from_bytes, read_scene_from_bytes};
-use crate::testing::scene::{arm, bent, bulging};
+use crate::testing::scene::{arm, bent, bulging, joints};
 
 fn moving(influences: usize) -> Scene {
     let mut scene = arm(influences);
@@ -22,7 +22,7 @@ fn a_character_of_ours_comes_back() {
             let back = read_scene_from_bytes(&write(&scene).unwrap(), Path::new(name)).unwrap();
             assert_eq!((&back.name, &back.extras), (&scene.name, &scene.extras), "{name}");
             assert_eq!(back.materials, scene.materials, "{name}");
-            for (b, s) in back.joints.iter().zip(&scene.joints) {
+            for (b, s) in joints(&back).iter().zip(&joints(&scene)) {
                 assert_eq!((&b.name, b.parent), (&s.name, s.parent));
                 assert!(b.model_from_joint.abs_diff_eq(s.model_from_joint, 1e-6), "{name}");
             }
@@ -58,7 +58,7 @@ fn a_character_of_ours_comes_back() {
 #[test]
 fn a_scene_without_joints_comes_back() {
     let mut scene = arm(4);
-    scene.joints.clear();
+    scene.skeleton = None;
     for mesh in &mut scene.meshes {
         mesh.influences_per_vertex = 0;
         mesh.joint_indices.clear();
@@ -66,7 +66,7 @@ fn a_scene_without_joints_comes_back() {
     }
     let bytes = to_usdc(&scene).unwrap();
     let back = read_scene_from_bytes(&bytes, "a.usdc").unwrap();
-    assert_eq!((back.joints.len(), back.meshes.len()), (0, 2));
+    assert_eq!((back.joint_count(), back.meshes.len()), (0, 2));
     assert_eq!(back.meshes[0].triangulated().len(), 20);
     assert_eq!(read_meshes_from_bytes(&bytes, "a.usdc").unwrap(), back);
 }
@@ -79,7 +79,7 @@ fn meshes_alone_are_those_of_the_character_and_do_without_clips() {
         String::from_utf8(bytes).unwrap().replace("timeCodesPerSecond = 25", "timeCodesPerSecond = 0");
     let meshes = read_meshes_from_bytes(spoiled.as_bytes(), "a.usda").unwrap();
     assert!(read_scene_from_bytes(spoiled.as_bytes(), "a.usda").is_err());
-    assert!(meshes.joints.is_empty() && meshes.clips.is_empty());
+    assert!(meshes.skeleton.is_none() && meshes.clips.is_empty());
     assert_eq!((&meshes.materials, &meshes.extras), (&whole.materials, &whole.extras));
     for (alone, of_whole) in meshes.meshes.iter().zip(&whole.meshes) {
         assert_eq!((&alone.positions, &alone.normals), (&of_whole.positions, &of_whole.normals));

@@ -81,9 +81,9 @@ pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> 
 
 /// In each joint's own space, the box around the vertices that it moves; an empty one where it moves none.
 fn joint_boxes(scene: &Scene) -> Vec<Bounds> {
-    let joint_from_model: Vec<Affine3A> =
-        scene.joints.iter().map(|joint| joint.model_from_joint.inverse()).collect();
-    let mut boxes = vec![Bounds::EMPTY; scene.joints.len()];
+    let bind = scene.skeleton.as_ref().map_or(&[][..], |skeleton| skeleton.bind());
+    let joint_from_model: Vec<Affine3A> = bind.iter().map(Affine3A::inverse).collect();
+    let mut boxes = vec![Bounds::EMPTY; bind.len()];
     for (index, mesh) in scene.meshes.iter().enumerate() {
         let shares = shares(scene, index);
         for (vertex, position) in mesh.positions.iter().enumerate() {

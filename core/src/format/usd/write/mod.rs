@@ -81,7 +81,7 @@ fn layer(scene: &Scene) -> Result<Layer> {
     scene.validate()?;
     let mut layer = Layer::default();
     let root = format!("/{}", names::identifier(&scene.name));
-    let skinned = !scene.joints.is_empty();
+    let skinned = scene.skeleton.is_some();
     layer.prim(&root, &scene.name, if skinned { "SkelRoot" } else { "Xform" })?;
     layer.set(&root, FieldKey::Kind, Value::token("component"))?;
     if !scene.extras.is_null() {
@@ -96,9 +96,9 @@ fn layer(scene: &Scene) -> Result<Layer> {
 
     let mut names = Names::reserved(["Skel", "mtl"]);
     let tokens = blend_shape::tokens(scene);
-    if skinned {
+    if let Some(skeleton) = &scene.skeleton {
         extent::write(&mut layer, &root, scene)?;
-        skeleton::write(&mut layer, &format!("{root}/Skel"), scene, &tokens)?;
+        skeleton::write(&mut layer, &format!("{root}/Skel"), skeleton, scene, &tokens)?;
     }
     let materials = material::paths(&format!("{root}/mtl"), &scene.materials);
     for (mesh, tokens) in scene.meshes.iter().zip(&tokens) {

@@ -8,26 +8,34 @@ use super::layer::Layer;
 use super::names::Names;
 use super::{animation, blend_shape};
 use crate::Result;
-use crate::scene::{Scene, SceneJoint};
+use crate::scene::Scene;
+use crate::skeleton::{JointTree, Skeleton};
 
 /// A custom attribute of the Skeleton: how far each joint's bone reaches along its +Y axis, metres.
 pub(crate) const BONE_LENGTHS: &str = "anthronet:boneLengths";
 
 /// The skeleton at this path and its animations, in which weights of morph targets go by tokens.
-pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene, tokens: &[Vec<String>]) -> Result<()> {
+pub(super) fn write(
+    layer: &mut Layer,
+    path: &str,
+    skeleton: &Skeleton,
+    scene: &Scene,
+    tokens: &[Vec<String>],
+) -> Result<()> {
     layer.prim(path, "Skel", "Skeleton")?;
-    let joints = joint_tokens(&scene.joints);
-    let bind: Vec<DAffine3> = scene.joints.iter().map(|j| in_double(&j.model_from_joint)).collect();
-    let rest = scene.joints.iter().zip(&bind).map(|(joint, model_from_joint)| {
-        let parent = joint.parent.map(|p| bind[p as usize]);
+    let joints = joint_tokens(skeleton.tree());
+    let bind: Vec<DAffine3> = skeleton.bind().iter().map(in_double).collect();
+    let rest = skeleton.parents().iter().zip(&bind).map(|(parent, model_from_joint)| {
+        let parent = parent.map(|p| bind[p as usize]);
         parent.map_or(*model_from_joint, |parent| parent.inverse() * *model_from_joint)
     });
     layer.uniform(path, "joints", "token[]", joints.clone())?;
-    let names = scene.joints.iter().map(|joint| joint.name.as_str());
+    let names = skeleton.names().iter().map(String::as_str);
     layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
     // USD has no attribute for the end of a bone either; a negative length means none.
-    if scene.joints.iter().any(|joint| joint.bone_length.is_some()) {
-        let lengths = scene.joints.iter().map(|joint| joint.bone_length.unwrap_or(-1.0)).collect();
+    let lengths = (0..skeleton.len()).map(|joint| skeleton.bone_length(joint));
+    if lengths.clone().any(|length| length.is_some()) {
+        let lengths = lengths.map(|length| length.unwrap_or(-1.0)).collect();
         layer.custom(path, BONE_LENGTHS, "float[]", Value::FloatVec(lengths))?;
     }
     layer.uniform(path, "bindTransforms", "matrix4d[]", matrices(bind.iter().copied()))?;
@@ -49,12 +57,12 @@ pub(super) fn write(layer: &mut Layer, path: &str, scene: &Scene, tokens: &[Vec<
 /// The joints as paths from the root joint, such as `Root/pelvis/spine_01`.
 ///
 /// Identifiers are unique in the whole tree and not only among siblings: programs name bones by the last part.
-fn joint_tokens(joints: &[SceneJoint]) -> Value {
+fn joint_tokens(joints: &JointTree) -> Value {
     let mut names = Names::default();
     let mut paths: Vec<String> = Vec::with_capacity(joints.len());
-    for joint in joints {
-        let name = names.unique(&joint.name);
-        let parent = joint.parent.and_then(|p| paths.get(p as usize));
+    for (name, parent) in joints.names().iter().zip(joints.parents()) {
+        let name = names.unique(name);
+        let parent = parent.and_then(|p| paths.get(p as usize));
         paths.push(parent.map_or(name.clone(), |parent| format!("{parent}/{name}")));
     }
     Value::token_vec(paths)

@@ -3,7 +3,7 @@ use openusd::sdf::{AbstractData, Path};
 
 use super::*;
 use crate::skeleton::model_from_joints;
-use crate::testing::scene::{arm, bent, bulging};
+use crate::testing::scene::{arm, bent, bulging, edit};
 
 fn moving(influences: usize) -> Scene {
     let mut scene = arm(influences);
@@ -73,7 +73,7 @@ fn matrices_have_the_translation_in_the_last_row_and_quaternions_the_real_part_f
     let Some(Value::Matrix4dVec(bind)) = field(&scene, "/Arm/Skel.bindTransforms", "default") else {
         panic!("no matrices");
     };
-    let at = scene.joints[1].model_from_joint;
+    let at = scene.skeleton.as_ref().unwrap().bind()[1];
     let t = at.translation.to_array().map(f64::from);
     assert_eq!(bind[1].0[12..15], t);
     assert_eq!(bind[1].0[..3], at.matrix3.x_axis.to_array().map(f64::from));
@@ -89,7 +89,7 @@ fn matrices_have_the_translation_in_the_last_row_and_quaternions_the_real_part_f
 fn names_are_narrowed_and_kept() {
     let mut scene = moving(4);
     scene.name = "Ada 2".into();
-    scene.joints[1].name = "mixamorig:Arm".into();
+    edit(&mut scene, |joints| joints[1].name = "mixamorig:Arm".into());
     scene.meshes[0].name = "Skel".into();
     scene.clips.push(bent(&scene).with_name("Anim"));
     let text = text(&scene);
@@ -144,7 +144,7 @@ fn extents_hold(scene: &Scene) {
                     position += glam::Vec3A::from(target.positions[vertex]) * track.weights[frame];
                 }
                 let moved = mesh.influences(vertex).filter(|slot| slot.1 > 0.0).map(|(joint, weight)| {
-                    let bind = scene.joints[usize::from(joint)].model_from_joint;
+                    let bind = scene.skeleton.as_ref().unwrap().bind()[usize::from(joint)];
                     let matrix = joints[usize::from(joint)].to_affine() * bind.inverse();
                     matrix.transform_point3a(position) * weight
                 });

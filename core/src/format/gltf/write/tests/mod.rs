@@ -6,8 +6,7 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 
 use super::*;
-use crate::scene::SceneJoint;
-use crate::testing::scene::{arm, sleeve};
+use crate::testing::scene::{Joint, arm, edit, joints, sleeve};
 
 struct Parsed {
     json: Value,
@@ -146,7 +145,7 @@ fn rest_pose_is_the_bind_pose() {
         // One rounding of a matrix of numbers near 1 to f32.
         assert!(product.abs_diff_eq(DMat4::IDENTITY, 3e-7), "joint {i}: {product}");
         assert_eq!([inverse[3], inverse[7], inverse[11], inverse[15]], [0.0, 0.0, 0.0, 1.0]);
-        let wanted = scene.joints[i].model_from_joint;
+        let wanted = scene.skeleton.as_ref().unwrap().bind()[i];
         let wanted = DMat4::from_cols_array(&glam::Mat4::from(wanted).to_cols_array().map(f64::from));
         // The scene's rotation matrices are f32 themselves.
         assert!(world.abs_diff_eq(wanted, 3e-7), "joint {i}: {world} {wanted}");
@@ -248,25 +247,28 @@ fn indices_widen_when_they_must() {
 #[test]
 fn a_long_chain_of_joints_does_not_drift() {
     let mut scene = arm(4);
-    scene.joints.truncate(1);
     let mut pose = DAffine3::IDENTITY;
-    for i in 0..200u32 {
+    let chain = (0..200u32).map(|i| {
         let turn = DQuat::from_rotation_x(0.1) * DQuat::from_rotation_z(0.2 + f64::from(i));
         pose *= DAffine3::from_rotation_translation(turn, DVec3::new(0.01, 0.007, 0.003));
         let rotation = DQuat::from_mat3(&pose.matrix3).as_quat();
-        scene.joints.push(SceneJoint {
+        Joint {
             bone_length: None,
             name: format!("chain {i}"),
             parent: Some(i),
             model_from_joint: glam::Affine3A::from_rotation_translation(rotation, pose.translation.as_vec3()),
-        });
-    }
-    scene.joints[0].model_from_joint = glam::Affine3A::IDENTITY;
-    scene.joints.swap(1, 2);
-    scene.joints[1].parent = Some(0);
-    scene.joints[2].parent = Some(0);
+        }
+    });
+    edit(&mut scene, |joints| {
+        joints.truncate(1);
+        joints.extend(chain);
+        joints[0].model_from_joint = glam::Affine3A::IDENTITY;
+        joints.swap(1, 2);
+        joints[1].parent = Some(0);
+        joints[2].parent = Some(0);
+    });
     let file = Parsed::glb(&to_glb(&scene).unwrap());
-    for (world, joint) in file.joints().iter().zip(&scene.joints) {
+    for (world, joint) in file.joints().iter().zip(&joints(&scene)) {
         let off = world.w_axis.truncate().distance(joint.model_from_joint.translation.as_dvec3());
         assert!(off < 2e-7, "{}: {off}", joint.name);
     }
@@ -275,7 +277,7 @@ fn a_long_chain_of_joints_does_not_drift() {
 #[test]
 fn a_scene_without_joints_has_no_skin() {
     let mut scene = arm(4);
-    scene.joints.clear();
+    scene.skeleton = None;
     for mesh in &mut scene.meshes {
         mesh.influences_per_vertex = 0;
         mesh.joint_indices.clear();

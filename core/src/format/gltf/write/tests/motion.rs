@@ -12,7 +12,7 @@ use crate::format::vrm::{VrmMeta, to_vrm};
 use crate::math::Rotation;
 use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::{JointNames, humanoid_bones, renamed};
-use crate::testing::scene::{arm, bent};
+use crate::testing::scene::{Joint, arm, bent, edit, rename};
 
 /// Tracks of an animation: node, path, times, values.
 fn tracks(file: &Parsed, animation: usize) -> Vec<(usize, String, Vec<f64>, Vec<f64>)> {
@@ -97,15 +97,18 @@ fn a_clip_in_which_nothing_moves_lasts_as_long() {
 fn humanoid(names: JointNames) -> Scene {
     let mut scene = arm(4);
     let bones = humanoid_bones().iter().enumerate().skip(3);
-    scene.joints.extend(bones.map(|(i, bone)| crate::scene::SceneJoint {
+    let bones = bones.map(|(i, bone)| Joint {
         bone_length: None,
         name: renamed(&bone.native, names).into_owned(),
         parent: Some(0),
         model_from_joint: glam::Affine3A::from_translation(Vec3::Y * i as f32),
-    }));
-    for (joint, bone) in scene.joints.iter_mut().zip(humanoid_bones()).take(3) {
-        joint.name = renamed(&bone.native, names).into_owned();
-    }
+    });
+    edit(&mut scene, |joints| {
+        joints.extend(bones);
+        for (joint, bone) in joints.iter_mut().zip(humanoid_bones()).take(3) {
+            joint.name = renamed(&bone.native, names).into_owned();
+        }
+    });
     scene
 }
 
@@ -137,7 +140,7 @@ fn a_vrm_that_would_not_be_one_is_refused() {
     let mut scene = humanoid(JointNames::Native);
     assert!(fails(&scene, &VrmMeta { authors: vec![], ..meta.clone() }).contains("authors"));
     assert!(fails(&Scene { name: String::new(), ..scene.clone() }, &meta).contains("a name of the figure"));
-    scene.joints.iter_mut().find(|j| j.name == "thigh_r").unwrap().name = "leg".into();
+    rename(&mut scene, |name| if name == "thigh_r" { "leg".into() } else { name.into() });
     assert!(fails(&scene, &meta).contains("requires the bone `rightUpperLeg`"));
     let mut moving = arm(4);
     moving.clips.push(bent(&moving));
