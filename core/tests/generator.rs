@@ -184,7 +184,7 @@ fn levels_share_vertices_and_joints() {
     for lod in Lod::ALL {
         let coarse = scene(lod);
         coarse.validate().unwrap();
-        assert_eq!(coarse.joints, finest.joints);
+        assert_eq!(coarse.skeleton, finest.skeleton);
         assert_eq!(coarse.meshes[0].positions.len(), body.character().vertex_count(lod));
         shares.push(faces(&coarse) as f64 / faces(&finest) as f64);
         if lod == Lod::Lod1 {
