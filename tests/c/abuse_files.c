@@ -36,14 +36,14 @@ void test_no_files(const fixture *f) {
     static const char *const NO_PATHS[] = {"", "/nowhere/at/all.glb", "/", ".", "no_ending", "a.png"};
     anthronet_model *model;
     anthronet_motion *motion;
-    double metres[36];
+    double metres[MEASURES];
     size_t i;
     const char *path;
     for (i = 0; i < LENGTH(NO_PATHS); i++) {
         uint64_t length = strlen(NO_PATHS[i]);
         FAILS_OUT(model, anthronet_model_open_path(NO_PATHS[i], length, &model, &fault));
         FAILS_OUT(motion, anthronet_motion_open_path(NO_PATHS[i], length, NULL, &motion, &fault));
-        FAILS_OUT(metres, anthronet_measure_file(f->model, NO_PATHS[i], length, metres, 36, NULL, &fault));
+        FAILS_OUT(metres, anthronet_measure_file(f->model, NO_PATHS[i], length, metres, MEASURES, NULL, &fault));
         FAILS(anthronet_export_path(f->body, NULL, NO_PATHS[i], length, &fault));
     }
     REFUSED_OUT(ANTHRONET_ERROR_IO, model, anthronet_model_open_path(TEXT("/nowhere/a"), &model, &fault));

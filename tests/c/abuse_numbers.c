@@ -33,7 +33,7 @@ void test_struct_sizes(const fixture *f) {
     anthronet_motion *motion;
     anthronet_clip *clip;
     anthronet_bytes *bytes;
-    double metres[36];
+    double metres[MEASURES];
     union {
         anthronet_body_summary known;
         unsigned char bytes[4096];
@@ -62,8 +62,8 @@ void test_struct_sizes(const fixture *f) {
         bone.struct_size = size;
         REFUSED(SIZE, anthronet_humanoid_bone_at(0, &bone, &fault));
         measured.struct_size = size;
-        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, metres, 1, 0, 0, metres, 36, &measured, &fault));
-        REFUSED_OUT(SIZE, metres, anthronet_measure_file(f->model, TEXT("a.glb"), metres, 36, &measured, &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, metres, 1, 0, 0, metres, MEASURES, &measured, &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_file(f->model, TEXT("a.glb"), metres, MEASURES, &measured, &fault));
         info.struct_size = size;
         REFUSED(SIZE, anthronet_clip_describe(f->walk, &info, &fault));
         part.struct_size = size;
@@ -109,7 +109,7 @@ void test_enumerations(const fixture *f) {
     anthronet_joint *joints = (anthronet_joint *)room(f->joints * sizeof *joints);
     anthronet_transform *pose = (anthronet_transform *)room(f->joints * sizeof *pose);
     uint32_t number;
-    double metres[36];
+    double metres[MEASURES];
     size_t i, k;
     OK(anthronet_request_new(&request, &fault));
     for (i = 0; i < LENGTH(NO_ENUMS); i++) {
@@ -118,7 +118,7 @@ void test_enumerations(const fixture *f) {
         REFUSED(ENUM, anthronet_request_set_fill(request, wrong, &fault));
         REFUSED(ENUM, anthronet_request_set_nearest(request, wrong, &fault));
         REFUSED_OUT(ENUM, number, anthronet_model_vertex_count(f->model, wrong, &number, &fault));
-        REFUSED_OUT(ENUM, metres, anthronet_measure_mesh(f->model, metres, 1, 0, wrong, metres, 36, NULL, &fault));
+        REFUSED_OUT(ENUM, metres, anthronet_measure_mesh(f->model, metres, 1, 0, wrong, metres, MEASURES, NULL, &fault));
         REFUSED(ENUM, anthronet_body_joints(f->body, wrong, joints, f->joints, &fault));
         REFUSED_OUT(ENUM, text, anthronet_body_joint_name(f->body, 0, wrong, &text, &fault));
         REFUSED_OUT(ENUM, view, anthronet_mesh_data(f->mesh, 0, wrong, &view, &fault));
@@ -195,8 +195,8 @@ void test_numbers(const fixture *f) {
     anthronet_motion_options read;
     anthronet_retarget_options retarget;
     anthronet_transform *pose = rest_pose(f, f->body, ANTHRONET_SPACE_GLTF);
-    double metres[36], seen[36], latent[4] = {0, 0, 0, NAN};
-    uint8_t given[36], seen_given[36];
+    double metres[MEASURES], seen[MEASURES], latent[4] = {0, 0, 0, NAN};
+    uint8_t given[MEASURES], seen_given[MEASURES];
     float *positions, *mask = (float *)room(f->joints * sizeof *mask);
     uint32_t vertices = 0;
     size_t i;
@@ -209,7 +209,7 @@ void test_numbers(const fixture *f) {
         ZERO(given);
         metres[7] = bad;
         given[7] = 1;
-        REFUSED(REQUEST, anthronet_request_set_measures(request, metres, given, 36, &fault));
+        REFUSED(REQUEST, anthronet_request_set_measures(request, metres, given, MEASURES, &fault));
         FAILS_OUT(body, anthronet_interpolate(f->model, f->request, f->request, bad, &body, &fault));
         REFUSED(REQUEST, anthronet_clip_sample(f->walk, NULL, bad, 0, 0, 0, pose, f->joints, &fault));
         FAILS_OUT(clip, anthronet_clip_looped(f->walk, bad, &clip, &fault));
@@ -228,9 +228,9 @@ void test_numbers(const fixture *f) {
     REFUSED(REQUEST, anthronet_request_set_latent(request, latent, 4, &fault));
     given[7] = 2;
     metres[7] = 1;
-    REFUSED(ENUM, anthronet_request_set_measures(request, metres, given, 36, &fault));
-    OK(anthronet_request_measures(request, seen, seen_given, 36, &fault));
-    for (i = 0; i < 36; i++) CHECK(!seen_given[i] && seen[i] == 0, "a refused measure stays");
+    REFUSED(ENUM, anthronet_request_set_measures(request, metres, given, MEASURES, &fault));
+    OK(anthronet_request_measures(request, seen, seen_given, MEASURES, &fault));
+    for (i = 0; i < MEASURES; i++) CHECK(!seen_given[i] && seen[i] == 0, "a refused measure stays");
     FAILS_OUT(body, anthronet_interpolate(f->model, f->request, f->request, -0.1, &body, &fault));
     FAILS_OUT(body, anthronet_interpolate(f->model, f->request, f->request, 1.1, &body, &fault));
     for (i = 3; i < LENGTH(NO_LENGTHS); i++) {
@@ -271,13 +271,13 @@ void test_numbers(const fixture *f) {
     OK(anthronet_model_vertex_count(f->model, 1, &vertices, &fault));
     positions = (float *)room(12 * (size_t)vertices);
     memset(positions, 0xFF, 12 * (size_t)vertices);
-    FAILS_OUT(metres, anthronet_measure_mesh(f->model, positions, vertices, 0, 0, metres, 36, NULL, &fault));
+    FAILS_OUT(metres, anthronet_measure_mesh(f->model, positions, vertices, 0, 0, metres, MEASURES, NULL, &fault));
     memset(positions, 0, 12 * (size_t)vertices);
-    if (anthronet_measure_mesh(f->model, positions, vertices, 0, 0, metres, 36, NULL, &fault) == ANTHRONET_OK) {
-        for (i = 0; i < 36; i++) CHECK(isfinite(metres[i]), "measure %u of a point", (unsigned)i);
+    if (anthronet_measure_mesh(f->model, positions, vertices, 0, 0, metres, MEASURES, NULL, &fault) == ANTHRONET_OK) {
+        for (i = 0; i < MEASURES; i++) CHECK(isfinite(metres[i]), "measure %u of a point", (unsigned)i);
     }
-    FAILS_OUT(metres, anthronet_measure_mesh(f->model, positions, vertices - 1, 0, 0, metres, 36, NULL, &fault));
-    FAILS_OUT(metres, anthronet_measure_mesh(f->model, NULL, 0, 0, 0, metres, 36, NULL, &fault));
+    FAILS_OUT(metres, anthronet_measure_mesh(f->model, positions, vertices - 1, 0, 0, metres, MEASURES, NULL, &fault));
+    FAILS_OUT(metres, anthronet_measure_mesh(f->model, NULL, 0, 0, 0, metres, MEASURES, NULL, &fault));
     free(positions);
     free(mask);
     free(pose);
@@ -285,8 +285,8 @@ void test_numbers(const fixture *f) {
 }
 
 void test_counts(const fixture *f) {
-    static const uint32_t NO_COUNTS[] = {0, 1, 35, 37, UINT32_MAX};
-    anthronet_measure_report report[36];
+    static const uint32_t NO_COUNTS[] = {0, 1, MEASURES - 1, MEASURES + 1, UINT32_MAX};
+    anthronet_measure_report report[MEASURES];
     anthronet_joint joint;
     anthronet_transform pose;
     anthronet_motion *motion;
@@ -295,8 +295,8 @@ void test_counts(const fixture *f) {
     anthronet_job *job;
     anthronet_request *request;
     anthronet_motion_source source;
-    double metres[36], latent;
-    uint8_t given[36];
+    double metres[MEASURES], latent;
+    uint8_t given[MEASURES];
     uint32_t number;
     size_t i;
     ZERO(pose);
@@ -354,7 +354,7 @@ void test_counts_too_large(const fixture *f) {
     anthronet_request *request, *mine = NULL;
     int32_t parent = -1;
     uint64_t joints = f->joints;
-    double latent[1] = {0}, metres[36];
+    double latent[1] = {0}, metres[MEASURES];
     float *floats, mask = 1;
     size_t i;
     OK(anthronet_skinner_vertex_count(f->skinner, &count, &fault));
@@ -393,7 +393,7 @@ void test_counts_too_large(const fixture *f) {
         job.offset_count = LARGER(count);
         REFUSED(SIZE, anthronet_skin(NULL, &job, 1, &fault));
         if (LARGER(1 << 20) > 1 << 20) REFUSED(SIZE, anthronet_skin(NULL, &job, LARGER(1 << 20), &fault));
-        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, floats, LARGER(vertices), 0, 0, metres, 36, NULL, &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, floats, LARGER(vertices), 0, 0, metres, MEASURES, NULL, &fault));
         REFUSED(SIZE, anthronet_request_set_latent(mine, latent, LARGER(256), &fault));
         wrong = source;
         wrong.joint_count = LARGER(4096);
@@ -435,7 +435,7 @@ void test_strides(const fixture *f) {
     anthronet_view view;
     anthronet_mesh *mesh = NULL;
     unsigned char *buffer;
-    double metres[36];
+    double metres[MEASURES];
     size_t bytes, i;
     uint32_t vertices = 0;
     anthronet_mesh_options options;
@@ -449,7 +449,7 @@ void test_strides(const fixture *f) {
     fill(buffer, bytes);
     for (i = 0; i < LENGTH(NO_STRIDES); i++) {
         REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes, NO_STRIDES[i], &fault));
-        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, buffer, vertices, NO_STRIDES[i], 0, metres, 36, NULL, &fault));
+        REFUSED_OUT(SIZE, metres, anthronet_measure_mesh(f->model, buffer, vertices, NO_STRIDES[i], 0, metres, MEASURES, NULL, &fault));
     }
     REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes - 1, 0, &fault));
     REFUSED(SIZE, anthronet_mesh_read(mesh, 0, 0, buffer, bytes, 13, &fault));
@@ -476,7 +476,7 @@ void test_texts(const fixture *f) {
     anthronet_clip *clip;
     anthronet_bytes *bytes;
     uint32_t number;
-    double metres[36];
+    double metres[MEASURES];
     char deep[4096];
     size_t i;
     OK(anthronet_request_new(&mine, &fault));
@@ -493,7 +493,7 @@ void test_texts(const fixture *f) {
         REFUSED_OUT(code, clip, anthronet_clip_builtin(bad, length, f->body, &clip, &fault));
         REFUSED_OUT(code, bytes, anthronet_export_memory(f->body, NULL, bad, length, &bytes, &fault));
         REFUSED(code, anthronet_export_path(f->body, NULL, bad, length, &fault));
-        REFUSED_OUT(code, metres, anthronet_measure_file(f->model, bad, length, metres, 36, NULL, &fault));
+        REFUSED_OUT(code, metres, anthronet_measure_file(f->model, bad, length, metres, MEASURES, NULL, &fault));
     }
     for (i = 0; i < LENGTH(NO_JSON); i++) FAILS_OUT(request, anthronet_request_from_json(NO_JSON[i], strlen(NO_JSON[i]), &request, &fault));
     memset(deep, '[', sizeof deep);

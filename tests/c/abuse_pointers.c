@@ -14,7 +14,7 @@ void test_null_in_makers(const fixture *f) {
     const uint8_t *data;
     uint64_t length;
     uint32_t number;
-    double low, high, metres[36];
+    double low, high, metres[MEASURES];
     REFUSED(NONE, anthronet_version(NULL, &fault));
     REFUSED(NONE, anthronet_model_open_embedded(NULL, &fault));
     REFUSED(NONE, anthronet_model_open_default(NULL, &fault));
@@ -39,15 +39,15 @@ void test_null_in_makers(const fixture *f) {
     REFUSED(NONE, anthronet_measure_name(0, NULL, &fault));
     REFUSED_OUT(NONE, number, anthronet_measure_index(NULL, 6, &number, &fault));
     REFUSED(NONE, anthronet_measure_index(TEXT("height"), NULL, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_measure_mesh(NULL, metres, 1, 0, 0, metres, 36, NULL, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_measure_mesh(f->model, NULL, 53514, 0, 0, metres, 36, NULL, &fault));
-    REFUSED(NONE, anthronet_measure_mesh(f->model, metres, 1, 0, 0, NULL, 36, NULL, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_measure_file(NULL, TEXT("a.glb"), metres, 36, NULL, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_measure_file(f->model, NULL, 5, metres, 36, NULL, &fault));
-    REFUSED(NONE, anthronet_measure_file(f->model, TEXT("a.glb"), NULL, 36, NULL, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_measure_mesh(NULL, metres, 1, 0, 0, metres, MEASURES, NULL, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_measure_mesh(f->model, NULL, 53514, 0, 0, metres, MEASURES, NULL, &fault));
+    REFUSED(NONE, anthronet_measure_mesh(f->model, metres, 1, 0, 0, NULL, MEASURES, NULL, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_measure_file(NULL, TEXT("a.glb"), metres, MEASURES, NULL, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_measure_file(f->model, NULL, 5, metres, MEASURES, NULL, &fault));
+    REFUSED(NONE, anthronet_measure_file(f->model, TEXT("a.glb"), NULL, MEASURES, NULL, &fault));
     REFUSED(NONE, anthronet_clip_builtin_name(0, NULL, &fault));
     REFUSED(NONE, anthronet_humanoid_bone_at(0, NULL, &fault));
-    REFUSED_OUT(ANTHRONET_ERROR_INDEX, text, anthronet_measure_name(36, &text, &fault));
+    REFUSED_OUT(ANTHRONET_ERROR_INDEX, text, anthronet_measure_name(MEASURES, &text, &fault));
     /* Nothing to free. */
     anthronet_bytes_free(NULL);
     anthronet_model_free(NULL);
@@ -64,8 +64,8 @@ void test_null_in_makers(const fixture *f) {
 void test_null_in_requests(const fixture *f) {
     anthronet_request *request = NULL, *out;
     anthronet_bytes *bytes;
-    double metres[36];
-    uint8_t given[36];
+    double metres[MEASURES];
+    uint8_t given[MEASURES];
     double latent[1] = {0};
     ZERO(metres);
     ZERO(given);
@@ -80,12 +80,12 @@ void test_null_in_requests(const fixture *f) {
     REFUSED(NONE, anthronet_request_set_sex(NULL, 1, &fault));
     REFUSED(NONE, anthronet_request_set_measure(NULL, TEXT("height"), 1.7, &fault));
     REFUSED(NONE, anthronet_request_set_measure(request, NULL, 6, 1.7, &fault));
-    REFUSED(NONE, anthronet_request_set_measures(NULL, metres, given, 36, &fault));
-    REFUSED(NONE, anthronet_request_set_measures(request, NULL, given, 36, &fault));
-    REFUSED(NONE, anthronet_request_set_measures(request, metres, NULL, 36, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_request_measures(NULL, metres, given, 36, &fault));
-    REFUSED_OUT(NONE, given, anthronet_request_measures(request, NULL, given, 36, &fault));
-    REFUSED_OUT(NONE, metres, anthronet_request_measures(request, metres, NULL, 36, &fault));
+    REFUSED(NONE, anthronet_request_set_measures(NULL, metres, given, MEASURES, &fault));
+    REFUSED(NONE, anthronet_request_set_measures(request, NULL, given, MEASURES, &fault));
+    REFUSED(NONE, anthronet_request_set_measures(request, metres, NULL, MEASURES, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_request_measures(NULL, metres, given, MEASURES, &fault));
+    REFUSED_OUT(NONE, given, anthronet_request_measures(request, NULL, given, MEASURES, &fault));
+    REFUSED_OUT(NONE, metres, anthronet_request_measures(request, metres, NULL, MEASURES, &fault));
     REFUSED(NONE, anthronet_request_unset_measure(NULL, 0, &fault));
     REFUSED(NONE, anthronet_request_set_seed(NULL, 0, &fault));
     REFUSED(NONE, anthronet_request_set_latent(NULL, latent, 1, &fault));
@@ -98,7 +98,7 @@ void test_null_in_requests(const fixture *f) {
 void test_null_in_bodies(const fixture *f) {
     anthronet_body *body;
     anthronet_bytes *bytes;
-    anthronet_measure_report report[36];
+    anthronet_measure_report report[MEASURES];
     anthronet_body_summary summary;
     anthronet_job *job;
     anthronet_job_progress progress;
@@ -117,8 +117,8 @@ void test_null_in_bodies(const fixture *f) {
     REFUSED(NONE, anthronet_interpolate(f->model, f->request, f->request, 0.5, NULL, &fault));
     REFUSED_OUT(NONE, bytes, anthronet_body_report(NULL, &bytes, &fault));
     REFUSED(NONE, anthronet_body_report(f->body, NULL, &fault));
-    REFUSED_OUT(NONE, report, anthronet_body_measures(NULL, report, 36, &fault));
-    REFUSED(NONE, anthronet_body_measures(f->body, NULL, 36, &fault));
+    REFUSED_OUT(NONE, report, anthronet_body_measures(NULL, report, MEASURES, &fault));
+    REFUSED(NONE, anthronet_body_measures(f->body, NULL, MEASURES, &fault));
     SIZED(summary);
     REFUSED(NONE, anthronet_body_summarise(NULL, &summary, &fault));
     REFUSED(NONE, anthronet_body_summarise(f->body, NULL, &fault));
@@ -315,9 +315,9 @@ void test_crooked_pointers(const fixture *f) {
     anthronet_mesh *mesh;
     anthronet_body_summary summary;
     anthronet_mesh_options options;
-    anthronet_measure_report report[37];
+    anthronet_measure_report report[MEASURES + 1];
     anthronet_transform pose[2];
-    double metres[37];
+    double metres[MEASURES + 1];
     char storage[sizeof(anthronet_error) + 1];
     SIZED(summary);
     SIZED(options);
@@ -327,8 +327,8 @@ void test_crooked_pointers(const fixture *f) {
     REFUSED(NONE, anthronet_generate(f->model, f->request, CROOKED(anthronet_body **, &body), &fault));
     REFUSED(NONE, anthronet_body_summarise(f->body, CROOKED(anthronet_body_summary *, &summary), &fault));
     REFUSED_OUT(NONE, mesh, anthronet_mesh_new(f->body, CROOKED(anthronet_mesh_options *, &options), &mesh, &fault));
-    REFUSED(NONE, anthronet_body_measures(f->body, CROOKED(anthronet_measure_report *, report), 36, &fault));
-    REFUSED(NONE, anthronet_request_set_latent(f->request, CROOKED(double *, metres), 36, &fault));
+    REFUSED(NONE, anthronet_body_measures(f->body, CROOKED(anthronet_measure_report *, report), MEASURES, &fault));
+    REFUSED(NONE, anthronet_request_set_latent(f->request, CROOKED(double *, metres), MEASURES, &fault));
     REFUSED(NONE, anthronet_clip_sample(f->walk, NULL, 0, 0, 0, 0, CROOKED(anthronet_transform *, pose), f->joints, &fault));
     /* The error itself may lie anywhere. */
     fill(storage, sizeof storage);

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #define THREADS 8
-#define MEASURES 36
 
 typedef struct worker {
     const fixture *f;

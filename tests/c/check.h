@@ -51,6 +51,9 @@ void forget_fault(void);
 void fill(void *bytes, size_t count);
 int is_filled(const void *bytes, size_t count);
 
+/* Number of measures, which a test compares with what the library says. */
+#define MEASURES 36
+
 /* A condition, and what to say when it does not hold, as for printf. True if it holds. */
 #define CHECK(condition, ...) check((condition) ? 1 : 0, __FILE__, __LINE__, __VA_ARGS__)
 /* A call that has to succeed. */

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MEASURES 36
 
 static anthronet_export_options with_walk(const fixture *f, const anthronet_clip **clips) {
     anthronet_export_options options;

@@ -9,7 +9,6 @@
 
 /* What is asked for is met within this, metres. */
 #define TENTH_OF_A_MILLIMETRE 1e-4
-#define MEASURES 36
 
 static uint32_t measure(const char *name) {
     uint32_t index = 999;

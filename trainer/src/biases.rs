@@ -104,7 +104,7 @@ fn better(jacobian: &Mat<f64>, misses: &Mat<f64>, so_far: &Mat<f64>) -> Result<M
 fn misses(statistics: &Statistics) -> Mat<f64> {
     Mat::from_fn(MEASURE_COUNT, 1, |i, _| {
         let row = &statistics.measures[i];
-        let [mean, deviation, ..] = paper_row(i);
+        let [mean, deviation, ..] = row.paper;
         if row.name == NOT_MATCHED { row.z - (NATURAL_HEAD_HEIGHT - mean) / deviation } else { row.z }
     })
 }
@@ -152,6 +152,6 @@ mod tests {
         let read: BTreeMap<String, f64> = serde_json::from_str(&fitted.to_json()).unwrap();
         assert_eq!(read, biases);
         let id = MeasureId::from_name(NOT_MATCHED).unwrap();
-        assert!((NATURAL_HEAD_HEIGHT - paper_row(id.index())[0]).abs() < 0.02);
+        assert!((NATURAL_HEAD_HEIGHT - paper_row(id)[0]).abs() < 0.02);
     }
 }

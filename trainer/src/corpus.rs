@@ -141,8 +141,8 @@ impl<'a> Gauge<'a> {
 /// The limits are the paper's extremes ("statistics-anthro"), widened by a tenth of each measure's range, and
 /// never narrower than a factor of 0.82–1.22; upper arms below 0.135 m of circumference, for example, are refused.
 pub fn plausible(measures: &Measurements) -> bool {
-    measures.iter().enumerate().all(|(i, &m)| {
-        let [_, _, low, high] = paper_row(i);
+    MeasureId::all().zip(measures).all(|(id, &m)| {
+        let [_, _, low, high] = paper_row(id);
         let slack = 0.1 * (high - low);
         m >= (low - slack).min(low * 0.82) && m <= (high + slack).max(high * 1.22)
     })
@@ -175,7 +175,10 @@ mod tests {
 
     #[test]
     fn bodies_with_stick_thin_arms_are_implausible() {
-        let mean: Measurements = std::array::from_fn(|i| paper_row(i)[0]);
+        let mut mean: Measurements = [0.0; MEASURE_COUNT];
+        for (id, mean) in MeasureId::all().zip(&mut mean) {
+            *mean = paper_row(id)[0];
+        }
         assert!(plausible(&mean));
         let arm = MeasureId::from_name("arm_circumference_right").unwrap().index();
         for (girth, expected) in [(0.114, false), (0.135, false), (0.136, true), (0.49, true), (0.51, false)]

@@ -288,40 +288,44 @@ pub struct StatisticsRow {
     pub z: f64,
 }
 
-/// Mean, standard deviation, minimum, maximum of the paper's table, in the order of the measures (sided rows once).
-const PAPER: [[f64; 4]; 24] = [
-    [0.828, 0.174, 0.55, 1.250],
-    [1.061, 0.159, 0.76, 1.522],
-    [0.988, 0.154, 0.72, 1.368],
-    [1.760, 0.144, 1.49, 1.991],
-    [0.295, 0.012, 0.248, 0.335],
-    [0.376, 0.030, 0.310, 0.425],
-    [0.324, 0.029, 0.256, 0.394],
-    [0.546, 0.009, 0.521, 0.554],
-    [0.431, 0.044, 0.320, 0.541],
-    [0.245, 0.004, 0.232, 0.251],
-    [0.092, 0.013, 0.056, 0.115],
-    [0.120, 0.012, 0.078, 0.141],
-    [0.177, 0.011, 0.149, 0.197],
-    [0.283, 0.052, 0.165, 0.409],
-    [0.329, 0.029, 0.270, 0.395],
-    [0.270, 0.038, 0.184, 0.367],
-    [0.254, 0.027, 0.197, 0.300],
-    [0.551, 0.073, 0.395, 0.733],
-    [0.512, 0.046, 0.415, 0.590],
-    [0.354, 0.042, 0.248, 0.458],
-    [0.424, 0.040, 0.348, 0.504],
-    [0.098, 0.007, 0.083, 0.115],
-    [0.198, 0.014, 0.169, 0.225],
-    [0.269, 0.019, 0.229, 0.306],
+/// The paper's table "statistics-anthro": measure without side; mean, standard deviation, minimum, maximum, metres.
+const PAPER: [(&str, [f64; 4]); 24] = [
+    ("waist_circumference", [0.828, 0.174, 0.55, 1.250]),
+    ("chest_circumference", [1.061, 0.159, 0.76, 1.522]),
+    ("hip_circumference", [0.988, 0.154, 0.72, 1.368]),
+    ("height", [1.760, 0.144, 1.49, 1.991]),
+    ("shoulder_width", [0.295, 0.012, 0.248, 0.335]),
+    ("torso_height_back", [0.376, 0.030, 0.310, 0.425]),
+    ("torso_height_front", [0.324, 0.029, 0.256, 0.394]),
+    ("head_circumference", [0.546, 0.009, 0.521, 0.554]),
+    ("neck_circumference", [0.431, 0.044, 0.320, 0.541]),
+    ("head_height", [0.245, 0.004, 0.232, 0.251]),
+    ("neck_length_midline", [0.092, 0.013, 0.056, 0.115]),
+    ("neck_length_lateral", [0.120, 0.012, 0.078, 0.141]),
+    ("hand_size", [0.177, 0.011, 0.149, 0.197]),
+    ("arm_circumference", [0.283, 0.052, 0.165, 0.409]),
+    ("arm_length", [0.329, 0.029, 0.270, 0.395]),
+    ("forearm_circumference", [0.270, 0.038, 0.184, 0.367]),
+    ("forearm_length", [0.254, 0.027, 0.197, 0.300]),
+    ("thigh_circumference", [0.551, 0.073, 0.395, 0.733]),
+    ("thigh_length", [0.512, 0.046, 0.415, 0.590]),
+    ("calf_circumference", [0.354, 0.042, 0.248, 0.458]),
+    ("calf_length", [0.424, 0.040, 0.348, 0.504]),
+    ("foot_width", [0.098, 0.007, 0.083, 0.115]),
+    ("heel_to_ball_length", [0.198, 0.014, 0.169, 0.225]),
+    ("heel_to_toe_length", [0.269, 0.019, 0.229, 0.306]),
 ];
 
 /// The measure whose mean is deliberately not the paper's: heads as tall as the paper's at its circumference are eggs.
 pub const NOT_MATCHED: &str = "head_height";
 
-/// The paper's row of a measure.
-pub fn paper_row(index: usize) -> [f64; 4] {
-    PAPER[if index < 24 { index } else { index - 12 }]
+/// The paper's mean, standard deviation, minimum and maximum of a measure, metres.
+///
+/// # Panics
+/// For a measure that the paper does not have: the statistics and the fit of the biases have to leave it out.
+pub fn paper_row(id: MeasureId) -> [f64; 4] {
+    let row = PAPER.iter().find(|row| row.0 == id.base_name());
+    row.unwrap_or_else(|| panic!("the paper has no statistics of {}", id.base_name())).1
 }
 
 impl Statistics {
@@ -338,7 +342,7 @@ impl Statistics {
                 let deviation = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
                 let least = values.iter().copied().fold(f64::INFINITY, f64::min);
                 let most = values.iter().copied().fold(0.0, f64::max);
-                let paper = paper_row(id.index());
+                let paper = paper_row(id);
                 StatisticsRow {
                     name: id.name().to_owned(),
                     ours: [mean, deviation, least, most],
@@ -419,15 +423,15 @@ mod tests {
         let mut bodies = Bodies { numbers: vec![0, 1], sex: vec![0, 1], ..Bodies::default() };
         for sign in [-1.0, 1.0] {
             // Around a mean that is one of the paper's deviations above the paper's.
-            bodies.measures.extend((0..MEASURE_COUNT).map(|i| {
-                let [mean, deviation, ..] = paper_row(i);
+            bodies.measures.extend(MeasureId::all().map(|id| {
+                let [mean, deviation, ..] = paper_row(id);
                 (mean + deviation + sign * 0.01) as f32
             }));
         }
         // The row that is not matched is listed, and counts in the first of the two numbers only.
         for row in bodies.measures.chunks_exact_mut(MEASURE_COUNT) {
             let id = MeasureId::from_name(NOT_MATCHED).unwrap();
-            row[id.index()] += 6.0 * paper_row(id.index())[1] as f32;
+            row[id.index()] += 6.0 * paper_row(id)[1] as f32;
         }
         let statistics = Statistics::of(&[&bodies], 3);
         for row in &statistics.measures {

@@ -11,23 +11,20 @@ namespace Anthronet.Editor
         struct Group
         {
             public string title;
-            public int first;
+            public int first, count;
         }
-
-        /// <summary>Measures per group: twelve without a side, then the same twelve for each side.</summary>
-        internal const int GroupSize = 12;
 
         static readonly Group[] apart =
         {
-            new Group { title = "Body", first = 0 },
-            new Group { title = "Left side", first = GroupSize },
-            new Group { title = "Right side", first = 2 * GroupSize },
+            new Group { title = "Body", first = 0, count = AnthroMeasures.Central },
+            new Group { title = "Left side", first = AnthroMeasures.Central, count = AnthroMeasures.PerSide },
+            new Group { title = "Right side", first = AnthroMeasures.Central + AnthroMeasures.PerSide, count = AnthroMeasures.PerSide },
         };
 
         static readonly Group[] linked =
         {
-            new Group { title = "Body", first = 0 },
-            new Group { title = "Both sides", first = GroupSize },
+            new Group { title = "Body", first = 0, count = AnthroMeasures.Central },
+            new Group { title = "Both sides", first = AnthroMeasures.Central, count = AnthroMeasures.PerSide },
         };
 
         static readonly string[] fields = { "sex", "seed", "fill", "nearest" };
@@ -79,10 +76,10 @@ namespace Anthronet.Editor
             for (var i = 0; i < groups.Length; i++)
             {
                 open[i] = EditorGUILayout.Foldout(open[i], groups[i].title, true);
-                for (var k = 0; open[i] && k < GroupSize; k++)
+                for (var k = 0; open[i] && k < groups[i].count; k++)
                 {
                     var measure = groups[i].first + k;
-                    var other = Linked && i == 1 ? measure + GroupSize : measure;
+                    var other = Linked && i == 1 ? measure + AnthroMeasures.PerSide : measure;
                     Measure(measure, other, metres, given);
                 }
             }

@@ -23,6 +23,13 @@ namespace Anthronet
             "calf_length_right", "foot_width_right", "heel_to_ball_length_right", "heel_to_toe_length_right",
         };
 
+        /// <summary>Number of measures without a side, such as `height`. They come first, then those of the left side, then
+        /// the same of the right side.</summary>
+        internal static readonly int Central = Array.FindIndex(all, name => name.EndsWith("_left", StringComparison.Ordinal));
+
+        /// <summary>Number of measures of each side.</summary>
+        internal static readonly int PerSide = (Count - Central) / 2;
+
         /// <summary>Names of the measures.</summary>
         public static readonly IReadOnlyList<string> Names = Array.AsReadOnly(all);
 

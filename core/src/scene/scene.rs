@@ -64,7 +64,7 @@ pub struct SceneMesh {
     pub triangles: Corners<3>,
     /// Slots per vertex in the next two fields: 4 or 8, or 0 for a mesh without a skin.
     pub influences_per_vertex: usize,
-    /// `(V, influences_per_vertex)` indices into [`Scene::joints`]; unused slots may hold anything.
+    /// `(V, influences_per_vertex)` indices into [`Scene::skeleton`]; unused slots may hold anything.
     pub joint_indices: Vec<u16>,
     /// `(V, influences_per_vertex)` weights, per vertex in descending order with sum 1; 0 marks an unused slot.
     pub joint_weights: Vec<f32>,
