@@ -68,7 +68,7 @@ fn character() -> Outcome<Scene> {
         normals: Vec::new(),
     });
 
-    let rest = Arc::new(slim.skeleton(str::to_owned)?);
+    let rest = Arc::new(slim.skeleton_with_ends(str::to_owned)?);
     let at_rest: Vec<_> = rest.rest_rotations().collect();
     let still = Clip::new("still".into(), rest.clone(), RATE, at_rest.repeat(FRAMES), vec![])?;
     for clip in [still, builtin("wave", &rest)?] {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::corpus::{Corpus, Gauge, plausible};
 use crate::dataset::Bodies;
-use crate::evaluation::{NOT_MATCHED, Statistics, paper_row};
+use crate::evaluation::{NOT_MATCHED, Statistics};
 use crate::sampling::committed_biases;
 use crate::{Error, Result};
 
@@ -127,6 +127,7 @@ mod tests {
     use anthronet::measure::MeasureId;
 
     use super::*;
+    use crate::evaluation::paper_row;
 
     #[test]
     fn steps_end_where_means_fit_with_the_least_change() {

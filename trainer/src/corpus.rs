@@ -1,6 +1,6 @@
 //! Bodies by number: drawn, shaped, T-posed, refined and measured; the same number gives the same body on every machine.
 
-use anthronet::measure::{Definitions, Measurements, Sex};
+use anthronet::measure::{Definitions, MeasureId, Measurements, Sex};
 use anthronet::mesh::{Subdivision, Topology};
 use glam::{DVec3, Vec3};
 
@@ -155,7 +155,7 @@ pub fn cage_of(points: &[Vec3]) -> &[Vec3] {
 
 #[cfg(test)]
 mod tests {
-    use anthronet::measure::MeasureId;
+    use anthronet::measure::MEASURE_COUNT;
 
     use super::*;
 
