@@ -113,7 +113,7 @@ pub unsafe extern "C" fn anthronet_skin(
         joints.clear();
         let mut work = Vec::new();
         for (i, job) in described.iter().enumerate() {
-            let prepared = Prepared::of(job, joints)?;
+            let prepared = CheckedJob::of(job, joints)?;
             prepared.extents(i, &mut extents)?;
             work.push(prepared);
         }
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn anthronet_skin(
 }
 
 /// A job of which everything is checked that can be before its buffers are touched.
-struct Prepared<'a> {
+struct CheckedJob<'a> {
     asked: &'a anthronet_skin_job,
     skinner: &'a Skinner,
     method: SkinMethod,
@@ -135,7 +135,7 @@ struct Prepared<'a> {
     normals: Option<Rows>,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> CheckedJob<'a> {
     /// Appends the pose of the job to `poses`.
     fn of(job: &'a anthronet_skin_job, poses: &mut Vec<RigidTransform>) -> Outcome<Self> {
         let skinner = &read(job.skinner, "skinner")?.0;

@@ -46,7 +46,7 @@ impl Picture {
             let varyings = figure.varyings(part, tile.view, &studio);
             let projected = varyings.iter().map(|v| camera.project(v.position)).collect();
             let drawn = &figure.figure.parts[part];
-            Prepared { material: drawn.material, triangles: &drawn.triangles, projected, varyings }
+            ProjectedPart { material: drawn.material, triangles: &drawn.triangles, projected, varyings }
         });
         let drawing = Drawing {
             picture: self,
@@ -68,8 +68,8 @@ impl Picture {
     }
 }
 
-/// A part of the figure as a tile shows it.
-struct Prepared<'a> {
+/// A part of the body, projected into a tile.
+struct ProjectedPart<'a> {
     material: Material,
     triangles: &'a [[u32; 3]],
     projected: Vec<Vec3>,
@@ -80,7 +80,7 @@ struct Prepared<'a> {
 struct Drawing<'a> {
     picture: &'a Picture,
     tile: &'a Tile,
-    parts: Vec<Prepared<'a>>,
+    parts: Vec<ProjectedPart<'a>>,
     ground: GroundLight,
     shading: Shading<'a>,
 }
@@ -145,7 +145,7 @@ impl Drawing<'_> {
     }
 }
 
-impl Prepared<'_> {
+impl ProjectedPart<'_> {
     fn mesh(&self) -> Mesh<'_> {
         Mesh { projected: &self.projected, varyings: &self.varyings, triangles: self.triangles }
     }

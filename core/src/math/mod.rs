@@ -14,4 +14,4 @@ pub(crate) use least_squares::least_squares;
 pub use rotation::Rotation;
 pub(crate) use smoothstep::smoothstep;
 pub use transform::RigidTransform;
-pub(crate) use transform::unit;
+pub(crate) use transform::{RigidTransformF64, unit};

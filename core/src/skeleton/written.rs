@@ -4,47 +4,33 @@
 //! round. The transforms here are fixed points of writing and reading. Bodies have such joints from the start, so that
 //! retargeting to a body and to its file gives the same result.
 
-use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A};
+use glam::{Affine3A, DAffine3, DMat3, DQuat, Mat3A, Vec3};
+
+use crate::math::{RigidTransform, Rotation};
 
 /// Grid to which metres and components of quaternions are rounded, 2⁻²⁶: an eighth of the `f32` spacing above 1.
 const GRID: f64 = 1.0 / 67_108_864.0;
 /// Most iterations in search of a fixed point; nearly all transforms need two or three.
 const MAX_ROUNDINGS: usize = 64;
 
-/// A joint's transform relative to its parent, as a file stores it.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct ParentFromJoint {
-    /// Metres.
-    pub(crate) translation: [f32; 3],
-    /// Unit quaternion x, y, z, w.
-    pub(crate) rotation: [f32; 4],
+/// A joint's transform relative to its parent as a file stores it.
+fn stored(parent_from_joint: &DAffine3) -> RigidTransform {
+    let rotation = DQuat::from_mat3(&parent_from_joint.matrix3).normalize();
+    let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
+    RigidTransform {
+        translation: Vec3::from_array(parent_from_joint.translation.to_array().map(on_grid)),
+        rotation: Rotation::from_array(rotation.to_array().map(on_grid)),
+    }
 }
 
-impl ParentFromJoint {
-    pub(crate) fn to_affine(self) -> DAffine3 {
-        DAffine3::from_rotation_translation(
-            DQuat::from_array(self.rotation.map(f64::from)),
-            DVec3::from_array(self.translation.map(f64::from)),
-        )
-    }
-
-    fn of(parent_from_joint: &DAffine3) -> Self {
-        let rotation = DQuat::from_mat3(&parent_from_joint.matrix3).normalize();
-        let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
-        Self {
-            translation: parent_from_joint.translation.to_array().map(on_grid),
-            rotation: rotation.to_array().map(on_grid),
-        }
-    }
-
-    fn bits(self) -> ([u32; 3], [u32; 4]) {
-        (self.translation.map(f32::to_bits), self.rotation.map(f32::to_bits))
-    }
+/// An order of transforms.
+fn bits(transform: RigidTransform) -> ([u32; 3], [u32; 4]) {
+    (transform.translation.to_array().map(f32::to_bits), transform.rotation.to_array().map(f32::to_bits))
 }
 
 /// A joint as a file stores it.
 pub(crate) struct WrittenJoint {
-    pub(crate) parent_from_joint: ParentFromJoint,
+    pub(crate) parent_from_joint: RigidTransform,
     /// Product of the stored transforms from the root down.
     pub(crate) model_from_joint: DAffine3,
 }
@@ -57,7 +43,7 @@ pub(crate) fn written_joints(joints: impl Iterator<Item = (Option<u32>, Affine3A
         let parent =
             parent.and_then(|p| written.get(p as usize)).map_or(DAffine3::IDENTITY, |p| p.model_from_joint);
         let parent_from_joint = fixed_point(&parent, model_from_joint);
-        let model_from_joint = parent * parent_from_joint.to_affine();
+        let model_from_joint = parent * parent_from_joint.to_affine_f64();
         written.push(WrittenJoint { parent_from_joint, model_from_joint });
     }
     written
@@ -73,20 +59,20 @@ pub(super) fn round_to_file(parents: &[Option<u32>], bind: &mut [Affine3A]) {
 
 /// Writes and reads a bind pose by turns until the stored transform no longer changes, so that a file survives reading and
 /// writing bit for bit. Where that ends in a cycle of several transforms, the first in the order of their bits is taken.
-fn fixed_point(parent: &DAffine3, model_from_joint: Affine3A) -> ParentFromJoint {
+fn fixed_point(parent: &DAffine3, model_from_joint: Affine3A) -> RigidTransform {
     let joint_from_model = parent.inverse();
     let mut read = model_from_joint;
-    let mut seen: Vec<ParentFromJoint> = Vec::new();
+    let mut seen: Vec<RigidTransform> = Vec::new();
     loop {
-        let node = ParentFromJoint::of(&(joint_from_model * widened(read)));
+        let node = stored(&(joint_from_model * widened(read)));
         if let Some(first) = seen.iter().position(|s| *s == node) {
-            return seen[first..].iter().copied().min_by_key(|s| s.bits()).unwrap_or(node);
+            return seen[first..].iter().copied().min_by_key(|s| bits(*s)).unwrap_or(node);
         }
         if seen.len() == MAX_ROUNDINGS {
             return node;
         }
         seen.push(node);
-        read = rounded(&(parent * node.to_affine()));
+        read = rounded(&(parent * node.to_affine_f64()));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The memory that skinning works in.
 
 use super::palette::Palette;
-use super::rigid::Motion;
+use crate::math::RigidTransformF64;
 
 /// Memory that a skinning call works in and that the next call uses again: how each joint of each character moves what
 /// follows it.
@@ -11,7 +11,7 @@ use super::rigid::Motion;
 #[derive(Clone, Debug, Default)]
 pub struct SkinContext {
     /// Posed `model_from_joint` of the character at hand.
-    pub(super) posed: Vec<Motion>,
+    pub(super) posed: Vec<RigidTransformF64>,
     /// One per character.
     pub(super) palettes: Vec<Palette>,
 }

@@ -7,13 +7,13 @@
 use glam::Vec4;
 
 use super::block::{Block, Lanes, add, cross, dot, scaled, transposed};
-use super::rigid::Motion;
+use crate::math::RigidTransformF64;
 
 /// Real and dual part, x, y, z, w each.
 pub(super) type DualQuaternion = [Vec4; 2];
 
 /// The dual quaternion of a joint's motion.
-pub(super) fn dual_quaternion(motion: &Motion) -> DualQuaternion {
+pub(super) fn dual_quaternion(motion: &RigidTransformF64) -> DualQuaternion {
     let translation = glam::DQuat::from_vec4(motion.translation.extend(0.0));
     let dual = glam::DVec4::from(translation * motion.rotation) * 0.5;
     [glam::DVec4::from(motion.rotation).as_vec4(), dual.as_vec4()]

@@ -3,13 +3,13 @@
 use glam::{DMat3, Vec4};
 
 use super::block::{Block, Lanes, dot, scaled, transposed};
-use super::rigid::Motion;
+use crate::math::RigidTransformF64;
 
 /// The first three rows of a matrix.
 pub(super) type Rows = [Vec4; 3];
 
 /// The matrix of a joint's motion.
-pub(super) fn rows(motion: &Motion) -> Rows {
+pub(super) fn rows(motion: &RigidTransformF64) -> Rows {
     let rotation = DMat3::from_quat(motion.rotation);
     std::array::from_fn(|i| rotation.row(i).extend(motion.translation[i]).as_vec4())
 }

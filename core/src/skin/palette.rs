@@ -4,8 +4,8 @@ use glam::{Vec3, Vec4};
 
 use super::block::Chunk;
 use super::buffers::Target;
-use super::rigid::Motion;
 use super::{SkinMethod, dual_quaternion, joint_translation, linear};
+use crate::math::RigidTransformF64;
 
 /// What the kernel of a method looks joints up in.
 #[derive(Clone, Debug, Default)]
@@ -17,14 +17,19 @@ pub(super) struct Palette {
 
 impl Palette {
     /// Fills it with posed `model_from_joint` · bind `joint_from_model` of each joint.
-    pub(super) fn fill(&mut self, method: SkinMethod, posed: &[Motion], joint_from_model: &[Motion]) {
+    pub(super) fn fill(
+        &mut self,
+        method: SkinMethod,
+        posed: &[RigidTransformF64],
+        joint_from_model: &[RigidTransformF64],
+    ) {
         self.method = method;
         self.vectors.clear();
         for (posed, bind) in posed.iter().zip(joint_from_model) {
             match method {
-                SkinMethod::Linear => self.vectors.extend(linear::rows(&posed.after(bind))),
+                SkinMethod::Linear => self.vectors.extend(linear::rows(&posed.then(*bind))),
                 SkinMethod::DualQuaternion => {
-                    self.vectors.extend(dual_quaternion::dual_quaternion(&posed.after(bind)));
+                    self.vectors.extend(dual_quaternion::dual_quaternion(&posed.then(*bind)));
                 }
                 SkinMethod::JointTranslation => {
                     let moved = posed.translation - bind.inverse().translation;

@@ -1,33 +1,16 @@
-//! Rigid motions of joints in double precision.
+//! Joints of a pose in double precision.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, RigidTransformF64};
 use crate::{Error, Result};
 
-/// A rigid motion in double precision, so that the two poses of a joint cancel where it rests.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
-    pub(super) rotation: DQuat,
-    pub(super) translation: DVec3,
-}
-
-impl Motion {
-    pub(super) fn after(&self, inner: &Self) -> Self {
-        Self {
-            rotation: self.rotation * inner.rotation,
-            translation: self.translation + self.rotation * inner.translation,
-        }
-    }
-
-    pub(super) fn inverse(&self) -> Self {
-        let rotation = self.rotation.conjugate();
-        Self { rotation, translation: rotation * -self.translation }
-    }
-}
-
 /// Checked and normalised, into a list that is emptied first.
-pub(super) fn motions(what: &'static str, joints: &[RigidTransform], out: &mut Vec<Motion>) -> Result<()> {
+pub(super) fn in_double(
+    what: &'static str,
+    joints: &[RigidTransform],
+    out: &mut Vec<RigidTransformF64>,
+) -> Result<()> {
     out.clear();
     for (j, joint) in joints.iter().enumerate() {
         let (rotation, translation) = (DQuat::from(joint.rotation), joint.translation.as_dvec3());
@@ -39,7 +22,7 @@ pub(super) fn motions(what: &'static str, joints: &[RigidTransform], out: &mut V
             );
             return Err(Error::invalid(what, message));
         }
-        out.push(Motion { rotation: rotation.normalize(), translation });
+        out.push(RigidTransformF64 { rotation: rotation.normalize(), translation });
     }
     Ok(())
 }

@@ -9,8 +9,9 @@ use super::SkinContext;
 use super::block::{Blocks, CHUNK_VERTICES, Chunk};
 use super::buffers::{SurfaceMut, Target};
 use super::palette::Palette;
-use super::rigid::{Motion, motions};
+use super::rigid::in_double;
 use crate::math::RigidTransform;
+use crate::math::RigidTransformF64;
 use crate::skeleton::Influences;
 use crate::{Error, Result};
 
@@ -35,7 +36,7 @@ pub enum SkinMethod {
 pub struct Skinner {
     vertex_count: usize,
     /// Bind `joint_from_model` of each joint.
-    joint_from_model: Vec<Motion>,
+    joint_from_model: Vec<RigidTransformF64>,
     blocks: Blocks,
 }
 
@@ -86,10 +87,10 @@ impl Skinner {
         finite("positions", positions)?;
         finite("normals", normals)?;
         let mut bind = Vec::new();
-        motions("bind pose", model_from_joints, &mut bind)?;
+        in_double("bind pose", model_from_joints, &mut bind)?;
         Ok(Self {
             vertex_count: count,
-            joint_from_model: bind.iter().map(Motion::inverse).collect(),
+            joint_from_model: bind.iter().map(|joint| joint.inverse()).collect(),
             blocks: Blocks::new(positions, normals, influences, model_from_joints.len())?,
         })
     }
@@ -117,7 +118,7 @@ impl Skinner {
     ) -> Result<()> {
         let job = SkinJob { skinner: self, method, model_from_joints, offsets: None, out };
         let mut palette = context.palettes.pop().unwrap_or_default();
-        let prepared = Prepared::new(job, &mut palette, &mut context.posed);
+        let prepared = CheckedJob::new(job, &mut palette, &mut context.posed);
         let skinned = prepared.map(|prepared| run(vec![prepared]));
         context.palettes.push(palette);
         skinned
@@ -136,7 +137,7 @@ pub fn skin_many(jobs: Vec<SkinJob<'_>>, context: &mut SkinContext) -> Result<()
         palettes.resize_with(jobs.len(), Palette::default);
     }
     let prepared = jobs.into_iter().zip(palettes).enumerate().map(|(i, (job, palette))| {
-        Prepared::new(job, palette, posed).map_err(|error| match error {
+        CheckedJob::new(job, palette, posed).map_err(|error| match error {
             Error::Invalid { what, message } => Error::invalid(what, format!("character {i}: {message}")),
             other => other,
         })
@@ -145,22 +146,22 @@ pub fn skin_many(jobs: Vec<SkinJob<'_>>, context: &mut SkinContext) -> Result<()
     Ok(())
 }
 
-/// A job that was found in order.
-struct Prepared<'a> {
+/// A job whose input and buffers have been checked.
+struct CheckedJob<'a> {
     skinner: &'a Skinner,
     palette: &'a Palette,
     offsets: Option<&'a [Vec3]>,
     targets: Vec<Target<'a>>,
 }
 
-impl<'a> Prepared<'a> {
-    fn new(job: SkinJob<'a>, palette: &'a mut Palette, posed: &mut Vec<Motion>) -> Result<Self> {
+impl<'a> CheckedJob<'a> {
+    fn new(job: SkinJob<'a>, palette: &'a mut Palette, posed: &mut Vec<RigidTransformF64>) -> Result<Self> {
         let SkinJob { skinner, method, model_from_joints, offsets, out } = job;
         let (expected, got) = (skinner.joint_count(), model_from_joints.len());
         if expected != got {
             return Err(Error::invalid("pose", format!("expected {expected} joints, got {got}")));
         }
-        motions("pose", model_from_joints, posed)?;
+        in_double("pose", model_from_joints, posed)?;
         palette.fill(method, posed, &skinner.joint_from_model);
         if let Some(offsets) = offsets {
             if offsets.len() != skinner.vertex_count {
@@ -173,10 +174,10 @@ impl<'a> Prepared<'a> {
     }
 }
 
-fn run(mut characters: Vec<Prepared<'_>>) {
+fn run(mut characters: Vec<CheckedJob<'_>>) {
     let mut work = Vec::new();
     for character in &mut characters {
-        let Prepared { skinner, palette, offsets, targets } = character;
+        let CheckedJob { skinner, palette, offsets, targets } = character;
         let mut offsets = offsets.map(|all| all.chunks(CHUNK_VERTICES));
         for (chunk, target) in skinner.blocks.chunks().zip(targets) {
             work.push((*palette, chunk, offsets.as_mut().and_then(Iterator::next), target));

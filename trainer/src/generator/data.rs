@@ -32,7 +32,7 @@ pub(crate) struct Frame {
 
 /// A set of bodies as inputs and targets of the network.
 #[derive(Debug)]
-pub(crate) struct Prepared {
+pub(crate) struct NetworkData {
     pub(crate) count: usize,
     /// Scaled residuals `(count, K)`: input of the mesh encoder and target of the decoder.
     residuals: Vec<f32>,
@@ -44,7 +44,7 @@ pub(crate) struct Prepared {
     width: usize,
 }
 
-/// Some rows of a [`Prepared`] set as tensors.
+/// Some rows of a [`NetworkData`] set as tensors.
 pub(crate) struct Batch {
     pub(crate) residuals: Tensor,
     pub(crate) conditions: Tensor,
@@ -135,7 +135,7 @@ impl Frame {
     }
 
     /// A set of bodies as inputs and targets of the network.
-    pub(crate) fn prepare(&self, set: &TrainingSet, offsets: bool) -> Prepared {
+    pub(crate) fn prepare(&self, set: &TrainingSet, offsets: bool) -> NetworkData {
         let (k, width) = (self.k, self.fourier.output_len());
         let mut residuals = vec![0.0; set.count * k];
         let mut conditions = vec![0.0; set.count * width];
@@ -160,7 +160,7 @@ impl Frame {
             });
             all
         });
-        Prepared { count: set.count, residuals, conditions, offsets, k, width }
+        NetworkData { count: set.count, residuals, conditions, offsets, k, width }
     }
 
     /// Least squares from the condition to the coefficients, by normal equations in f64.
@@ -262,7 +262,7 @@ impl Frame {
     }
 }
 
-impl Prepared {
+impl NetworkData {
     /// The given rows, in that order.
     pub(crate) fn batch(&self, rows: &[usize]) -> candle_core::Result<Batch> {
         let gather = |from: &[f32], width: usize| {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anthronet::network::config::GeneratorConfig;
 use candle_core::{Device, Tensor};
 
-use super::data::{Frame, Prepared};
+use super::data::{Frame, NetworkData};
 use super::export::export;
 use super::network::{Network, Norm};
 use super::{Metrics, ShapeStatistics, TrainedGenerator, TrainingOptions, TrainingSet};
@@ -96,8 +96,8 @@ struct Run<'a> {
     options: &'a TrainingOptions,
     vertex_count: usize,
     frame: Frame,
-    training: Prepared,
-    validation: Prepared,
+    training: NetworkData,
+    validation: NetworkData,
     losses: Losses,
     network: Network,
     adam: Adam,

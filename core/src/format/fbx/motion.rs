@@ -10,9 +10,9 @@ use super::document::{self, Nodes, finite, vec3};
 use crate::Error;
 use crate::error::{Fault, FbxError, Within};
 use crate::format::fbx::Result;
-use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
+use crate::format::motion::raw::{self, RawMotion, Recorder, Take, parent_from_joints};
 use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
@@ -47,8 +47,9 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         warnings.push(format!("joint `{scaled}` and perhaps others are scaled: folded into translations"));
     }
     let bind = nodes.bind_pose(&scene, &joints, &still);
-    let rigid: Vec<Rigid> = bind.iter().map(|world| Rigid::of(&(turn * *world))).collect();
-    let rest = Rigid::locals(&rigid, &parents);
+    let rigid: Vec<RigidTransformF64> =
+        bind.iter().map(|world| RigidTransformF64::without_scale(&(turn * *world))).collect();
+    let rest = parent_from_joints(&rigid, &parents);
 
     let (rate, rate_found) = match options.frames_per_second {
         Some(rate) => (rate, Found::Asked),
@@ -123,8 +124,11 @@ impl Animated<'_> {
                     .collect();
                 finite(scene, &locals).within(format_args!("animation `{title}`: frame {frame}"))?;
                 let world = nodes.world(scene, &locals);
-                let rigid: Vec<Rigid> = joints.iter().map(|&node| Rigid::of(&(turn * world[node]))).collect();
-                recorder.push(&Rigid::locals(&rigid, parents));
+                let rigid: Vec<RigidTransformF64> = joints
+                    .iter()
+                    .map(|&node| RigidTransformF64::without_scale(&(turn * world[node])))
+                    .collect();
+                recorder.push(&parent_from_joints(&rigid, parents));
             }
             takes.push(recorder.take(title.to_owned(), rate, rest));
         }

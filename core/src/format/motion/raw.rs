@@ -1,11 +1,11 @@
 //! What the readers of the formats return: a motion in the units and axes of its file.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+use glam::Vec3;
 
 use super::Found;
 use crate::clip::{MAX_FRAMES, TranslationTrack};
 use crate::error::Fault;
-use crate::math::{RigidTransform, Rotation};
+use crate::math::{RigidTransform, RigidTransformF64, Rotation};
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
@@ -90,45 +90,16 @@ pub(crate) fn moving(rest: &[RigidTransform], columns: Vec<Vec<Vec3>>) -> Vec<Tr
     tracks.map(|(joint, values)| TranslationTrack { joint: joint as u32, values }).collect()
 }
 
-/// A joint in the world without its scale.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rigid {
-    rotation: DQuat,
-    position: DVec3,
-}
-
-impl Rigid {
-    /// The rigid part of a transform: scale goes, places stay, which folds scale into translations.
-    pub(crate) fn of(world: &DAffine3) -> Self {
-        let x = world.matrix3.x_axis.try_normalize().unwrap_or(DVec3::X);
-        let y = (world.matrix3.y_axis - x * x.dot(world.matrix3.y_axis)).try_normalize();
-        let y = y.unwrap_or_else(|| x.any_orthonormal_vector());
-        let rotation = DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)));
-        Self { rotation, position: world.translation }
-    }
-
-    pub(crate) fn rotation(&self) -> DQuat {
-        self.rotation
-    }
-
-    pub(crate) fn to_affine(self) -> DAffine3 {
-        DAffine3::from_rotation_translation(self.rotation, self.position)
-    }
-
-    /// Each joint's transform to its parent, for joints that come after their parents.
-    pub(crate) fn locals(world: &[Self], parents: &[Option<u32>]) -> Vec<RigidTransform> {
-        let local = |(joint, parent): (&Self, &Option<u32>)| {
-            let (rotation, translation) = match parent.and_then(|p| world.get(p as usize)) {
-                Some(parent) => {
-                    let back = parent.rotation.conjugate();
-                    (back * joint.rotation, back * (joint.position - parent.position))
-                }
-                None => (joint.rotation, joint.position),
-            };
-            RigidTransform { rotation: rotation.into(), translation: translation.as_vec3() }
-        };
-        world.iter().zip(parents).map(local).collect()
-    }
+/// Each joint's transform to its parent, for joints that come after their parents.
+pub(crate) fn parent_from_joints(
+    world: &[RigidTransformF64],
+    parents: &[Option<u32>],
+) -> Vec<RigidTransform> {
+    let local = |(joint, parent): (&RigidTransformF64, &Option<u32>)| {
+        let parent = parent.and_then(|p| world.get(p as usize));
+        parent.map_or(*joint, |parent| joint.relative_to(*parent)).rounded()
+    };
+    world.iter().zip(parents).map(local).collect()
 }
 
 /// Collects frames given as local transforms into a take.
@@ -176,6 +147,8 @@ pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Result<usiz
 
 #[cfg(test)]
 mod tests {
+    use glam::{DAffine3, DQuat, DVec3};
+
     use super::*;
 
     #[test]
@@ -198,7 +171,10 @@ mod tests {
         let turn = DQuat::from_rotation_z(0.4);
         let parent = DAffine3::from_scale_rotation_translation(DVec3::splat(2.0), turn, DVec3::X);
         let child = parent * DAffine3::from_translation(DVec3::Y);
-        let locals = Rigid::locals(&[Rigid::of(&parent), Rigid::of(&child)], &[None, Some(0)]);
+        let locals = parent_from_joints(
+            &[RigidTransformF64::without_scale(&parent), RigidTransformF64::without_scale(&child)],
+            &[None, Some(0)],
+        );
         assert!(locals[1].translation.distance(Vec3::Y * 2.0) < 1e-6);
         assert!(locals[1].rotation.angle_between(Rotation::IDENTITY) < 1e-3);
         assert!(locals[0].rotation.dot(turn.into()) > 0.999_999);

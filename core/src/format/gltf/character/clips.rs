@@ -1,7 +1,7 @@
 //! Animations of the skeleton as clips: every joint sampled at the frames of one rate.
 //!
 //! Our own files say the rate and the number of frames. For others the rate is that on whose frames all keys lie, else
-//! [`FALLBACK_RATE`]. Key values on frames are taken as they are. Motion of what is no part of the skeleton is passed
+//! the fallback rate. Key values on frames are taken as they are. Motion of what is no part of the skeleton is passed
 //! over.
 
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub(super) fn read(document: &Document, joints: &JointNodes) -> Result<Vec<Read>
     let mut motions = Vec::new();
     let (mut left, mut keys) = (MAX_ROTATIONS, MAX_NUMBERS);
     for (i, animation) in document.root.animations.iter().enumerate() {
-        let motion = Motion::read(document, joints, animation, &mut keys);
+        let motion = AnimationTracks::read(document, joints, animation, &mut keys);
         let Some(motion) = motion.within(format_args!("animations[{i}]"))? else { continue };
         let (frames, joint_count) = (motion.frames, joints.skeleton.len());
         // A weight costs less than a rotation.
@@ -83,7 +83,7 @@ struct NodeTracks {
     rotation: Option<Track>,
 }
 
-struct Motion {
+struct AnimationTracks {
     nodes: BTreeMap<usize, NodeTracks>,
     weights: Vec<WeightKeys>,
     start: f64,
@@ -91,7 +91,7 @@ struct Motion {
     frames: usize,
 }
 
-impl Motion {
+impl AnimationTracks {
     /// `None` if no joint moves and no target is weighed.
     fn read(
         document: &Document,
@@ -194,10 +194,7 @@ impl Motion {
                 tracks.and_then(|t| t.translation.as_ref()).map(|t| vector(t.value(time, near)));
             let found = document.root.nodes.get(node);
             let at_rest = match found.and_then(written) {
-                Some(node) => RigidTransform {
-                    rotation: Rotation::from_array(node.rotation),
-                    translation: Vec3::from(node.translation),
-                },
+                Some(at_rest) => at_rest,
                 None => to_local(&chain_transform(document, &chain[n..=n])?),
             };
             let local = RigidTransform {

@@ -11,7 +11,7 @@ use crate::format::gltf::Result;
 use crate::format::gltf::document::{Document, Tree};
 use crate::math::{RigidTransform, Rotation};
 use crate::scene::titles::Titles;
-use crate::skeleton::written::{ParentFromJoint, rounded};
+use crate::skeleton::written::rounded;
 use crate::skeleton::{JointTree, MAX_JOINTS, Skeleton};
 
 /// How far scale may be from 1, and axes from a right angle.
@@ -198,7 +198,7 @@ pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Result<DA
     chain.iter().try_fold(DAffine3::IDENTITY, |above, &i| {
         let node = &document.root.nodes[i];
         let local = match (node.matrix, written(node)) {
-            (None, Some(written)) => written.to_affine(),
+            (None, Some(written)) => written.to_affine_f64(),
             _ => transform_f64(node),
         };
         if rigid(&local).is_some() {
@@ -211,10 +211,10 @@ pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Result<DA
 }
 
 /// Translation and rotation of a node that has no matrix and no scale.
-pub(super) fn written(node: &Node) -> Option<ParentFromJoint> {
-    (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| ParentFromJoint {
-        translation: node.translation.unwrap_or_default(),
-        rotation: node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |r| r.0),
+pub(super) fn written(node: &Node) -> Option<RigidTransform> {
+    (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| RigidTransform {
+        translation: node.translation.map_or(Vec3::ZERO, Vec3::from_array),
+        rotation: node.rotation.map_or(Rotation::IDENTITY, |r| Rotation::from_array(r.0)),
     })
 }
 
@@ -253,13 +253,7 @@ fn local_of(document: &Document, chain: &[usize], product: &DAffine3) -> RigidTr
         [node] => document.root.nodes.get(*node).and_then(written),
         _ => None,
     };
-    single.map_or_else(
-        || to_local(product),
-        |node| RigidTransform {
-            rotation: Rotation::from_array(node.rotation),
-            translation: Vec3::from(node.translation),
-        },
-    )
+    single.unwrap_or_else(|| to_local(product))
 }
 
 pub(super) fn to_local(transform: &DAffine3) -> RigidTransform {

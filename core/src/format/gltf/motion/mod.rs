@@ -14,9 +14,9 @@ use super::animation::{self, FALLBACK_RATE, Keys, ON_FRAME, Timing, Track, unit}
 use super::document::{Document, Tree};
 use crate::error::{Fault, GltfError, Within};
 use crate::format::gltf::Result;
-use crate::format::motion::raw::{self, RawMotion, Recorder, Rigid, Take};
+use crate::format::motion::raw::{self, RawMotion, Recorder, Take, parent_from_joints};
 use crate::format::motion::{Found, ReadOptions};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
@@ -139,8 +139,9 @@ impl<'a> Rig<'a> {
             let own = transforms[node].to_affine();
             world[node] = self.tree.parents[node].map_or(own, |parent| world[parent] * own);
         }
-        let rigid: Vec<Rigid> = self.joints.iter().map(|&node| Rigid::of(&world[node])).collect();
-        Rigid::locals(&rigid, &self.parents)
+        let rigid: Vec<RigidTransformF64> =
+            self.joints.iter().map(|&node| RigidTransformF64::without_scale(&world[node])).collect();
+        parent_from_joints(&rigid, &self.parents)
     }
 
     /// An animation sampled at its frames. At rest are all nodes, and the joints in their parents.
@@ -217,7 +218,7 @@ impl Transform {
             let unscaled = DAffine3 { translation: DVec3::ZERO, ..affine };
             return Self {
                 translation: affine.translation,
-                rotation: Rigid::of(&unscaled).rotation(),
+                rotation: RigidTransformF64::without_scale(&unscaled).rotation,
                 scale,
             };
         }

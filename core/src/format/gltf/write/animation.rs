@@ -18,8 +18,9 @@ use super::accessor::{DocumentBuilder, Usage};
 use super::raw;
 use crate::Result;
 use crate::clip::Clip;
+use crate::math::RigidTransform;
 use crate::scene::Scene;
-use crate::skeleton::written::{ParentFromJoint, WrittenJoint};
+use crate::skeleton::written::WrittenJoint;
 
 /// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
 /// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
@@ -34,19 +35,19 @@ pub(super) fn push(
 ) -> Result<()> {
     let clip = &scene.clips[place];
     let (frames, rate) = (clip.frame_count(), clip.frames_per_second());
-    let rests: Vec<ParentFromJoint> = transforms.iter().map(|t| t.parent_from_joint).collect();
+    let rests: Vec<RigidTransform> = transforms.iter().map(|t| t.parent_from_joint).collect();
     let mut rotations: Vec<Vec<[f32; 4]>> = (0..rests.len()).map(|j| joint_rotations(clip, j)).collect();
     let mut translations: Vec<Vec<[f32; 3]>> =
         (0..rests.len()).map(|j| joint_translations(clip, j)).collect();
     for (rest, track) in rests.iter().zip(&mut rotations) {
-        let opposite = rest.rotation.map(|c| -c);
-        if track.iter().all(|q| near(q, &rest.rotation) || near(q, &opposite)) {
+        let (own, opposite) = (rest.rotation.to_array(), (-rest.rotation).to_array());
+        if track.iter().all(|q| near(q, &own) || near(q, &opposite)) {
             track.clear();
         }
         drop_repetition(track);
     }
     for (rest, track) in rests.iter().zip(&mut translations) {
-        if track.iter().all(|t| near(t, &rest.translation)) {
+        if track.iter().all(|t| near(t, &rest.translation.to_array())) {
             track.clear();
         }
         drop_repetition(track);

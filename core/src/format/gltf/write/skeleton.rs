@@ -6,8 +6,9 @@ use serde_json::json;
 use super::accessor::{DocumentBuilder, Usage};
 use super::raw;
 use crate::Result;
+use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::Skeleton;
-use crate::skeleton::written::{ParentFromJoint, WrittenJoint, plain};
+use crate::skeleton::written::{WrittenJoint, plain};
 
 /// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` says how
 /// long the joint's bone is, which glTF cannot hold.
@@ -24,13 +25,13 @@ pub(super) fn push(
     }
     let joints = skeleton.names().iter().zip(transforms).zip(children);
     for (joint, ((name, written), children)) in joints.enumerate() {
-        let ParentFromJoint { translation, rotation } = written.parent_from_joint;
+        let RigidTransform { translation, rotation } = written.parent_from_joint;
         let length = |metres: f32| json!({"anthronet": {"bone_length": f64::from(metres)}});
         builder.root.push(Node {
             name: Some(name.clone()),
             children: (!children.is_empty()).then_some(children),
-            translation: Some(translation),
-            rotation: (rotation != [0.0, 0.0, 0.0, 1.0]).then_some(UnitQuaternion(rotation)),
+            translation: Some(translation.to_array()),
+            rotation: (rotation != Rotation::IDENTITY).then_some(UnitQuaternion(rotation.to_array())),
             extras: skeleton.bone_length(joint).map_or(Ok(None), |metres| raw(&length(metres)))?,
             ..Node::default()
         });

@@ -9,9 +9,9 @@ use super::layer::Layer;
 use super::values;
 use super::xform::Xforms;
 use crate::error::{Fault, UsdError, Within};
-use crate::format::motion::raw::Rigid;
+use crate::format::motion::raw::parent_from_joints;
 use crate::format::usd::Result;
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::MAX_JOINTS;
 
 /// The skeleton that is read of a file.
@@ -133,7 +133,11 @@ impl Joints {
         };
         Ok(world
             .iter()
-            .map(|joint| if is_rigid(joint) { *joint } else { Rigid::of(joint).to_affine() })
+            .map(
+                |joint| {
+                    if is_rigid(joint) { *joint } else { RigidTransformF64::without_scale(joint).to_affine() }
+                },
+            )
             .collect())
     }
 
@@ -190,8 +194,9 @@ impl Joints {
 
     /// The rest pose without scale, which goes into the translations, below the prims above the skeleton.
     pub(crate) fn locals(&self, above: &DAffine3) -> Vec<RigidTransform> {
-        let rigid: Vec<Rigid> = self.world(above).iter().map(Rigid::of).collect();
-        Rigid::locals(&rigid, &self.parents)
+        let rigid: Vec<RigidTransformF64> =
+            self.world(above).iter().map(RigidTransformF64::without_scale).collect();
+        parent_from_joints(&rigid, &self.parents)
     }
 
     fn world(&self, above: &DAffine3) -> Vec<DAffine3> {

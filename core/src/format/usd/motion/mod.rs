@@ -16,9 +16,10 @@ use super::document::skeleton::{Joints, Skeleton};
 use super::document::xform::Xforms;
 use crate::error::{Fault, UsdError, Within};
 use crate::format::motion::raw::{
-    RawMotion, Recorder, Rigid, Take, WeightTrack, frame_count, make_unique, snapped_rate,
+    RawMotion, Recorder, Take, WeightTrack, frame_count, make_unique, parent_from_joints, snapped_rate,
 };
 use crate::format::motion::{Found, ReadOptions};
+use crate::math::RigidTransformF64;
 use crate::space::{Axis, Unit};
 
 /// Most joints of an animation; those that the skeleton does not have are ignored.
@@ -193,8 +194,8 @@ impl Animation {
                 let parent = parent.and_then(|p| world.get(p as usize)).unwrap_or(&root);
                 world.push(*parent * local.to_affine());
             }
-            let rigid: Vec<Rigid> = world.iter().map(Rigid::of).collect();
-            recorder.push(&Rigid::locals(&rigid, &joints.parents));
+            let rigid: Vec<RigidTransformF64> = world.iter().map(RigidTransformF64::without_scale).collect();
+            recorder.push(&parent_from_joints(&rigid, &joints.parents));
         }
         let mut take = recorder.take(name, frames_per_second, &rest);
         let weights: Vec<Vec<[f64; 1]>> = (0..frames).map(|frame| self.weights.at(time(frame))).collect();
