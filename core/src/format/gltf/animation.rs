@@ -1,5 +1,5 @@
-//! Animations: keys of one property of one node, how they are interpolated (glTF 2.0, sections 3.11 and C), and the frames
-//! that they lie on. What moves with them, a skeleton of any kind or a character, is for the readers of those.
+//! Animation channels: the keys of one property of one node, their interpolation (glTF 2.0, sections 3.11 and C) and
+//! the frames they fall on. What they move, a bare skeleton or a whole character, is up to the callers.
 
 use gltf_json::animation::{Interpolation, Property, Sampler};
 use gltf_json::validation::Checked;
@@ -12,32 +12,32 @@ use crate::format::gltf::Result;
 use crate::format::gltf::document::Document;
 use crate::format::motion::{Found, raw::snapped_rate};
 
-/// The rate for keys that lie on the frames of no usual rate.
+/// The frame rate for keys that fit no usual rate.
 pub(super) const FALLBACK_RATE: f64 = 30.0;
-/// Rates to look for, the lowest first.
+/// Rates to try, lowest first.
 const USUAL_RATES: [f64; 9] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0];
-/// How far from a frame a key may be to count as on it, in frames: what rounding of times leaves.
+/// How far from a frame a key may be to count as on it, in frames: allows for rounded times.
 pub(super) const ON_FRAME: f64 = 5e-3;
-/// Most numbers of all keys of a document.
+/// Limit on the numbers of all keys of a document.
 pub(super) const MAX_NUMBERS: usize = 1 << 26;
 
-/// When keys are, and what is between them.
+/// The times of keys, and the interpolation between them.
 pub(super) struct Keys {
-    /// Seconds, rising, at least one.
+    /// In seconds, strictly increasing, at least one.
     pub(super) times: Vec<f64>,
     pub(super) interpolation: Interpolation,
 }
 
 /// The position of a time among keys.
 pub(super) enum Place {
-    /// On this key, before the first or after the last.
+    /// On this key, or clamped to it as the first or last.
     At(usize),
-    /// A share of the span from this key to the next, and the span in seconds.
+    /// Between this key and the next: the fraction of the interval, and its length in seconds.
     After(usize, f64, f64),
 }
 
 impl Keys {
-    /// The keys of a sampler, and the accessor of their values.
+    /// The keys of a sampler, and the accessor of its output.
     pub(super) fn read(
         document: &Document,
         animation: &Animation,
@@ -58,17 +58,17 @@ impl Keys {
         Ok((Self { times, interpolation }, sampler.output))
     }
 
-    /// How many values there are for each key: an in-tangent, the value and an out-tangent, or the value alone.
+    /// Values per key: in-tangent, value and out-tangent, or the value alone.
     pub(super) fn each(&self) -> usize {
         if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
     }
 
-    /// Where the value of a key is among the values.
+    /// The index of a key's value among the values.
     pub(super) fn value_at(&self, key: usize) -> usize {
         if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key }
     }
 
-    /// The position of a time. A key that is up to `near` seconds away counts as reached.
+    /// The position of a time. A key within `near` seconds counts as reached.
     pub(super) fn place(&self, time: f64, near: f64) -> Place {
         let times = &self.times;
         let next = times.partition_point(|t| *t <= time + near);
@@ -81,7 +81,7 @@ impl Keys {
     }
 }
 
-/// A cubic from one value and the tangent out of it to the tangent into the next and that value (section C.5).
+/// Cubic Hermite interpolation from a value and its out-tangent to the next in-tangent and value (section C.5).
 pub(super) fn hermite(t: f64, span: f64, [from, out, into, to]: [f64; 4]) -> f64 {
     let (t2, t3) = (t * t, t * t * t);
     (2.0 * t3 - 3.0 * t2 + 1.0) * from
@@ -95,12 +95,12 @@ pub(super) struct Track {
     pub(super) node: usize,
     pub(super) property: Property,
     pub(super) keys: Keys,
-    /// Values, or in-tangent, value and out-tangent of each key; the fourth number is of rotations alone.
+    /// Values, or per key in-tangent, value and out-tangent; the fourth component is used by rotations only.
     values: Vec<[f32; 4]>,
 }
 
-/// The tracks of an animation that move nodes; weights of morph targets are left out. `left` is how many numbers the
-/// document may still have.
+/// The tracks of an animation that move nodes; weights of morph targets are left out. `left` is the document's
+/// remaining budget of numbers.
 pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<Track>> {
     let mut tracks = Vec::<Track>::new();
     for (i, channel) in animation.channels.iter().enumerate() {
@@ -115,7 +115,7 @@ pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize)
     Ok(tracks)
 }
 
-/// The fault of a document that has more numbers of keys than [`MAX_NUMBERS`].
+/// The fault for a document with more than [`MAX_NUMBERS`] numbers of keys.
 pub(super) fn too_many_numbers() -> Fault {
     Fault::too_many(format_args!("{MAX_NUMBERS} numbers of keys"), "more")
 }
@@ -141,7 +141,7 @@ fn read_channel(document: &Document, animation: &Animation, i: usize, property: 
 }
 
 impl Track {
-    /// The value of every key; the fourth number is of rotations alone.
+    /// The value of every key; the fourth component is used by rotations only.
     pub(super) fn key_values(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
         (0..self.keys.times.len()).map(|key| self.values[self.keys.value_at(key)])
     }
@@ -151,8 +151,8 @@ impl Track {
         self.keys.times.len() == 1
     }
 
-    /// What the property is at a time; before the first key and after the last it is held. On a key, and up to `near` seconds
-    /// away from one, it is the file's own numbers.
+    /// The value of the property at a time, held before the first key and after the last. On a key, or within `near`
+    /// seconds of one, it is the file's own numbers.
     pub(super) fn value(&self, time: f64, near: f64) -> [f64; 4] {
         let value = |i: usize| self.values[i].map(f64::from);
         let key = |i: usize| value(self.keys.value_at(i));
@@ -175,13 +175,13 @@ impl Track {
     }
 }
 
-/// A rotation of unit length; none for what is too short.
+/// Normalises a quaternion; the identity if it is too short.
 pub(super) fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length > 1e-6 { q * (1.0 / length) } else { DQuat::IDENTITY }
 }
 
-/// When an animation is sampled.
+/// The time span and rate at which an animation is sampled.
 pub(super) struct Timing {
     /// Seconds.
     pub(super) start: f64,
@@ -189,15 +189,15 @@ pub(super) struct Timing {
     pub(super) end: f64,
     /// Frames a second.
     pub(super) rate: f64,
-    /// Where the rate is from.
+    /// Where the rate comes from.
     pub(super) found: Found,
-    /// How many frames, a whole number; not checked.
+    /// Number of frames, meant to be whole; not checked.
     pub(super) frames: f64,
 }
 
 impl Timing {
-    /// From the first key to the last, or as long as our own files say; at the requested rate, else that our own
-    /// files say, else that on whose frames all keys lie, else [`FALLBACK_RATE`].
+    /// From the first key to the last, or as long as our own files state; at the requested rate, else the stated one,
+    /// else one at which all keys fall on frames, else [`FALLBACK_RATE`].
     pub(super) fn of(animation: &Animation, keys: &[&Keys], asked: Option<f64>) -> Self {
         let stated = stated(animation);
         let (start, end) = stated.map_or_else(|| span(keys), |(rate, frames)| (0.0, (frames - 1.0) / rate));
@@ -214,7 +214,7 @@ impl Timing {
     }
 }
 
-/// Rate and number of frames, which our own files say: keys that change nothing are left out of them.
+/// Frame rate and number of frames from the extras of our own files, which leave out redundant keys.
 fn stated(animation: &Animation) -> Option<(f64, f64)> {
     let extras: Value = gltf_json::deserialize::from_str(animation.extras.as_ref()?.get()).ok()?;
     let number = |key: &str| extras.get("anthronet")?.get(key)?.as_f64();
@@ -222,19 +222,19 @@ fn stated(animation: &Animation) -> Option<(f64, f64)> {
     ((0.1..=1000.0).contains(&rate) && frames >= 1.0).then_some((rate, frames))
 }
 
-/// From the first to the last key of all.
+/// Times of the first and the last of all keys.
 fn span(keys: &[&Keys]) -> (f64, f64) {
     let firsts = keys.iter().filter_map(|keys| keys.times.first());
     let lasts = keys.iter().filter_map(|keys| keys.times.last());
     (firsts.copied().fold(f64::INFINITY, f64::min), lasts.copied().fold(f64::NEG_INFINITY, f64::max))
 }
 
-/// The rate on whose frames all keys lie: that of evenly spaced keys, else the lowest usual one.
+/// The rate at which all keys fall on frames: that of the shortest interval, else the lowest usual one.
 fn rate(keys: &[&Keys]) -> Option<f64> {
     let (start, _) = span(keys);
     let steps = keys.iter().flat_map(|keys| keys.times.windows(2).map(|pair| pair[1] - pair[0]));
     let shortest = steps.fold(f64::INFINITY, f64::min);
-    // Slower keys are poses to interpolate, not frames.
+    // Keys further apart are poses to interpolate between, not frames.
     let even = Some(snapped_rate(1.0 / shortest)).filter(|rate| (10.0..=1000.0).contains(rate));
     even.into_iter().chain(USUAL_RATES).find(|rate| {
         keys.iter().flat_map(|keys| &keys.times).all(|time| {

@@ -1,4 +1,4 @@
-//! glTF 2.0, binary and JSON. EXT_meshopt_compression is undone.
+//! glTF 2.0, binary and JSON, plain or with EXT_meshopt_compression.
 
 mod animation;
 mod character;
@@ -36,7 +36,7 @@ pub(super) const GLTF: Description = Description {
     ..GLB
 };
 
-/// Parses a file, whose buffers may lie beside it, and reads something of it.
+/// Parses a file, whose buffers may be files beside it, and passes the document to `read`.
 fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
     let document = Document::open(bytes, path)?;
     read(&document).map_err(|error| Error::file(path, error))

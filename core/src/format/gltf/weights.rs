@@ -9,17 +9,17 @@ use super::document::Document;
 use crate::error::{Fault, Within};
 use crate::format::gltf::Result;
 
-/// Keys of the weights of one node.
+/// Keys of the morph target weights of one node.
 pub(super) struct WeightKeys {
     pub(super) node: usize,
-    /// How many targets its mesh has, at least one.
+    /// How many morph targets the node's mesh has, at least one.
     pub(super) targets: usize,
     pub(super) keys: Keys,
-    /// Per key a weight of each target; of splines in-tangents, values and out-tangents.
+    /// Per key, one weight for each target; for splines, those of in-tangent, value and out-tangent in turn.
     values: Vec<f32>,
 }
 
-/// What an animation says of weights. `left` is how many numbers the document may still have.
+/// The weight channels of an animation. `left` is the document's remaining budget of numbers.
 pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize) -> Result<Vec<WeightKeys>> {
     let mut read = Vec::new();
     for (i, channel) in animation.channels.iter().enumerate() {
@@ -42,7 +42,7 @@ pub(super) fn read(document: &Document, animation: &Animation, left: &mut usize)
     Ok(read)
 }
 
-/// Keys and weights of a sampler, for so many targets.
+/// Keys and weights of a sampler for a mesh with this many targets.
 fn read_channel(
     document: &Document,
     animation: &Animation,
@@ -60,7 +60,7 @@ fn read_channel(
 }
 
 impl WeightKeys {
-    /// The weight of a target at a time; on a key, and up to `near` seconds away from one, the file's own number.
+    /// The weight of a target at a time; on a key, or within `near` seconds of one, the file's own number.
     pub(super) fn value(&self, target: usize, time: f64, near: f64) -> f32 {
         let value = |i: usize| self.values[i * self.targets + target];
         let key = |i: usize| value(self.keys.value_at(i));

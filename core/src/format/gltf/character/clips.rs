@@ -1,8 +1,8 @@
-//! Animations of the skeleton as clips: every joint sampled at the frames of one rate.
+//! Animations of the skeleton as clips: every joint sampled at a fixed frame rate.
 //!
-//! Our own files say the rate and the number of frames. For others the rate is that on whose frames all keys lie, else
-//! the fallback rate. Key values on frames are taken as they are. Motion of what is no part of the skeleton is passed
-//! over.
+//! Our own files state the rate and the number of frames. For other files the rate is one at which all keys fall on
+//! frames, else the fallback rate. Key values on frames are used unchanged. Tracks of nodes outside the skeleton are
+//! ignored.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,25 +21,25 @@ use crate::math::{RigidTransform, Rotation};
 use crate::scene::titles::Titles;
 use crate::skeleton::Skeleton;
 
-/// How far scale may be from 1.
+/// How far a scale may be from 1.
 const SCALE_TOLERANCE: f32 = 1e-4;
-/// Most rotations of all clips of a document together.
+/// Limit on the rotations of all clips of a document together.
 const MAX_ROTATIONS: usize = 1 << 25;
 
-/// A clip, and the weights of morph targets over it.
+/// A clip, and the morph target weights over its frames.
 pub(super) struct Read {
     pub(super) clip: Clip,
     pub(super) weights: Vec<NodeWeights>,
 }
 
-/// The weights of the meshes of one node.
+/// The morph target weights of the meshes of one node.
 pub(super) struct NodeWeights {
     pub(super) node: usize,
-    /// For each target one per frame.
+    /// For each target, one weight per frame.
     pub(super) of_targets: Vec<Vec<f32>>,
 }
 
-/// All animations that move a joint or weigh a morph target.
+/// All animations that move a joint or animate morph target weights.
 pub(super) fn read(document: &Document, joints: &JointNodes) -> Result<Vec<Read>> {
     if document.root.animations.is_empty() {
         return Ok(Vec::new());
@@ -53,7 +53,7 @@ pub(super) fn read(document: &Document, joints: &JointNodes) -> Result<Vec<Read>
         let motion = AnimationTracks::read(document, joints, animation, &mut keys);
         let Some(motion) = motion.within(format_args!("animations[{i}]"))? else { continue };
         let (frames, joint_count) = (motion.frames, joints.skeleton.len());
-        // A weight costs less than a rotation.
+        // A weight takes less memory than the rotation it is counted as.
         let numbers = joint_count + motion.weights.iter().map(|keys| keys.targets).sum::<usize>();
         let rotations = frames.checked_mul(numbers).and_then(|rotations| left.checked_sub(rotations));
         left = rotations.ok_or_else(|| {
@@ -76,7 +76,7 @@ pub(super) fn read(document: &Document, joints: &JointNodes) -> Result<Vec<Read>
     Ok(clips)
 }
 
-/// What moves a node.
+/// The tracks that move a node.
 #[derive(Default)]
 struct NodeTracks {
     translation: Option<Track>,
@@ -92,7 +92,7 @@ struct AnimationTracks {
 }
 
 impl AnimationTracks {
-    /// `None` if no joint moves and no target is weighed.
+    /// `None` if no joint and no morph target weight is animated.
     fn read(
         document: &Document,
         joints: &JointNodes,
@@ -106,7 +106,7 @@ impl AnimationTracks {
         let mut tracks = animation::read(document, animation, left)?;
         tracks.retain(|track| nodes.contains_key(&track.node));
         let weights = weights::read(document, animation, left)?;
-        // The times of joints decide where any moves; else those of weights.
+        // The timing is that of the joint tracks or, without any, that of the weights.
         let keys: Vec<&Keys> = match tracks.is_empty() {
             true => weights.iter().map(|weights| &weights.keys).collect(),
             false => tracks.iter().map(|track| &track.keys).collect(),
@@ -170,7 +170,7 @@ impl AnimationTracks {
         Ok(Clip::new(name, rest.clone(), self.rate, rotations, translations).map_err(Box::new)?)
     }
 
-    /// The weights at the frames.
+    /// The weights at every frame.
     fn node_weights(&self) -> Vec<NodeWeights> {
         let at = |frame: usize| self.start + frame as f64 / self.rate;
         let near = ON_FRAME / self.rate;
@@ -182,7 +182,7 @@ impl AnimationTracks {
         self.weights.iter().map(of_node).collect()
     }
 
-    /// A joint in its parent.
+    /// `parent_from_joint` of a joint at a frame.
     fn local(&self, document: &Document, chain: &[usize], frame: usize) -> Result<RigidTransform> {
         let time = self.start + frame as f64 / self.rate;
         let near = ON_FRAME / self.rate;
@@ -202,7 +202,7 @@ impl AnimationTracks {
                 translation: translation.unwrap_or(at_rest.translation),
             };
             if chain.len() == 1 {
-                // The file's numbers, without a detour.
+                // The file's numbers, with no conversion through a matrix.
                 return Ok(local);
             }
             let q = local.rotation;
@@ -225,7 +225,7 @@ fn vector([x, y, z, _]: [f64; 4]) -> Vec3 {
 }
 
 impl NodeTracks {
-    /// Whether there is one key at the most of each.
+    /// Whether each track has at most one key.
     fn is_still(&self) -> bool {
         [&self.translation, &self.rotation].into_iter().flatten().all(Track::is_still)
     }

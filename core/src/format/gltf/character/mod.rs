@@ -1,4 +1,4 @@
-//! A document as a whole [`Scene`]: its meshes over its joints, and its clips.
+//! A document as a complete [`Scene`]: skeleton, meshes and clips.
 
 mod clips;
 mod skeleton;
@@ -16,7 +16,7 @@ use crate::error::{Fault, Within};
 use crate::format::gltf::Result;
 use crate::scene::{MorphTrack, Scene, SceneMesh};
 
-/// How far weights may sum away from 1 to be taken as they are; those of others are made to.
+/// How far from 1 weights may sum before they are normalised.
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// Joints, meshes with texture coordinates and weights, materials, clips.
@@ -29,7 +29,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
         let node = part.node;
         let mesh = match &skeleton {
             Some(skeleton) => skinned(document, skeleton, &tree, part),
-            // Where it is in the scene.
+            // Placed where it is in the scene.
             None => still(part, &world[node]),
         };
         meshes.push(mesh.within(format_args!("nodes[{node}].mesh"))?);
@@ -47,11 +47,11 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Adds the weights over a clip to the meshes of their nodes; those of targets that keep to 0 are left out.
+/// Adds the weights over a clip to the meshes of their nodes; targets whose weights are all 0 are left out.
 fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<NodeWeights>, nodes: &[usize]) {
     for NodeWeights { node, of_targets } in weights {
         for (mesh, _) in (0u32..).zip(nodes).filter(|(_, of_mesh)| **of_mesh == node) {
-            // Primitives of one mesh are to have the same targets; those of a broken one may not.
+            // The primitives of a mesh must have the same targets; in an invalid file they may not.
             let targets = scene.meshes[mesh as usize].morph_targets.len();
             for (target, weights) in (0u32..).zip(&of_targets).take(targets) {
                 if weights.iter().any(|weight| *weight != 0.0) {
@@ -70,7 +70,7 @@ fn still(part: Part<'_>, world_from_node: &glam::Affine3A) -> Result<SceneMesh> 
     Ok(mesh)
 }
 
-/// A mesh with its own weights, or one without that is below a joint.
+/// A mesh with the weights of its skin, or, without a skin, one bound to the joint above it.
 fn skinned(document: &Document, skeleton: &JointNodes, tree: &Tree, part: Part<'_>) -> Result<SceneMesh> {
     let Part { node, primitive, mut mesh, vertices } = part;
     let written = mesh.positions.len();
@@ -94,7 +94,7 @@ fn skinned(document: &Document, skeleton: &JointNodes, tree: &Tree, part: Part<'
     Ok(mesh)
 }
 
-/// Accessors of the sets of joints and weights.
+/// The accessors of each set of joints and weights.
 type Sets = Vec<(Index<Accessor>, Index<Accessor>)>;
 
 fn sets(primitive: &Primitive) -> Sets {
@@ -105,8 +105,8 @@ fn sets(primitive: &Primitive) -> Sets {
     (0..).map_while(set).collect()
 }
 
-/// Weights over the scene's joints: as they are where they are sorted and sum to 1, else sorted, at most eight, and
-/// made to.
+/// Weights over the scene's joints: repeated joints merged, sorted, at most four or eight, and normalised unless they
+/// already sum to 1.
 fn weights(
     document: &Document,
     skeleton: &JointNodes,
@@ -137,7 +137,7 @@ fn weights(
                     return Err(Fault::unexpected("weights of at least 0", weight).into())
                         .within(format_args!("WEIGHTS_{set}: element {v}"));
                 }
-                // What an unused slot says does not matter.
+                // The joint of an unused slot does not matter.
                 if *weight > 0.0 {
                     let place = places.get(usize::from(*joint));
                     let Some(place) = place else {

@@ -1,4 +1,4 @@
-//! The joint tree of a document: the joints of all its skins, each with the nodes between it and the joint above.
+//! The joint tree of a document: the joints of all its skins, each with the nodes between it and its parent joint.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -14,12 +14,12 @@ use crate::scene::titles::Titles;
 use crate::skeleton::written::rounded;
 use crate::skeleton::{JointTree, MAX_JOINTS, Skeleton};
 
-/// How far scale may be from 1, and axes from a right angle.
+/// How far a scale may be from 1, and axes from a right angle.
 const RIGID_TOLERANCE: f64 = 1e-4;
-/// How far the rest pose may be from the bind pose, as a number of a matrix, to be taken for it.
+/// Largest difference per matrix element for the rest pose to count as the bind pose.
 const BIND_TOLERANCE: f32 = 1e-4;
 
-/// Most nodes between joints that are followed, one shared by several joints counted for each.
+/// Limit on the total length of all `chains`, a node shared by several joints counted for each.
 const MAX_LINKS: usize = 1 << 20;
 
 /// The joints of a document and their nodes.
@@ -28,9 +28,9 @@ pub(super) struct JointNodes {
     pub(super) skeleton: Arc<Skeleton>,
     /// `parent_from_joint` of each in the bind pose, as exact as the file.
     pub(super) locals: Vec<RigidTransform>,
-    /// For each joint, the nodes from below its parent (from the top of the scene for the root) down to its own.
+    /// For each joint, the nodes from its parent joint (excluded), or from the top of the scene, to its own.
     pub(super) chains: Vec<Vec<usize>>,
-    /// Node of a joint to its index in `skeleton`.
+    /// Node index of a joint to its index in `skeleton`.
     pub(super) places: BTreeMap<usize, u16>,
 }
 
@@ -66,7 +66,7 @@ impl JointNodes {
             let parent = tree.parents[node];
             above[node] = parent.filter(|p| binds.contains_key(p)).or(parent.and_then(|p| above[p]));
         }
-        // The order of the skin, if parents come first in it; else that of the tree.
+        // The skin's order if it has parents first, else the tree's.
         let mut seen = BTreeSet::new();
         if !nodes.iter().all(|n| above[*n].is_none_or(|a| seen.contains(&a)) && seen.insert(*n)) {
             nodes = tree.order.iter().copied().filter(|n| binds.contains_key(n)).collect();
@@ -109,8 +109,8 @@ impl JointNodes {
     }
 }
 
-/// Where the rest pose is not the bind pose, the bind pose is what a scene starts from: `model_from_joint` and
-/// `parent_from_joint` of each joint.
+/// The bind pose, from which a scene starts where the rest pose differs: `model_from_joint` and `parent_from_joint` of
+/// each joint.
 fn bind_pose(
     document: &Document,
     nodes: &[usize],
@@ -131,7 +131,7 @@ fn bind_pose(
     Ok((model, locals))
 }
 
-/// For each joint the nodes from below the joint above it, or from the top of the scene, down to its own.
+/// For each joint, the nodes from its parent joint (excluded), or from the top of the scene, to its own.
 fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Result<Vec<Vec<usize>>> {
     let mut chains = Vec::with_capacity(joints.len());
     let mut links = 0;
@@ -149,7 +149,7 @@ fn chains(joints: &[usize], tree: &Tree, is_joint: impl Fn(usize) -> bool) -> Re
     Ok(chains)
 }
 
-/// What our own files say of the length of a joint's bone.
+/// The length of a joint's bone, which our own files state.
 fn bone_length(node: &Node) -> Result<Option<f32>> {
     let extras = node.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let Some(length) = extras.as_ref().and_then(|e| e.pointer("/anthronet/bone_length")) else {
@@ -161,7 +161,7 @@ fn bone_length(node: &Node) -> Result<Option<f32>> {
     }
 }
 
-/// The joints of a skin: nodes and `model_from_joint` of the bind pose.
+/// The joints of a skin: node indices and `model_from_joint` in the bind pose.
 fn skin_joints(document: &Document, skin: usize) -> Result<Vec<(usize, DAffine3)>> {
     let nodes = document.root.nodes.len();
     let found = document.root.skins.get(skin);
@@ -193,7 +193,7 @@ fn skin_joints(document: &Document, skin: usize) -> Result<Vec<(usize, DAffine3)
     skin.joints.iter().zip(&matrices).map(joint).collect()
 }
 
-/// Product of the transforms of a chain of nodes, from its top down; they have to be rigid.
+/// The product of the transforms along a chain of nodes, from the top down; each must be rigid.
 pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Result<DAffine3> {
     chain.iter().try_fold(DAffine3::IDENTITY, |above, &i| {
         let node = &document.root.nodes[i];
@@ -210,7 +210,7 @@ pub(super) fn chain_transform(document: &Document, chain: &[usize]) -> Result<DA
     })
 }
 
-/// Translation and rotation of a node that has no matrix and no scale.
+/// Translation and rotation of a node without a matrix or a scale other than 1.
 pub(super) fn written(node: &Node) -> Option<RigidTransform> {
     (node.matrix.is_none() && node.scale.is_none_or(|s| s == [1.0; 3])).then(|| RigidTransform {
         translation: node.translation.map_or(Vec3::ZERO, Vec3::from_array),
@@ -230,7 +230,7 @@ fn transform_f64(node: &Node) -> DAffine3 {
     )
 }
 
-/// The nearest rotation and translation, if that is what the transform is but for rounding.
+/// The nearest rigid transform; `None` if the transform is not rigid but for rounding.
 fn rigid(transform: &DAffine3) -> Option<DAffine3> {
     let m = transform.matrix3;
     let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
@@ -263,7 +263,7 @@ pub(super) fn to_local(transform: &DAffine3) -> RigidTransform {
     }
 }
 
-/// A node for a message.
+/// How error messages name a node.
 pub(super) fn named(document: &Document, node: usize) -> String {
     match document.root.nodes.get(node).and_then(|n| n.name.as_deref()) {
         Some(name) => format!("nodes[{node}] `{name}`"),
@@ -271,7 +271,7 @@ pub(super) fn named(document: &Document, node: usize) -> String {
     }
 }
 
-/// From a node below the skeleton to model space in the bind pose, and the joint that it is below.
+/// The nearest joint at or above a node, and the node's transform to model space in the bind pose.
 pub(super) fn joint_above(
     document: &Document,
     tree: &Tree,

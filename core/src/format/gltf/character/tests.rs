@@ -11,7 +11,7 @@ use crate::format::gltf::{GltfOptions, to_glb, to_glb_with};
 use crate::format::read_scene_from_bytes;
 use crate::testing::scene::{arm, bent, bulging, joints, sleeve};
 
-/// The arm in motion, moved and still.
+/// The arm with a moving clip and a still one.
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let mut scene = arm(8);
     let clip = bent(&scene);
@@ -81,7 +81,7 @@ fn targets_of_others_are_sparse_nameless_and_animated_alone() {
         mesh["extras"].as_object_mut().unwrap().remove("targetNames");
         let target = mesh["primitives"][0]["targets"][1]["POSITION"].as_u64().unwrap() as usize;
         mesh["primitives"][0]["targets"][0] = json!({});
-        // The first rows of other views: corners of triangles as places, positions as values.
+        // The first elements of other buffer views: triangle corners as indices, positions as values.
         let indices = mesh["primitives"][0]["indices"].as_u64().unwrap() as usize;
         let positions = mesh["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap() as usize;
         let view = |json: &Value, accessor: usize| json["accessors"][accessor]["bufferView"].clone();
@@ -96,7 +96,7 @@ fn targets_of_others_are_sparse_nameless_and_animated_alone() {
                 "values": {"bufferView": values, "byteOffset": 12},
             }),
         );
-        // Weights alone, of which nothing says how many frames there are.
+        // Only weights are animated, and nothing states the number of frames.
         let animation = json["animations"][1].as_object_mut().unwrap();
         animation.remove("extras");
         animation["channels"].as_array_mut().unwrap().remove(0);
@@ -160,7 +160,7 @@ fn a_scene_comes_back() {
     }
     for (read, written) in joints(&read).iter().zip(&joints(&SCENE)) {
         assert_eq!((&read.name, read.parent), (&written.name, written.parent));
-        // A matrix turned into a quaternion of `f32` and back.
+        // The rounding of a matrix converted to an `f32` quaternion and back.
         assert!(read.model_from_joint.abs_diff_eq(written.model_from_joint, 3e-7));
     }
 }
@@ -177,7 +177,7 @@ fn clips_come_back() {
             for (j, (read, written)) in
                 read.pose(frame).locals.iter().zip(written.pose(frame).locals).enumerate()
             {
-                // Exact where a joint moves; at rest it takes the place of the node, a rounding away.
+                // Exact where a joint moves; at rest the node's own transform is used, a rounding away.
                 assert!(read.rotation.abs_diff_eq(written.rotation, 5e-7), "frame {frame}, joint {j}");
                 assert!(read.translation.abs_diff_eq(written.translation, 5e-7), "frame {frame}, joint {j}");
             }
@@ -197,7 +197,7 @@ fn compressed_numbers_come_back_as_near_as_promised() {
     };
     for (a, b) in read.meshes.iter().zip(&plain.meshes) {
         assert_eq!(a.joint_indices, b.joint_indices);
-        // The codec turns triangles round.
+        // The codec may rotate the corners of a triangle.
         for (a, b) in a.triangles.positions.iter().zip(&b.triangles.positions) {
             assert!((0..3).any(|turn| [0, 1, 2].map(|i| a[(i + turn) % 3]) == *b));
         }
@@ -221,7 +221,7 @@ fn compressed_numbers_come_back_as_near_as_promised() {
 
 #[test]
 fn others_lie_out_their_skeleton_in_other_ways() {
-    // Joints in another order, a turned node above the root and one between two joints, of which neither is a joint.
+    // Joints in another order, a rotated node above the root and a node between two joints, neither of them a joint.
     let strange = changed(|json| {
         let nodes = json["nodes"].as_array_mut().unwrap();
         let turn = [0.0, 0.6, 0.0, 0.8];
@@ -255,7 +255,7 @@ fn others_lie_out_their_skeleton_in_other_ways() {
 #[test]
 fn weights_of_others_are_put_in_order() {
     let mut bytes = GLB.clone();
-    // The second ring's vertices: thirds of no order that sum to 1.5, the first joint once more in the last slot.
+    // The second ring's vertices: unsorted weights that sum to 1.5, the first joint once more in the last slot.
     let row = [0.5f32, 0.35, 0.15, 0.0].map(f32::to_le_bytes).concat();
     let rows: Vec<usize> = (0..bytes.len() - 16).filter(|at| bytes[*at..*at + 16] == row[..]).collect();
     assert_eq!(rows.len(), 6, "five and the copy of one");
@@ -393,7 +393,7 @@ fn every_truncation_is_an_error() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// No panic, no endless loop, no huge allocation, whatever bytes are wrong; and what is read can be written.
+    /// No panic, endless loop or huge allocation, whichever bytes are damaged; and whatever is read can be written.
     #[test]
     fn flipped_bytes_do_no_harm(
         flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
@@ -408,7 +408,7 @@ proptest! {
         }
     }
 
-    /// The same aimed at the numbers of the JSON, where flips of random bytes seldom parse.
+    /// The same for the numbers in the JSON, as JSON with random flipped bytes seldom parses.
     #[test]
     fn changed_numbers_do_no_harm(at in any::<prop::sample::Index>(), compressed: bool, value in prop_oneof![
         Just(u64::MAX), Just(u64::from(u32::MAX)), Just(1 << 31), 0u64..200, any::<u64>()

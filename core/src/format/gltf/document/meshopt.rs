@@ -1,5 +1,4 @@
-//! Undoes EXT_meshopt_compression, by the reference implementation's decoder, which is made for input that is not
-//! trusted.
+//! Decodes EXT_meshopt_compression with the reference implementation's decoder, which is made for untrusted input.
 
 use gltf_json::{Buffer, Root, validation::USize64};
 use serde::Deserialize;
@@ -10,9 +9,9 @@ use crate::format::gltf::Result;
 
 pub(crate) const NAME: &str = "EXT_meshopt_compression";
 
-/// Most bytes of all views of a document together.
+/// Limit on the decoded bytes of all buffer views of a document.
 const MAX_BYTES: usize = 1 << 30;
-/// A byte of the codec decodes to no more than this many bytes, a header aside.
+/// Upper bound of the codec's compression ratio, headers aside.
 const MAX_RATIO: usize = 256;
 
 /// The extension of a buffer view.
@@ -30,13 +29,13 @@ struct Compressed {
     filter: Option<String>,
 }
 
-/// Whether a buffer only says where decoded views would lie.
+/// Whether a buffer is only a placeholder for decoded buffer views.
 pub(crate) fn is_placeholder(buffer: &Buffer) -> bool {
     let extension = buffer.extensions.as_ref().and_then(|e| e.others.get(NAME));
     buffer.uri.is_none() && extension.is_some()
 }
 
-/// What every compressed view holds; `None` for the others.
+/// The decoded bytes of every compressed buffer view; `None` for the others.
 pub(crate) fn decode_views(root: &Root, buffers: &[Vec<u8>]) -> Result<Vec<Option<Vec<u8>>>> {
     let mut left = MAX_BYTES;
     let mut views = Vec::new();
@@ -94,7 +93,7 @@ fn decode(view: &Compressed, buffers: &[Vec<u8>], most: usize) -> Result<Vec<u8>
     }
 }
 
-/// Rows of `N` words, whose bytes are in memory as in the file.
+/// Elements of `N` 32-bit words, whose bytes have the same order in memory as in the file.
 fn vertices<const N: usize>(encoded: &[u8], count: usize, filter: &str) -> meshopt::Result<Vec<u8>>
 where
     [u32; N]: Default + bytemuck::Pod,

@@ -1,6 +1,5 @@
-//! A glTF document and the bytes that it refers to. The JSON is read into `gltf-json`'s types; the data behind them is
-//! fetched here, every offset and size checked against what is there, and not by a general loader, which trusts the
-//! document.
+//! A glTF document and the data it refers to. The JSON is parsed into `gltf-json`'s types; the data is read here, with
+//! every offset and size checked, and not by a general loader, which trusts the document.
 
 mod meshopt;
 mod offsets;
@@ -23,21 +22,21 @@ use crate::format::limits::MAX_ELEMENTS;
 use crate::format::{Fault, disk};
 use crate::math::Rotation;
 
-/// Required extensions that change no geometry.
+/// Prefixes of required extensions that do not affect geometry.
 const HARMLESS_EXTENSIONS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
 
 /// A document and its data.
 pub(crate) struct Document {
     pub(crate) root: Root,
     buffers: Vec<Vec<u8>>,
-    /// What compressed buffer views hold; `None` for the others.
+    /// The decoded bytes of compressed buffer views; `None` for the others.
     decoded: Vec<Option<Vec<u8>>>,
 }
 
-/// The nodes as trees.
+/// The node hierarchy, one or more trees.
 pub(crate) struct Tree {
     pub(crate) parents: Vec<Option<usize>>,
-    /// All nodes, each after its parent, and every subtree together.
+    /// All nodes in depth-first order: parents first, every subtree contiguous.
     pub(crate) order: Vec<usize>,
 }
 
@@ -75,7 +74,7 @@ impl Document {
         Ok(Self { root, buffers, decoded })
     }
 
-    /// The nodes' hierarchy.
+    /// The node hierarchy.
     pub(crate) fn tree(&self) -> Result<Tree> {
         let nodes = &self.root.nodes;
         let mut parents = vec![None; nodes.len()];
@@ -94,7 +93,7 @@ impl Document {
                 }
             }
         }
-        // From the roots down; what is never reached is part of a cycle.
+        // From the roots down; a node that is never reached is on a cycle or below one.
         let mut order = Vec::with_capacity(nodes.len());
         let mut open: Vec<usize> = (0..nodes.len()).rev().filter(|i| parents[*i].is_none()).collect();
         while let Some(i) = open.pop() {
@@ -111,7 +110,7 @@ impl Document {
         Ok(Tree { parents, order })
     }
 
-    /// The transform from every node's space to that of the scene.
+    /// The transform from every node's space to scene space.
     pub(crate) fn world_from_nodes(&self, tree: &Tree) -> Vec<Affine3A> {
         let mut world = vec![Affine3A::IDENTITY; self.root.nodes.len()];
         for &i in &tree.order {
@@ -170,7 +169,7 @@ impl Document {
         Ok(rows)
     }
 
-    /// An accessor of rows of four small unsigned integers.
+    /// An accessor of rows of four `u8` or `u16`.
     pub(crate) fn quadruples(&self, index: Index<Accessor>) -> Result<Vec<[u16; 4]>> {
         let (accessor, component) = self.accessor(index)?;
         let size = component.size();
@@ -223,7 +222,7 @@ impl Document {
         }
     }
 
-    /// The bytes of every element, `width` each, after checking that all of them are there.
+    /// The bytes of every element, `width` each, after checking that all are within the buffer view.
     pub(crate) fn elements(
         &self,
         index: Index<Accessor>,
@@ -240,7 +239,7 @@ impl Document {
         if stride < width {
             return Err(Fault::unexpected(format_args!("a byteStride of at least {width}"), stride).into());
         }
-        // What does not fit a `usize` is beyond every view.
+        // A value too large for `usize` is past the end of any buffer view.
         let size = |value: u64| usize::try_from(value).unwrap_or(usize::MAX);
         let (start, count) = (size(accessor.byte_offset.unwrap_or_default().0), size(accessor.count.0));
         if count > MAX_ELEMENTS * 3 {
@@ -275,10 +274,10 @@ impl Document {
     }
 }
 
-/// Numbers per element.
+/// Components per element.
 fn multiplicity(accessor: &Accessor) -> Option<usize> {
     match accessor.type_ {
-        // Its columns are padded for small numbers, which nothing here reads.
+        // Their columns are padded for 8- and 16-bit components; nothing here reads them.
         Checked::Valid(Type::Mat2 | Type::Mat3) | Checked::Invalid => None,
         Checked::Valid(kind) => Some(kind.multiplicity()),
     }
@@ -301,12 +300,12 @@ pub(crate) fn slice(
     })
 }
 
-/// An accessor for a message.
+/// How error messages name an accessor.
 fn named(index: Index<Accessor>) -> impl std::fmt::Display {
     format!("accessor {}", index.value())
 }
 
-/// The error for an accessor of another type.
+/// The error for an accessor of the wrong type.
 fn wrong_type(expected: &str, accessor: &Accessor, component: ComponentType) -> GltfError {
     let shape = match accessor.type_ {
         Checked::Valid(shape) => format!("{shape:?}"),
@@ -319,7 +318,7 @@ fn unknown_component() -> GltfError {
     Fault::unexpected("a componentType of glTF 2.0", "another").into()
 }
 
-/// A node's transform to its parent.
+/// The transform from a node's space to its parent's.
 pub(crate) fn local_transform(node: &Node) -> Affine3A {
     if let Some(matrix) = node.matrix {
         return Affine3A::from_mat4(Mat4::from_cols_array(&matrix));
@@ -331,7 +330,7 @@ pub(crate) fn local_transform(node: &Node) -> Affine3A {
     )
 }
 
-/// The JSON of a file as a document that can be read, and the binary chunk of a `.glb`.
+/// The JSON of a file, its version and required extensions checked, and the binary chunk of a `.glb`.
 fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { split_glb(bytes)? } else { (bytes, None) };
     let root: Root = gltf_json::deserialize::from_slice(json)?;
@@ -348,8 +347,8 @@ fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
     }
 }
 
-/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). Not by the crate `gltf`, which refuses chunks of
-/// unknown kinds, computes with lengths that it has not checked, and does not say where a file ends too early.
+/// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). The crate `gltf` is not used: it rejects chunks
+/// of unknown type, computes with unchecked lengths, and does not say where a truncated file ends.
 fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     let word = |at: usize| {
         let word = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
@@ -383,7 +382,7 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
         if kind == u32::from_le_bytes(*b"BIN\0") {
             return Ok((json, Some(data)));
         }
-        // Chunks of unknown kind are to be skipped.
+        // Chunks of unknown type must be skipped.
         at += 8 + data.len();
     }
     Ok((json, None))

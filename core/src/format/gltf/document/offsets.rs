@@ -1,4 +1,4 @@
-//! Offsets of morph targets: accessors of vectors that may say only which of them are not zero (glTF 2.0, section 3.6.2.3).
+//! Offsets of morph targets: accessors of vectors, which may be sparse (glTF 2.0, section 3.6.2.3).
 
 use gltf_json::accessor::sparse::Sparse;
 use gltf_json::accessor::{ComponentType, Type};
@@ -34,7 +34,7 @@ impl Document {
         if accessor.type_ != Checked::Valid(Type::Vec3) || component.0 != ComponentType::F32 {
             return Err(wrong_type("f32 vectors", accessor, component.0));
         }
-        // Those that are not named have to be zero: a base of others is unheard of among offsets.
+        // Elements that are not listed must be zero: sparse offsets over a dense base do not occur in practice.
         if accessor.buffer_view.is_some() {
             return Err(Fault::unsupported("sparse over a bufferView").into());
         }
@@ -65,7 +65,7 @@ impl Document {
         Ok(rows)
     }
 
-    /// So many bytes of a buffer view from an offset.
+    /// `length` bytes of a buffer view from an offset.
     fn bytes(&self, view: usize, offset: u64, length: usize) -> Result<&[u8]> {
         let view = self.view(view)?;
         let start = usize::try_from(offset).unwrap_or(usize::MAX);

@@ -1,4 +1,4 @@
-//! Content of a buffer's URI (glTF 2.0, section 3.6.1.2).
+//! Resolves a buffer's URI (glTF 2.0, section 3.6.1.2).
 
 use std::path::{Component as PathComponent, Path, PathBuf};
 

@@ -1,9 +1,9 @@
-//! Vertices that texture seams doubled, back as one.
+//! Merges vertices that were duplicated at texture seams.
 
 use crate::scene::SceneMesh;
 
-/// For every vertex the one of the first `vertices` that it is a copy of: the first at the same place that is the same in
-/// the sense of `same`. `Err` has a vertex that is no copy.
+/// For every vertex, the index of its original among the first `vertices`: the first at the same position for which
+/// `same` holds. `Err` holds a vertex that has no original.
 pub(super) fn originals(
     mesh: &SceneMesh,
     vertices: usize,
@@ -27,7 +27,7 @@ pub(super) fn originals(
     Ok(originals)
 }
 
-/// Leaves the first `vertices`. Texture coordinates stay, as every copy has its own.
+/// Keeps the first `vertices` vertices. Texture coordinates are kept, as every copy has its own.
 pub(super) fn merge(mesh: &mut SceneMesh, vertices: usize, originals: &[u32]) {
     let corners = mesh.triangles.positions.iter_mut().flatten();
     corners.for_each(|corner| *corner = originals.get(*corner as usize).copied().unwrap_or(*corner));

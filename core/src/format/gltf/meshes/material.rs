@@ -5,7 +5,7 @@ use gltf_json::{Material, material::AlphaMode as GltfAlphaMode, validation::Chec
 use crate::scene::titles::Titles;
 use crate::scene::{AlphaMode, SceneMaterial};
 
-/// One of a document's materials; its name gets a number where another has it.
+/// Reads a material; its name gets a number if another already has it.
 pub(super) fn read(material: &Material, names: &mut Titles) -> SceneMaterial {
     let pbr = &material.pbr_metallic_roughness;
     let extensions = material.extensions.as_ref();

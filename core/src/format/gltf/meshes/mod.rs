@@ -1,5 +1,5 @@
-//! The surfaces of a document: triangles with `f32` positions, as every exporter writes them by default. Sparse geometry
-//! is refused by name.
+//! The meshes of a document: triangles with `f32` positions, the default of every exporter. Sparse base geometry is
+//! rejected with an error that says so.
 
 mod copies;
 mod material;
@@ -21,10 +21,10 @@ use crate::format::limits::{MAX_ELEMENTS, MAX_MESHES};
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMesh};
 
-/// How far a normal's length may be from 1 to be taken as it is.
+/// How far a normal's length may be from 1 before it is normalised.
 const LENGTH_TOLERANCE: f32 = 1e-3;
 
-/// The meshes alone: those with a skin first, in the bind pose; the others where their nodes place them.
+/// The meshes alone: skinned ones first, in the bind pose, then the others where their nodes place them.
 pub(super) fn scene(document: &Document) -> Result<Scene> {
     let world = document.world_from_nodes(&document.tree()?);
     let mut meshes = Vec::new();
@@ -35,7 +35,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
             place(&mut mesh, &world[node]).within(format_args!("nodes[{node}]"))?;
         }
         normalize_normals(&mut mesh);
-        // Where a tool has moved a copy away from what it was one of, the vertices stay as they are.
+        // If a tool has moved a copy away from its original, no vertices are merged.
         let bits = |v: usize| mesh.positions[v].map(f32::to_bits);
         if let Ok(originals) = originals(&mesh, vertices, |a, b| bits(a) == bits(b)) {
             merge(&mut mesh, vertices, &originals);
@@ -47,7 +47,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
     with_materials(document, meshes.into_iter().map(|(_, mesh)| mesh).collect())
 }
 
-/// A scene of meshes whose materials are places in the document's, one beyond the last for none.
+/// A scene of meshes whose materials are indices into the document's; one past the last means no material.
 pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Result<Scene> {
     let root = &document.root;
     let mut names = Titles::default();
@@ -68,17 +68,17 @@ pub(super) fn with_materials(document: &Document, meshes: Vec<SceneMesh>) -> Res
 
 /// A primitive as a mesh of its own.
 pub(super) struct Part<'a> {
-    /// Its node.
+    /// The index of its node.
     pub(super) node: usize,
     pub(super) primitive: &'a Primitive,
     /// In the space of the mesh, with the file's vertices; its name is unique.
     pub(super) mesh: SceneMesh,
-    /// How many of the first vertices are those of the model; those after them are copies that texture seams needed. All
-    /// of them where the file does not say.
+    /// How many of the first vertices belong to the model; the rest are copies made for texture seams. All of them if
+    /// the file does not say.
     pub(super) vertices: usize,
 }
 
-/// The primitives of all nodes, in the file's order; at least one.
+/// The primitives of all nodes, in file order; at least one.
 pub(super) fn parts(document: &Document) -> Result<Vec<Part<'_>>> {
     let root = &document.root;
     let (mut names, mut targets) = (Titles::default(), Targets::of(document));
@@ -124,7 +124,7 @@ fn part<'a>(
     Ok(Part { node, primitive, mesh, vertices })
 }
 
-/// How many of its vertices are the model's, which our own files say.
+/// How many of the written vertices belong to the model, which our own files state.
 fn model_vertices(mesh: &gltf_json::Mesh, written: usize) -> Result<usize> {
     let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let stated = extras.and_then(|e| e.pointer("/anthronet/vertices").and_then(Value::as_u64));
@@ -136,12 +136,12 @@ fn model_vertices(mesh: &gltf_json::Mesh, written: usize) -> Result<usize> {
     }
 }
 
-/// A primitive's accessor of this meaning.
+/// The accessor of an attribute of a primitive.
 pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Index<Accessor>> {
     primitive.attributes.get(&Checked::Valid(semantic)).copied()
 }
 
-/// All but name and morph targets: positions, normals, texture coordinates, triangles, the place of the material.
+/// All but name and morph targets: positions, normals, texture coordinates, triangles, material index.
 fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
     if primitive.mode != Checked::Valid(Mode::Triangles) {
         return Err(Fault::unsupported("a primitive of other than triangles").into());
@@ -189,7 +189,7 @@ fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
     })
 }
 
-/// Moves a mesh without a skin to where its node places it.
+/// Applies the transform of its node to a mesh without a skin.
 pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Result<()> {
     if *world == Affine3A::IDENTITY {
         return Ok(());
@@ -217,7 +217,7 @@ pub(super) fn place(mesh: &mut SceneMesh, world: &Affine3A) -> Result<()> {
     Ok(())
 }
 
-/// Normals that are clearly longer or shorter than 1 are made to be.
+/// Normalises normals whose length is clearly not 1.
 pub(super) fn normalize_normals(mesh: &mut SceneMesh) {
     for normal in &mut mesh.normals {
         let vector = Vec3::from_array(*normal);
@@ -227,7 +227,7 @@ pub(super) fn normalize_normals(mesh: &mut SceneMesh) {
     }
 }
 
-/// Puts the copies that texture seams needed back onto what they are copies of, in every respect.
+/// Merges the copies made for texture seams into their originals, equal in all but texture coordinates.
 pub(super) fn merge_copies(mesh: &mut SceneMesh, vertices: usize) -> Result<()> {
     let per_vertex = mesh.influences_per_vertex;
     let slots = |v: usize| v * per_vertex..(v + 1) * per_vertex;

@@ -1,5 +1,5 @@
-//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents are ignored, and so are default weights: a scene
-//! rests without its targets.
+//! Morph targets of a primitive (glTF 2.0, section 3.7.2.2). Tangents and default weights are ignored: in a scene at
+//! rest all weights are 0.
 
 use glam::{Mat3A, Vec3};
 use gltf_json::mesh::Primitive;
@@ -11,13 +11,13 @@ use crate::format::gltf::document::Document;
 use crate::scene::titles::Titles;
 use crate::scene::{MorphTarget, SceneMesh};
 
-/// Most vertices of all targets of a document together: a few bytes must not ask for all memory.
+/// Limit on the vertices of all targets of a document: a small file must not demand all memory.
 const MAX_TARGET_VERTICES: usize = 1 << 25;
 
-/// Reads targets of one document.
+/// Reads the morph targets of one document.
 pub(super) struct Targets<'a> {
     document: &'a Document,
-    /// How many vertices targets may still have.
+    /// The remaining budget of target vertices.
     left: usize,
 }
 
@@ -26,7 +26,7 @@ impl<'a> Targets<'a> {
         Self { document, left: MAX_TARGET_VERTICES }
     }
 
-    /// The targets of a primitive, whose surface was read already.
+    /// The targets of a primitive whose surface has already been read.
     pub(super) fn read(
         &mut self,
         mesh: &Mesh,
@@ -63,7 +63,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// What the mesh calls its targets: not part of the standard, but a common convention.
+/// The names of the mesh's targets: not part of the standard, but a common convention.
 fn names(mesh: &Mesh) -> Vec<String> {
     let extras = mesh.extras.as_ref().and_then(|e| gltf_json::deserialize::from_str::<Value>(e.get()).ok());
     let names = extras.as_ref().and_then(|e| e.get("targetNames")).and_then(Value::as_array);
@@ -71,7 +71,7 @@ fn names(mesh: &Mesh) -> Vec<String> {
     names.map(|names| names.iter().map(text).collect()).unwrap_or_default()
 }
 
-/// Turns offsets as the surface is turned, whose normals are still those of the file.
+/// Transforms the offsets with the surface, whose normals must still be those of the file.
 pub(super) fn place(mesh: &mut SceneMesh, matrix: Mat3A, normal_matrix: Mat3A) {
     for target in &mut mesh.morph_targets {
         for offset in &mut target.positions {

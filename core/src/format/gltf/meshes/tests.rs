@@ -185,7 +185,7 @@ fn set_all(json: &mut Value, list: &str, field: &str, value: &Value) {
     }
 }
 
-/// Tools move vertices, and give the copies at a seam normals of their own.
+/// Some tools move vertices, or give the copies at a seam normals of their own.
 #[test]
 fn copies_are_told_by_their_place_and_vertices_that_are_none_stay() {
     let place = |bytes: &[u8], row: [f32; 3]| {
@@ -241,7 +241,7 @@ fn every_truncation_is_an_error() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// No panic, no endless loop, no huge allocation, whatever bytes are wrong.
+    /// No panic, endless loop or huge allocation, whichever bytes are damaged.
     #[test]
     fn flipped_bytes_do_no_harm(flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
         let mut bytes = GLB.clone();
@@ -251,7 +251,7 @@ proptest! {
         let _ = read(&bytes);
     }
 
-    /// The same aimed at the numbers of the JSON, where flips of random bytes seldom parse.
+    /// The same for the numbers in the JSON, as JSON with random flipped bytes seldom parses.
     #[test]
     fn changed_numbers_do_no_harm(at in any::<prop::sample::Index>(), value in prop_oneof![
         Just(u64::MAX), Just(u64::from(u32::MAX)), Just(1 << 31), 0u64..200, any::<u64>()

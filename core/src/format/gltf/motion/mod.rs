@@ -1,8 +1,8 @@
 //! Animations of glTF 2.0 files, binary or JSON (section 3.11 of the specification).
 //!
-//! Joints are the nodes that skins name, or, where there is no skin, those that are animated and all below them; nodes
-//! between and above them are folded in. They rest in the pose of the nodes, which is the one that the format
-//! calls initial. Every animation is sampled at the rate of its keys.
+//! Joints are the nodes listed by skins or, without a skin, the animated nodes and all their descendants; nodes between
+//! and above them are folded in. The rest pose is the nodes' own transforms, which the format calls the initial pose.
+//! Every animation is sampled at the rate of its keys.
 
 use std::collections::BTreeSet;
 
@@ -20,10 +20,10 @@ use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
-/// Most nodes of a document.
+/// Limit on the nodes of a document.
 const MAX_NODES: usize = 1 << 16;
 
-/// Every animation of nodes.
+/// Reads every animation that moves nodes.
 pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMotion> {
     let nodes = &document.root.nodes;
     if nodes.len() > MAX_NODES {
@@ -84,7 +84,7 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
     })
 }
 
-/// What moves nodes, of every animation; of one at least something.
+/// The node tracks of every animation; at least one has some.
 fn tracks(document: &Document) -> Result<Vec<Vec<Track>>> {
     let mut left = animation::MAX_NUMBERS;
     let mut animations = Vec::with_capacity(document.root.animations.len());
@@ -98,14 +98,14 @@ fn tracks(document: &Document) -> Result<Vec<Vec<Track>>> {
     Ok(animations)
 }
 
-/// The nodes that are joints, and what it takes to pose them.
+/// The nodes that are joints, and what is needed to pose them.
 struct Rig<'a> {
     tree: &'a Tree,
-    /// Nodes, parents first.
+    /// Node indices, parents first.
     joints: Vec<usize>,
-    /// For each joint the place of the one above it.
+    /// For each joint, the index of its parent joint.
     parents: Vec<Option<u32>>,
-    /// Joints and all nodes above them, parents first: no other moves a joint.
+    /// Joints and all their ancestors, parents first: no other node moves a joint.
     order: Vec<usize>,
 }
 
@@ -132,7 +132,7 @@ impl<'a> Rig<'a> {
         Ok(Self { tree, joints, parents, order })
     }
 
-    /// The joints in their parents, of the transforms of all nodes.
+    /// `parent_from_joint` of every joint, from the local transforms of all nodes.
     fn pose(&self, transforms: &[Transform]) -> Vec<RigidTransform> {
         let mut world = vec![DAffine3::IDENTITY; transforms.len()];
         for &node in &self.order {
@@ -144,7 +144,7 @@ impl<'a> Rig<'a> {
         parent_from_joints(&rigid, &self.parents)
     }
 
-    /// An animation sampled at its frames. At rest are all nodes, and the joints in their parents.
+    /// Samples an animation at its frames. `at_rest` holds all nodes, `rest` the joints' `parent_from_joint`.
     fn take(
         &self,
         name: String,
@@ -197,7 +197,7 @@ fn name(node: &Node, index: usize) -> String {
     node.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("node{index}"))
 }
 
-/// A node's transform to its parent.
+/// The transform from a node's space to its parent's.
 #[derive(Clone, Copy, Debug)]
 struct Transform {
     translation: DVec3,

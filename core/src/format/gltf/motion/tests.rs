@@ -7,7 +7,7 @@ use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
-/// Numbers of a buffer, with where they lie.
+/// A buffer of numbers with its buffer views and accessors.
 #[derive(Default)]
 struct Buffer {
     bytes: Vec<u8>,
@@ -27,7 +27,7 @@ impl Buffer {
     }
 }
 
-/// An armature scaled to a hundredth over hips and a leg of 50 and 100: the leg turns about X, the hips rise.
+/// An armature scaled by 0.01, over hips at a height of 100 and a leg: the leg rotates about X, the hips rise.
 fn small(times: &[f32]) -> (Value, Vec<u8>) {
     let mut buffer = Buffer::default();
     let time = buffer.add("SCALAR", 1, times);
@@ -85,7 +85,7 @@ fn joints_move_as_their_channels_say() {
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::File));
     assert_eq!((motion.report.unit, motion.report.unit_found), (Unit::Metre, Found::File));
     assert_eq!(clip.skeleton().names(), ["Hips", "Leg"], "parents first");
-    // The armature's scale is in the lengths, and no reason to warn.
+    // The armature's scale is applied to the translations, without a warning.
     assert!(clip.skeleton().rest_pose().locals[1].translation.distance(Vec3::new(0.1, -0.05, 0.0)) < 1e-6);
     assert!(clip.pose(2).locals[0].translation.distance(Vec3::Y * 1.2) < 1e-6);
     assert!(clip.pose(1).locals[1].rotation.dot(Rotation::from_rotation_x(0.5)).abs() > 1.0 - 1e-6);
@@ -120,7 +120,7 @@ fn steps_hold_lines_run_and_splines_curve() {
     }
     assert!(clip.pose(1).locals[1].rotation.dot(Rotation::from_rotation_x(0.25)).abs() > 1.0 - 1e-6);
 
-    // From 100 with a slope of 200 a second to 110 and none: 1/64 · (54 · 100 + 10 · 110) + 0.1 · 9/64 · 200.
+    // A quarter of the way from 100, slope 200 per second, to 110, slope 0: 1/64 · (54 · 100 + 10 · 110) + 0.1 · 9/64 · 200.
     let (mut json, mut data) = small(&[0.0, 0.1]);
     let keys: [f32; 18] = [0., 0., 0., 0., 100., 0., 0., 200., 0., 0., 0., 0., 0., 110., 0., 0., 0., 0.];
     let view = json["bufferViews"].as_array().unwrap().len();
@@ -212,7 +212,7 @@ fn says_what_is_wrong_and_where() {
     ];
     for (expected, spoil) in cases {
         let (mut json, mut data) = small(&[0.0, 0.1]);
-        // Two equal times, for the case of keys that do not rise.
+        // Two equal times, for the case of key times that do not increase.
         let view = json["bufferViews"].as_array().unwrap().len();
         json["bufferViews"]
             .as_array_mut()
@@ -232,7 +232,7 @@ fn says_what_is_wrong_and_where() {
 
 #[test]
 fn numbers_that_are_none_are_found_where_they_are() {
-    // Times, rotations, translations of two keys; the first accessor's numbers lie first.
+    // Times, rotations, translations of two keys, in the order of the buffer.
     let cases = [
         (1, f32::NAN, "animations[0]: channels[0]: input: "),
         (2 + 1, f32::NAN, "animations[0]: channels[0]: output: "),

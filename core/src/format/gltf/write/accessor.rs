@@ -7,7 +7,7 @@ use gltf_json::{
     validation::{Checked, USize64},
 };
 
-/// What a buffer view is for, which glTF wants written down.
+/// What a buffer view is used for, which glTF records as its target.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Usage {
     /// One element per vertex.
@@ -18,7 +18,7 @@ pub(crate) enum Usage {
     Other,
 }
 
-/// A number that an accessor can hold.
+/// A component type of accessors.
 pub(crate) trait Component: Copy {
     const TYPE: ComponentType;
     fn put(self, out: &mut Vec<u8>);
@@ -44,13 +44,13 @@ pub(crate) struct DocumentBuilder {
 }
 
 impl DocumentBuilder {
-    /// Appends `rows` of `N` components as an accessor: `N` = 1, 2, 3, 4 or 16 makes a scalar, a vector, a 4×4 matrix.
+    /// Appends `rows` of `N` components as an accessor: a scalar, vector or 4×4 matrix for `N` = 1, 2 to 4 or 16.
     pub(crate) fn push_accessor<T: Component, const N: usize>(
         &mut self,
         rows: impl IntoIterator<Item = [T; N]>,
         usage: Usage,
     ) -> Index<Accessor> {
-        // The previous view ended on a multiple of four.
+        // The previous view ends on a multiple of four.
         let start = self.bin.len();
         for row in rows {
             row.into_iter().for_each(|component| component.put(&mut self.bin));
@@ -99,7 +99,7 @@ impl DocumentBuilder {
         let bound = |pick: fn(f32, f32) -> f32| {
             let first = rows.first().copied().unwrap_or_default();
             let bound = rows.iter().fold(first, |a, b| std::array::from_fn(|axis| pick(a[axis], b[axis])));
-            // As f64, so that the decimal number in the JSON is the stored one exactly.
+            // As f64, so that the decimal number in the JSON equals the stored one exactly.
             gltf_json::Value::from(bound.map(f64::from).to_vec())
         };
         let (min, max) = (bound(f32::min), bound(f32::max));

@@ -1,10 +1,10 @@
 //! Clips as animations (glTF 2.0, section 3.11).
 //!
-//! Keys lie on frames: key `f` at `f / frames per second`, rounded once to `f32`. One accessor of times serves all
-//! channels of a clip. Where a joint keeps still, it has one key, and none where it stays at rest. Interpolation is
-//! LINEAR, quaternions are of unit length and keep to one sign. `animation.extras.anthronet` holds
-//! `frames_per_second` and `frames`. The weights of a mesh's morph targets are one channel of its node, with a key in every
-//! frame.
+//! Keys fall on frames: key `f` is at `f / frames per second`, rounded once to `f32`. All channels with a key in every
+//! frame share one accessor of key times. A joint that does not move has one key, or none if it stays at rest.
+//! Interpolation is LINEAR; quaternions have unit length and consistent signs. `animation.extras.anthronet` holds
+//! `frames_per_second` and `frames`. The weights of a mesh's morph targets are one channel of its node, with a key in
+//! every frame.
 
 use glam::Vec3;
 use gltf_json::{
@@ -22,11 +22,11 @@ use crate::math::RigidTransform;
 use crate::scene::Scene;
 use crate::skeleton::written::WrittenJoint;
 
-/// How far a component of a quaternion may be from the rest pose's, and metres of a translation, for a joint to count
-/// as resting: what rounding leaves of a pose computed in other ways, a thousandth of a millimetre at arm's length.
+/// Largest difference from the rest pose, per quaternion component and in metres per translation component, for a joint
+/// to count as at rest: the rounding of a pose computed another way, a thousandth of a millimetre at arm's length.
 const REST_TOLERANCE: f32 = 5e-7;
 
-/// Appends a clip of the scene. Joints are nodes `0..joints`, and each mesh has one of the nodes after them.
+/// Appends a clip of the scene. Nodes `0..joints` are the joints, followed by one node per mesh.
 pub(super) fn push(
     builder: &mut DocumentBuilder,
     scene: &Scene,
@@ -52,7 +52,7 @@ pub(super) fn push(
         }
         drop_repetition(track);
     }
-    // A clip lasts as long as its longest track, so one has to have all keys even if nothing moves.
+    // A clip is as long as its longest track, so one track needs all keys even if nothing moves.
     let lasts = rotations.iter().any(|t| t.len() == frames) || translations.iter().any(|t| t.len() == frames);
     if let (false, Some(root)) = (lasts, rotations.first_mut()) {
         *root = joint_rotations(clip, 0);
@@ -77,7 +77,7 @@ pub(super) fn push(
     Ok(())
 }
 
-/// For each mesh the weights of all its targets, frame by frame; none for a mesh that keeps to its own shape.
+/// For each mesh, the weights of all its targets, frame by frame; empty if they are all 0.
 fn weights(scene: &Scene, clip: usize) -> Vec<Vec<[f32; 1]>> {
     let frames = scene.clips[clip].frame_count();
     let mut weights = vec![Vec::new(); scene.meshes.len()];
@@ -100,7 +100,7 @@ fn joint_rotations(clip: &Clip, joint: usize) -> Vec<[f32; 4]> {
     (0..clip.frame_count()).filter_map(|f| clip.rotations(f).get(joint)).map(|r| r.to_array()).collect()
 }
 
-/// One translation per frame; only the one at rest for a joint that keeps still.
+/// One translation per frame, or only the rest translation if the clip has no track for the joint.
 fn joint_translations(clip: &Clip, joint: usize) -> Vec<[f32; 3]> {
     match clip.translations().iter().find(|track| track.joint as usize == joint) {
         Some(track) => track.values.iter().map(Vec3::to_array).collect(),
@@ -115,7 +115,7 @@ fn joint_translations(clip: &Clip, joint: usize) -> Vec<[f32; 3]> {
     }
 }
 
-/// Leaves one key of a track that is the same in all frames.
+/// Reduces a constant track to one key.
 fn drop_repetition<const N: usize>(track: &mut Vec<[f32; N]>) {
     if track.windows(2).all(|w| w[0] == w[1]) {
         track.truncate(1);
@@ -131,15 +131,15 @@ struct Tracks<'a> {
     builder: &'a mut DocumentBuilder,
     rate: f64,
     frames: usize,
-    /// Times of a single key, and of all frames.
+    /// Key times of a single key, and of all frames.
     times: [Option<Index<Accessor>>; 2],
     samplers: Vec<Sampler>,
     channels: Vec<Channel>,
 }
 
 impl Tracks<'_> {
-    /// A track of one value per frame, or of as many as the node's mesh has targets; of one for all frames; or of none,
-    /// which is left out.
+    /// Adds a track of one value per frame (for weights, one per target and frame) or of a single value. Empty tracks
+    /// are left out.
     fn push<const N: usize>(&mut self, node: u32, path: Property, keys: &[[f32; N]]) {
         if keys.is_empty() {
             return;
@@ -162,7 +162,7 @@ impl Tracks<'_> {
             let at = |frame: usize| (frame as f64 / rate) as f32;
             let index = builder.push_accessor((0..keys).map(|f| [at(f)]), Usage::Other);
             if let Some(accessor) = builder.root.accessors.get_mut(index.value()) {
-                // As f64, so that the decimal number in the JSON is the stored one exactly.
+                // As f64, so that the decimal number in the JSON equals the stored one exactly.
                 let bound = |frame| Some(Value::from(vec![f64::from(at(frame))]));
                 (accessor.min, accessor.max) = (bound(0), bound(keys - 1));
             }

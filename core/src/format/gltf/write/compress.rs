@@ -1,9 +1,9 @@
-//! EXT_meshopt_compression, by the reference implementation's encoder.
+//! EXT_meshopt_compression, with the reference implementation's encoder.
 //!
-//! Every buffer view is encoded by itself. Floating-point numbers of geometry and motion go through the EXPONENTIAL
-//! filter: integers times one power of two per component, still `f32` for readers, so that no other extension is
-//! needed. Key times, weights of morph targets, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the codec may
-//! turn the corners of a triangle round. The views lie in a buffer that does not exist: a reader needs the extension.
+//! Every buffer view is encoded separately. Floating-point geometry and motion go through the EXPONENTIAL filter:
+//! integers times one power of two per component, still `f32` for readers, so that no other extension is needed. Key
+//! times, morph target weights, inverse bind matrices and joint indices stay exact. Triangles keep their order, but the
+//! codec may rotate the corners of a triangle. The views refer to a placeholder buffer: a reader needs the extension.
 
 use gltf_json::{
     Buffer, Index, Value,
@@ -21,7 +21,7 @@ use crate::{Error, Result};
 
 const NAME: &str = "EXT_meshopt_compression";
 
-/// Bits of a signed integer, of which the largest number of a component uses all: at 2 m a step is 2⁻²⁰ m.
+/// Bits of the signed mantissa; the largest value of a component uses them all: up to 2 m, a step is 2⁻²⁰ m.
 const POSITION_BITS: i32 = 22;
 /// Steps of 2⁻²⁰.
 const UNIT_BITS: i32 = 22;
@@ -30,7 +30,7 @@ const NORMAL_BITS: i32 = 15;
 /// Steps of 2⁻¹⁵.
 const TEXTURE_BITS: i32 = 17;
 
-/// Encodes all buffer views into the builder's buffer, which becomes buffer 0; [`placeholder`] has to be buffer 1.
+/// Encodes all buffer views into the builder's buffer, which becomes buffer 0; [`placeholder`] must be buffer 1.
 pub(super) fn compress(builder: &mut DocumentBuilder) -> Result<()> {
     let bits = filter_bits(builder);
     let mut compressed = Vec::new();
@@ -88,7 +88,7 @@ pub(super) fn compress(builder: &mut DocumentBuilder) -> Result<()> {
     Ok(())
 }
 
-/// The buffer that the views say they lie in, which a reader fills by decoding.
+/// The placeholder buffer that the views refer to, which a reader fills by decoding.
 pub(super) fn placeholder(byte_length: usize) -> Buffer {
     let others = Map::from_iter([(NAME.to_owned(), json!({"fallback": true}))]);
     Buffer {
@@ -100,7 +100,7 @@ pub(super) fn placeholder(byte_length: usize) -> Buffer {
     }
 }
 
-/// Bits to which each accessor's numbers are rounded; `None` keeps them.
+/// Bits to which each accessor's numbers are rounded; `None` keeps them exact.
 fn filter_bits(builder: &DocumentBuilder) -> Vec<Option<i32>> {
     let root = &builder.root;
     let mut bits = vec![None; root.accessors.len()];
@@ -130,7 +130,7 @@ fn filter_bits(builder: &DocumentBuilder) -> Vec<Option<i32>> {
             if let Some(bits) = sampler.and_then(|s| bits.get_mut(s.output.value())) {
                 *bits = match channel.target.path {
                     Checked::Valid(Property::Rotation) => Some(UNIT_BITS),
-                    // Few numbers, whose rows the filter does not support.
+                    // Few numbers, in rows that the filter does not support.
                     Checked::Valid(Property::MorphTargetWeights) => None,
                     _ => Some(POSITION_BITS),
                 };
@@ -140,13 +140,13 @@ fn filter_bits(builder: &DocumentBuilder) -> Vec<Option<i32>> {
     bits
 }
 
-/// Rows of `N` bytes as they are.
+/// Encodes rows of `N` bytes unchanged.
 fn exact<const N: usize>(bytes: &[u8]) -> Result<Vec<u8>> {
     let (rows, _) = bytes.as_chunks::<N>();
     encode_vertices(rows)
 }
 
-/// Rows of `N` numbers, rounded; `bounds` gets the smallest and largest of every component as decoded.
+/// Encodes rows of `N` numbers, rounded; `bounds` gets the minimum and maximum of each component after decoding.
 fn filtered<const N: usize>(bytes: &[u8], bits: i32, bounds: &mut Option<(Value, Value)>) -> Result<Vec<u8>> {
     let numbers: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
     let (rows, _) = numbers.as_chunks::<N>();
@@ -164,7 +164,7 @@ fn filtered<const N: usize>(bytes: &[u8], bits: i32, bounds: &mut Option<(Value,
 }
 
 fn encode_vertices<T>(rows: &[T]) -> Result<Vec<u8>> {
-    // The extension supports version 0 alone.
+    // The extension supports version 0 only.
     meshopt::encode_vertex_buffer_level(rows, 2, Some(0)).map_err(fault)
 }
 

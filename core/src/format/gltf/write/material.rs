@@ -1,4 +1,4 @@
-//! Materials: metallic-roughness, with the index of refraction and the specular factor where they are not the default.
+//! Materials: metallic-roughness, with index of refraction and specular factor where they differ from the default.
 
 use gltf_json::{
     Material,
@@ -9,7 +9,7 @@ use gltf_json::{
 
 use crate::scene::{AlphaMode, SceneMaterial};
 
-/// Default of KHR_materials_ior, which is not written.
+/// The default of KHR_materials_ior, which is not written.
 const DEFAULT_IOR: f32 = 1.5;
 
 pub(super) fn material(material: &SceneMaterial) -> Material {

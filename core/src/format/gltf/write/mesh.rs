@@ -1,4 +1,4 @@
-//! Meshes: vertices that have one texture coordinate each, triangles, weights (glTF 2.0, section 3.7).
+//! Meshes: vertices with one texture coordinate each, triangles, weights (glTF 2.0, section 3.7).
 
 use gltf_json::{
     Index, Mesh,
@@ -66,7 +66,7 @@ pub(super) fn push(builder: &mut DocumentBuilder, mesh: &SceneMesh, joints: usiz
     }))
 }
 
-/// The offsets of every morph target; `None` for a mesh without.
+/// The offsets of every morph target; `None` for a mesh without targets.
 fn push_targets(
     builder: &mut DocumentBuilder,
     mesh: &SceneMesh,
@@ -87,7 +87,7 @@ fn push_targets(
 
 fn push_indices(builder: &mut DocumentBuilder, split: &SplitMesh) -> Index<Accessor> {
     let corners = split.triangles.iter().flatten();
-    // 65535 would be the highest index, which glTF forbids as it restarts a primitive.
+    // Index 65535 is the primitive restart value, which glTF forbids.
     if split.source.len() < usize::from(u16::MAX) {
         builder.push_accessor(corners.map(|corner| [*corner as u16]), Usage::Indices)
     } else {
@@ -95,8 +95,8 @@ fn push_indices(builder: &mut DocumentBuilder, split: &SplitMesh) -> Index<Acces
     }
 }
 
-/// Four slots of one vertex as they are written: joint 0 where the weight is 0, and the largest weight takes up what
-/// rounding left of the sum.
+/// Four slots of one vertex as written: joint 0 where the weight is 0, and the largest weight absorbs the rounding of
+/// the sum.
 fn written_slots(mesh: &SceneMesh, vertex: usize, set: usize) -> [(u16, f32); 4] {
     let mut slots = [(0, 0.0); 8];
     for (slot, influence) in slots.iter_mut().zip(mesh.influences(vertex)) {

@@ -1,19 +1,19 @@
 //! glTF 2.0: `.glb`, and `.gltf` with its `.bin` beside it.
 //!
-//! What the files promise beyond the standard:
+//! What the files guarantee beyond the standard:
 //! - **Vertex order.** The first `positions.len()` vertices of a mesh are the scene's vertices, in order, each with the
-//!   texture coordinate of its first corner. Duplicates that texture seams need follow after them. The number is in
+//!   texture coordinate of its first corner. Duplicates needed at texture seams follow. The number is in
 //!   `mesh.extras.anthronet.vertices`, and for the body also in the document's `extras.anthronet.vertices`.
 //! - **Faces.** Quads become two triangles along the diagonal from corner 0 to corner 2, in order.
-//! - **Skeleton.** Nodes `0..joints` are the joint tree, in the scene's order; then one node per mesh at the root of
-//!   the scene, without a transform, the body first. All meshes share one skin whose `skeleton` is the root joint.
-//!   The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
-//! - **Morph targets** are dense, with the copies of texture seams moving as what they are copies of. Their names are in
-//!   `mesh.extras.targetNames`; at rest all weights are 0.
-//! - **Weights** are `f32`, exact, their sum made 1 to the last bit that `f32` has; unused slots hold joint 0, weight 0.
+//! - **Skeleton.** Nodes `0..joints` are the joint tree, in the scene's order, followed by one node per mesh at the
+//!   root of the scene, without a transform, the body first. All meshes share one skin whose `skeleton` is the root
+//!   joint. The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
+//! - **Morph targets** are dense, and copies at texture seams move with their originals. Their names are in
+//!   `mesh.extras.targetNames`; the default weights are all 0.
+//! - **Weights** are exact `f32`, adjusted to sum to 1 within `f32` precision; unused slots hold joint 0, weight 0.
 //! - **Clips** are animations of the joint nodes, with all keys on frames; see `animation.rs`.
-//! - The same scene gives the same bytes, and so does the scene that [`read_scene`](crate::format::read_scene)
-//!   reads from a file that is not compressed.
+//! - The same scene gives the same bytes, and so does the scene that [`read_scene`](crate::format::read_scene) reads
+//!   from a file that is not compressed.
 
 mod accessor;
 mod animation;
@@ -37,13 +37,13 @@ use accessor::DocumentBuilder;
 /// All but the unreserved characters of URIs (RFC 3986, section 2.3).
 const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
-/// How a scene is written.
+/// Options for writing a scene as glTF.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GltfOptions {
-    /// Whether to use EXT_meshopt_compression, which a reader must support to open the file. It rounds: positions and
-    /// translations by less than a micrometre, components of rotations and weights by less than a millionth, of
-    /// normals by less than a ten-thousandth, texture coordinates by less than a sixty-thousandth of the picture. The
-    /// corners of a triangle may start at another one, so that the diagonals of quads are not marked any more.
+    /// Whether to use EXT_meshopt_compression, which a reader must support to open the file. It rounds positions and
+    /// translations by less than a micrometre, components of rotations and weights by less than a millionth, those of
+    /// normals by less than a ten-thousandth, and texture coordinates by less than a sixty-thousandth of the image. A
+    /// triangle may start at another of its corners, so the diagonals of quads can no longer be identified.
     pub compress: bool,
 }
 
@@ -52,7 +52,7 @@ pub struct GltfOptions {
 pub struct GltfFiles {
     /// The document, UTF-8 JSON.
     pub json: Vec<u8>,
-    /// The buffer, under the requested name.
+    /// The content of the buffer, a file of the requested name.
     pub bin: Vec<u8>,
 }
 
@@ -64,7 +64,7 @@ pub fn to_glb(scene: &Scene) -> Result<Vec<u8>> {
     to_glb_with(scene, &GltfOptions::default())
 }
 
-/// The scene as one binary glTF file, written in this way.
+/// The scene as one binary glTF file, with the given options.
 ///
 /// # Errors
 /// As [`to_glb`].
@@ -76,7 +76,7 @@ pub fn to_glb_with(scene: &Scene, options: &GltfOptions) -> Result<Vec<u8>> {
 pub(crate) fn glb(builder: DocumentBuilder) -> Result<Vec<u8>> {
     let DocumentBuilder { root, bin } = builder;
     let json = gltf_json::serialize::to_vec(&root).map_err(json_fault)?;
-    // The crate writes the length itself, and does not notice when it does not fit.
+    // The crate writes the length itself, and does not check that it fits.
     let length = 12 + 8 + json.len().next_multiple_of(4) + 8 + bin.len().next_multiple_of(4);
     let too_long =
         || Error::invalid("scene", format!("a .glb holds at most 4 GiB, this needs {length} bytes"));
@@ -94,7 +94,7 @@ pub fn to_gltf(scene: &Scene, bin_name: &str) -> Result<GltfFiles> {
     to_gltf_with(scene, bin_name, &GltfOptions::default())
 }
 
-/// The scene as a JSON document and its buffer, written in this way.
+/// The scene as a JSON document and its buffer, with the given options.
 ///
 /// # Errors
 /// As [`to_gltf`].
@@ -107,7 +107,7 @@ pub fn to_gltf_with(scene: &Scene, bin_name: &str, options: &GltfOptions) -> Res
     Ok(GltfFiles { json, bin })
 }
 
-/// Everything but the buffer.
+/// The whole document but its `buffers`.
 pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
     scene.validate()?;
     let mut builder = DocumentBuilder::default();
@@ -144,7 +144,7 @@ pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
     Ok(builder)
 }
 
-/// The document with its buffer, compressed if wanted.
+/// The document with its buffer, compressed if requested.
 pub(crate) fn finished(
     mut builder: DocumentBuilder,
     options: &GltfOptions,

@@ -10,8 +10,8 @@ use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::Skeleton;
 use crate::skeleton::written::{WrittenJoint, plain};
 
-/// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` says how
-/// long the joint's bone is, which glTF cannot hold.
+/// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` holds
+/// the length of the joint's bone, for which glTF has no field.
 pub(super) fn push(
     builder: &mut DocumentBuilder,
     (name, skeleton): (&str, &Skeleton),

@@ -1,4 +1,4 @@
-//! The written bytes are taken apart by hand here: reading them back with the crate's own importer would prove little.
+//! These tests parse the written bytes by hand: reading them back with the crate's own importer would prove little.
 
 mod motion;
 
@@ -116,7 +116,7 @@ fn the_first_vertices_are_the_scenes_and_the_seam_follows() {
     assert_eq!(file.size("/meshes/0/extras/anthronet/vertices"), 15);
     assert_eq!(file.size("/extras/anthronet/vertices"), 15);
     assert_eq!(file.json["extras"]["asked"]["arm_length"], 0.6);
-    // The sleeve's first quad, then the one that closes the first ring through the copies.
+    // The sleeve's first quad, then the one that closes the first ring using the copies.
     let indices = file.indices(0);
     assert_eq!(indices[..6], [0, 1, 6, 0, 6, 5]);
     assert_eq!(indices[24..30], [4, 15, 16, 4, 16, 9]);
@@ -142,7 +142,7 @@ fn rest_pose_is_the_bind_pose() {
     let inverse_bind = file.accessor(file.size("/skins/0/inverseBindMatrices"));
     for ((i, world), inverse) in file.joints().iter().enumerate().zip(inverse_bind.chunks_exact(16)).take(3) {
         let product = *world * DMat4::from_cols_slice(inverse);
-        // One rounding of a matrix of numbers near 1 to f32.
+        // One rounding to f32 of matrix elements near 1.
         assert!(product.abs_diff_eq(DMat4::IDENTITY, 3e-7), "joint {i}: {product}");
         assert_eq!([inverse[3], inverse[7], inverse[11], inverse[15]], [0.0, 0.0, 0.0, 1.0]);
         let wanted = scene.skeleton.as_ref().unwrap().bind()[i];
@@ -180,7 +180,7 @@ fn skinned_vertices_stay_where_they_are_in_the_rest_pose() {
 fn weights_are_exact_sorted_and_unused_slots_are_clean() {
     for influences in [4, 8] {
         let mut scene = arm(influences);
-        // Off by more than rounding, less than validation refuses.
+        // More than rounding, less than validation rejects.
         scene.meshes[0].joint_weights[influences * 5] += 4e-6;
         let file = Parsed::glb(&to_glb(&scene).unwrap());
         let sets = influences / 4;
@@ -239,7 +239,7 @@ fn indices_widen_when_they_must() {
         let highest = file.indices(0).into_iter().max().unwrap();
         (file.size(&format!("/accessors/{accessor}/componentType")), highest)
     };
-    // Six written vertices a ring.
+    // Six written vertices per ring.
     assert_eq!(component(10_922), (5123, 65_531));
     assert_eq!(component(10_923), (5125, 65_537));
 }

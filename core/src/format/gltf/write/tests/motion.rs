@@ -1,4 +1,4 @@
-//! Animations, VRM and compression in the written bytes, taken apart by hand.
+//! Animations, VRM and compression in the written bytes, parsed by hand.
 
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ fn what_keeps_still_has_one_key_and_what_rests_none() {
     let mut scene = arm(4);
     let rest = rest(&scene);
     let q: Vec<Rotation> = rest.rest_rotations().collect();
-    // The root as it rests, the next joint turned and still, the last one moving.
+    // The root at rest, the next joint rotated but still, the last one moving.
     let rotations = (0..4).flat_map(|frame| {
         [q[0], q[1] * Rotation::from_rotation_x(0.5), q[2] * Rotation::from_rotation_y(0.1 * frame as f32)]
     });
@@ -93,7 +93,7 @@ fn a_clip_in_which_nothing_moves_lasts_as_long() {
     assert_eq!(lengths, [vec![1.0], vec![0.0]]);
 }
 
-/// A rig of joints with humanoid names, in a vocabulary, on the meshes of the arm.
+/// A rig of joints with humanoid names in one naming scheme, on the meshes of the arm.
 fn humanoid(names: JointNames) -> Scene {
     let mut scene = arm(4);
     let bones = humanoid_bones().iter().enumerate().skip(3);
