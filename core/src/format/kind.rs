@@ -98,7 +98,7 @@ pub(crate) enum Write {
 pub(crate) struct Description {
     /// File extension, in lower case, without the dot.
     pub(crate) ending: &'static str,
-    /// What people call it.
+    /// Display name.
     pub(crate) title: &'static str,
     pub(crate) holds: Holds,
     pub(crate) read_motion: Option<ReadMotion>,

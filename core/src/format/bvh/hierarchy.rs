@@ -8,7 +8,7 @@ use crate::error::Fault;
 use crate::format::bvh::Result;
 use crate::skeleton::MAX_JOINTS;
 
-/// One number of a frame.
+/// The meaning of one value of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Channel {
     /// Translation along an axis.

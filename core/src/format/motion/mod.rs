@@ -82,7 +82,7 @@ pub struct ReadReport {
     pub rate_found: Found,
     /// Approximate stature of the body, metres, from the lengths of its bones; 0 without bones.
     pub stature: f64,
-    /// What was corrected or assumed, or looks wrong.
+    /// Corrections, assumptions and suspicious values.
     pub warnings: Vec<String>,
 }
 
@@ -91,7 +91,7 @@ pub struct ReadReport {
 pub struct Motion {
     /// The clips, which share a rest pose.
     pub clips: Vec<Clip>,
-    /// How the file was understood.
+    /// How the file was interpreted.
     pub report: ReadReport,
 }
 
