@@ -1,28 +1,28 @@
-//! The kinds of faults that files of all formats share.
+//! The kinds of faults common to all file formats.
 
 use std::fmt::Display;
 
-/// What is wrong at one place of a file, without the place.
+/// What is wrong at some location in a file, without the location.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// A word, number, type or size other than the format allows.
+    /// A word, number, type or size that the format does not allow.
     #[error("expected {expected}, got {found}")]
     Unexpected {
-        /// What the format allows there.
+        /// What the format allows.
         expected: String,
-        /// What the file has.
+        /// What the file contains.
         found: String,
     },
     /// The file, or a part of it, ends too early.
     #[error("truncated: expected {expected}, got {found}")]
     Truncated {
-        /// What should have come.
+        /// What was expected.
         expected: String,
-        /// What came.
+        /// What was found.
         found: String,
     },
-    /// A part that has to be there is not.
+    /// A required part is missing.
     #[error("has no {what}")]
     Missing {
         /// The part.
@@ -31,36 +31,36 @@ pub enum Fault {
     /// A number is infinite or not a number.
     #[error("{what}: {found} is not finite")]
     NotFinite {
-        /// What the number belongs to.
+        /// The quantity.
         what: String,
-        /// The number, or those around it.
+        /// The number, or the value that contains it.
         found: String,
     },
-    /// More of something than is read.
+    /// More of something than the reader's limit.
     #[error("expected at most {most}, got {found}")]
     TooMany {
         /// The limit and what it limits.
         most: String,
-        /// What the file has, or asks for.
+        /// What the file contains or demands.
         found: String,
     },
-    /// The file refers to something that it does not have.
+    /// The file references an element that does not exist.
     #[error("{what} {index} does not exist, there are {count}")]
     Dangling {
-        /// What is referred to.
+        /// The kind of element.
         what: String,
-        /// Its place, as the file counts.
+        /// Its index, as counted in the file.
         index: i64,
-        /// How many there are.
+        /// Number of such elements.
         count: usize,
     },
-    /// The format allows it, but it is not read here.
+    /// Valid in the format, but not supported by this reader.
     #[error("{what} is not supported")]
     Unsupported {
-        /// The part of the format.
+        /// The feature.
         what: String,
     },
-    /// Parts of the file contradict each other.
+    /// Parts of the file are inconsistent with each other.
     #[error("{0}")]
     Inconsistent(String),
 }
@@ -99,11 +99,11 @@ impl Fault {
     }
 }
 
-/// The error of a parser for bytes that it cannot read.
+/// The error of a third-party parser for bytes that it cannot read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParserError {
-    /// It refused them, with this message.
+    /// It returned an error with this message.
     #[error("{0}")]
     Refused(String),
     /// It panicked.

@@ -1,5 +1,5 @@
-//! The errors of the readers of files, one for each format: a [`Fault`] or the message of a parser, and where in the file
-//! it is.
+//! The errors of the file readers, one type per format: a [`Fault`] or the message of a parser, and its location in the
+//! file.
 
 use std::fmt::Display;
 
@@ -9,10 +9,10 @@ use super::{Error, Fault, ParserError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormatError {
-    /// The ending of the path is not that of a format for the purpose.
+    /// The file extension is not that of a format supported for the purpose.
     #[error("unknown ending, expected one of {expected}")]
     Ending {
-        /// The endings that would do, with their dots.
+        /// The supported extensions, with their dots.
         expected: String,
     },
     /// A BVH file.
@@ -33,20 +33,20 @@ pub enum FormatError {
     /// A USD file.
     #[error(transparent)]
     Usd(#[from] UsdError),
-    /// A file of any format, as a whole.
+    /// A fault that is not specific to a format.
     #[error(transparent)]
     Fault(#[from] Fault),
-    /// A mapping of joints.
+    /// A joint mapping.
     #[error(r#"expected {{"source joint": "joint of ours" or null}}: {0}"#)]
     Mapping(serde_json::Error),
-    /// What the file holds could be read, but contradicts itself or is not what it is to be used for.
+    /// The file could be read, but its content is inconsistent or unsuitable for its use.
     #[error(transparent)]
     Content(#[from] Box<Error>),
 }
 
 impl FormatError {
-    /// The kind of fault, whatever the format and the place; `None` where the message is that of a parser or of another
-    /// part of the library.
+    /// The kind of fault, regardless of format and location; `None` where the message is from a parser or from another part of
+    /// the library.
     pub fn fault(&self) -> Option<&Fault> {
         match self {
             Self::Bvh(error) => Some(&error.fault),
@@ -61,15 +61,15 @@ impl FormatError {
     }
 }
 
-/// An error that can say where in its file it is.
+/// An error that can state its location in the file.
 pub(crate) trait Located: Sized {
-    /// The error within a larger part: `place` goes before the place that it has.
+    /// The error inside an enclosing part: `place` is prepended to the location.
     fn within(self, place: String) -> Self;
 }
 
 /// [`Located`] errors of results.
 pub(crate) trait Within {
-    /// Says in which part of the file the error is, if there is one.
+    /// States the part of the file that an error, if any, is in.
     fn within(self, place: impl Display) -> Self;
 }
 
@@ -79,7 +79,7 @@ impl<T, E: Located> Within for Result<T, E> {
     }
 }
 
-/// Declares the error of a format whose parts are identified by a path within the file.
+/// Declares the error type of a format whose parts are identified by a path within the file.
 macro_rules! located_error {
     ($(#[$doc:meta])* $name:ident { $($(#[$attribute:meta])* $variant:ident($($content:tt)*),)* }) => {
         $(#[$doc])*
@@ -89,19 +89,19 @@ macro_rules! located_error {
             /// Something is wrong in a part of the file.
             #[error("{path}: {source}")]
             In {
-                /// The part, from the whole to the detail.
+                /// The part, from the outermost to the innermost.
                 path: String,
                 /// What is wrong there.
                 source: Box<Self>,
             },
-            /// Something is wrong with the file as a whole, or with the part that [`In`](Self::In) names.
+            /// Something is wrong with the whole file, or with the part stated by an enclosing [`In`](Self::In).
             #[error(transparent)]
             Fault(#[from] Fault),
             $($(#[$attribute])* $variant($($content)*),)*
         }
 
         impl $name {
-            /// The kind of fault, whatever its place; `None` for the message of a parser.
+            /// The kind of fault, regardless of location; `None` for the message of a parser.
             pub fn fault(&self) -> Option<&Fault> {
                 match self {
                     Self::In { source, .. } => source.fault(),
@@ -122,7 +122,7 @@ macro_rules! located_error {
     };
 }
 
-/// Something is wrong in a line of a BVH file.
+/// Something is wrong on a line of a BVH file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {fault}")]
 pub struct BvhError {
@@ -137,7 +137,7 @@ pub struct BvhError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObjError {
-    /// In one line.
+    /// On one line.
     #[error("line {line}: {fault}")]
     Line {
         /// The line, from 1.
@@ -152,7 +152,7 @@ pub enum ObjError {
 }
 
 impl ObjError {
-    /// The kind of fault, whatever its place.
+    /// The kind of fault, regardless of location.
     pub fn fault(&self) -> &Fault {
         match self {
             Self::Line { fault, .. } | Self::Whole(fault) => fault,
@@ -163,10 +163,10 @@ impl ObjError {
 located_error! {
     /// Something is wrong in an archive of numpy arrays; parts are identified by the name of the array.
     NpzError {
-        /// The parser of the archive or of an array cannot read it.
+        /// The parser cannot read the archive or an array.
         #[error("{0}")]
         Parser(#[from] ParserError),
-        /// The joints contradict each other.
+        /// The joints are inconsistent.
         #[error("{0}")]
         Content(#[from] Box<Error>),
     }
@@ -178,7 +178,7 @@ located_error! {
         /// The parser cannot read it.
         #[error("is damaged or truncated: {0}")]
         Parser(#[from] ParserError),
-        /// The joints contradict each other.
+        /// The joints are inconsistent.
         #[error("{0}")]
         Content(#[from] Box<Error>),
     }
@@ -187,13 +187,13 @@ located_error! {
 located_error! {
     /// Something is wrong in a glTF or VRM file; parts are identified as in `nodes[3].mesh: POSITION: accessor 7`.
     GltfError {
-        /// The JSON is not that of a glTF document.
+        /// The JSON is not a valid glTF document.
         #[error("is neither a binary glTF nor valid glTF JSON: {0}")]
         Json(#[from] gltf_json::Error),
         /// A compressed buffer view cannot be decoded.
         #[error("{0}")]
         Parser(#[from] ParserError),
-        /// The document could be read, but its skeleton, clips or meshes contradict each other.
+        /// The document could be read, but its skeleton, clips or meshes are inconsistent.
         #[error("{0}")]
         Content(#[from] Box<Error>),
     }
@@ -205,7 +205,7 @@ located_error! {
         /// The parser cannot read it.
         #[error("{0}")]
         Parser(#[from] ParserError),
-        /// The layer could be read, but its skeleton, clips or meshes contradict each other.
+        /// The layer could be read, but its skeleton, clips or meshes are inconsistent.
         #[error("{0}")]
         Content(#[from] Box<Error>),
     }

@@ -9,7 +9,7 @@ pub use fault::{Fault, ParserError};
 pub use format::{BvhError, FbxError, FormatError, GltfError, NpzError, ObjError, UsdError};
 pub(crate) use format::{Located, Within};
 
-/// What the library's fallible functions return.
+/// The result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Everything that can go wrong, grouped by what the caller can do about it.
@@ -19,23 +19,23 @@ pub enum Error {
     /// A field of a request is unknown, not finite, out of range or of the wrong size.
     #[error("{field}: {message}")]
     Request {
-        /// The field as the caller wrote it, such as `height` or `z`.
+        /// The field as named by the caller, such as `height` or `z`.
         field: String,
-        /// What was expected and what was found, with a hint where there is one.
+        /// What was expected and what was found, with a hint where possible.
         message: String,
     },
     /// The given measures cannot belong to one person.
     #[error("{0}")]
     Infeasible(Infeasible),
-    /// The model file is damaged, of another version or does not match this library.
+    /// The model file is damaged, has another version or does not match this library.
     #[error("model {origin}: {message}")]
     Model {
         /// Path of the file, or `(embedded)`, or `(memory)`.
         origin: String,
-        /// What was expected and what came.
+        /// What was expected and what was found.
         message: String,
     },
-    /// A file that was read is not what it should be.
+    /// The content of a file is not what it should be.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
@@ -53,28 +53,28 @@ pub enum Error {
         /// The operating system's error.
         source: std::io::Error,
     },
-    /// Data handed to an exporter or a constructor contradicts itself.
+    /// Data passed to an exporter or a constructor is inconsistent.
     #[error("{what}: {message}")]
     Invalid {
-        /// The thing that is wrong, such as `joint weights`.
+        /// The invalid item, such as `joint weights`.
         what: &'static str,
-        /// What was expected and what came.
+        /// What was expected and what was found.
         message: String,
     },
 }
 
-/// Why a request is refused that no body can meet; displays as one sentence per conflict.
+/// Why no body can meet a request; displays as one sentence per conflict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Infeasible {
     /// The conflicts, in the order in which they were found; not empty in an [`Error::Infeasible`].
     pub conflicts: Vec<Conflict>,
 }
 
-/// Given measures that contradict each other, or that contradict the corrected values of earlier conflicts; a measure is
-/// in one conflict only.
+/// Requested measures that contradict each other, or contradict the corrected values of earlier conflicts; no measure is in
+/// more than one conflict.
 ///
-/// The set is minimal: without any one of its names, the rest is feasible. A conflict of up to four names is also one of
-/// the fewest names possible. Only a request with more than three conflicts ends with one of all remaining measures.
+/// The set is minimal: without any one of its measures, the rest is feasible. A conflict of up to four measures is also one
+/// of the smallest possible. Only a request with more than three conflicts ends with one of all remaining measures.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Conflict {
     /// The measures, in order.
@@ -86,7 +86,7 @@ pub struct Conflict {
 /// One measure of a [`Conflict`], metres.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ConflictMeasure {
-    /// Identifier, with its side.
+    /// Identifier of the measure, including its side.
     pub name: &'static str,
     /// The value in the request.
     pub asked: f64,
@@ -114,13 +114,13 @@ impl Error {
         Self::File { path: path.as_ref().to_path_buf(), source: source.into() }
     }
 
-    /// An error about data that contradicts itself.
+    /// An error about inconsistent data.
     pub fn invalid(what: &'static str, message: impl Into<String>) -> Self {
         Self::Invalid { what, message: message.into() }
     }
 }
 
-/// Levenshtein distance of two names in characters, to suggest the one that was meant. Only the first 64 characters are
+/// Levenshtein distance of two names in characters, for suggesting the intended one. Only the first 64 characters are
 /// compared: no known name is longer.
 pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
     let characters = |name: &str| name.chars().take(64).collect::<Vec<char>>();

@@ -1,4 +1,4 @@
-//! Parsers of others that may panic on damaged files: the panic becomes an error.
+//! Third-party parsers may panic on damaged files: the panic becomes an error.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -6,15 +6,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::error::ParserError;
 
 thread_local! {
-    /// Whether this thread is within [`guarded`].
+    /// Whether this thread is inside [`guarded`].
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic of this thread would become an error about a damaged file, which needs no report.
+/// Whether a panic on this thread is caught and returned as an error about a damaged file, so it needs no report.
 ///
-/// The parser of USD promises errors, but it is young, and where a damaged file makes it panic the library catches that.
-/// Rust's own panic hook still writes to standard error, which belongs to the program, and so does the choice of the hook.
-/// A program that wants it quiet installs one at its start:
+/// The USD parser promises errors, but it is young and may still panic on a damaged file; the library catches that.
+/// Rust's panic hook still writes to standard error, which belongs to the program, as does the choice of hook. A program
+/// that wants it quiet installs one at startup:
 ///
 /// ```
 /// let before = std::panic::take_hook();
@@ -28,8 +28,7 @@ pub fn panic_becomes_error() -> bool {
     GUARDED.get()
 }
 
-/// Runs what decodes untrusted bytes: its errors, with their causes, and its panics become a
-/// [`ParserError`].
+/// Runs a decoder of untrusted bytes: its errors, with their causes, and its panics become a [`ParserError`].
 pub(super) fn guarded<T, E: std::error::Error>(
     decode: impl FnOnce() -> Result<T, E>,
 ) -> Result<T, ParserError> {
@@ -42,7 +41,7 @@ pub(super) fn guarded<T, E: std::error::Error>(
     }
 }
 
-/// An error with its causes.
+/// The message of an error and of its causes.
 fn chain(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();
     let mut cause = error.source();

@@ -1,4 +1,4 @@
-//! The formats, and what can be done with each.
+//! The formats, and what each of them supports.
 
 use std::{ffi::OsStr, path::Path};
 
@@ -9,10 +9,10 @@ use crate::error::FormatError;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
-/// Declares [`Format`] of one line per format: the documentation, the name, and the description in its folder.
+/// Declares [`Format`] from one line per format: documentation, name, and the description in the format's folder.
 macro_rules! formats {
     ($($(#[$doc:meta])* $format:ident = $description:path,)*) => {
-        /// A file format, decided by the ending of a path. More may come.
+        /// A file format, chosen by the file extension. More may be added.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Format {
@@ -32,34 +32,34 @@ macro_rules! formats {
     };
 }
 
-// Messages list the endings in this order.
+// Messages list the extensions in this order.
 formats! {
-    /// BVH, a hierarchy of joints and one motion, as text.
+    /// BVH, a joint hierarchy and one motion, as text.
     Bvh = bvh::BVH,
-    /// Motion of AMASS and of the SMPL family, an archive of numpy arrays.
+    /// Motion of AMASS and the SMPL family, an archive of numpy arrays.
     Npz = npz::NPZ,
     /// FBX, binary or text.
     Fbx = fbx::FBX,
-    /// glTF 2.0 in one binary file.
+    /// glTF 2.0 as one binary file.
     Glb = gltf::GLB,
-    /// glTF 2.0 as JSON, its buffers beside it.
+    /// glTF 2.0 as JSON with its buffers in separate files.
     Gltf = gltf::GLTF,
-    /// VRM 1.0, a character in a binary glTF.
+    /// VRM 1.0, a humanoid character as a binary glTF.
     Vrm = vrm::VRM,
     /// USD as text.
     Usda = usd::USDA,
-    /// USD as a crate file, its binary form.
+    /// USD as a crate file, its binary encoding.
     Usdc = usd::USDC,
-    /// USD as a package, a zip archive of a crate file.
+    /// USD as a package, a zip archive with a crate file.
     Usdz = usd::USDZ,
-    /// Wavefront OBJ, surfaces alone.
+    /// Wavefront OBJ, meshes only.
     Obj = obj::OBJ,
 }
 
-/// What a format can hold, whether or not it is read or written here.
+/// What a format can store, whether or not this library reads or writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Holds {
-    /// Surfaces.
+    /// Meshes.
     pub meshes: bool,
     /// A joint tree.
     pub skeleton: bool,
@@ -67,7 +67,7 @@ pub struct Holds {
     pub clips: bool,
 }
 
-/// What a file is for.
+/// What a file is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// [`read_motion`](super::read_motion).
@@ -80,9 +80,9 @@ pub enum Purpose {
     WriteScene,
 }
 
-/// From a file's bytes to a motion. The path is for messages, for files beside it and for the name of a clip without one.
+/// Reads a motion from a file's bytes. The path is for messages, files beside it, and the name of an unnamed clip.
 pub(crate) type ReadMotion = fn(&[u8], &Path, &ReadOptions) -> Result<RawMotion>;
-/// From a file's bytes to a scene. The path is for messages and for files beside it.
+/// Reads a scene from a file's bytes. The path is for messages and files beside it.
 pub(crate) type ReadScene = fn(&[u8], &Path) -> Result<Scene>;
 
 /// How a format is written.
@@ -90,15 +90,15 @@ pub(crate) type ReadScene = fn(&[u8], &Path) -> Result<Scene>;
 pub(crate) enum Write {
     /// As one file.
     Alone(fn(&Scene, &WriteOptions) -> Result<Vec<u8>>),
-    /// As a document with a buffer beside it, under the name that is given.
+    /// As a document and a buffer in a separate file with the given name.
     WithBuffer(fn(&Scene, &str, &WriteOptions) -> Result<gltf::GltfFiles>),
 }
 
 /// The description of a format, from its folder.
 pub(crate) struct Description {
-    /// The ending of its files, in lower case, without the dot.
+    /// File extension, in lower case, without the dot.
     pub(crate) ending: &'static str,
-    /// What people call it.
+    /// Display name.
     pub(crate) title: &'static str,
     pub(crate) holds: Holds,
     pub(crate) read_motion: Option<ReadMotion>,
@@ -108,48 +108,48 @@ pub(crate) struct Description {
 }
 
 impl Format {
-    /// The ending of its files, in lower case, without the dot: `glb`.
+    /// File extension, in lower case, without the dot: `glb`.
     pub const fn ending(self) -> &'static str {
         self.description().ending
     }
 
-    /// What people call it: `glTF 2.0, binary`.
+    /// Display name: `glTF 2.0, binary`.
     pub const fn title(self) -> &'static str {
         self.description().title
     }
 
-    /// What the format can hold.
+    /// What the format can store.
     pub const fn holds(self) -> Holds {
         self.description().holds
     }
 
-    /// Whether it serves a purpose here.
+    /// Whether the library supports the format for this purpose.
     pub fn serves(self, purpose: Purpose) -> bool {
         purpose.is_served_by(self.description())
     }
 
-    /// The formats that serve a purpose, in the order in which messages list them.
+    /// The formats supported for a purpose, in the order in which messages list them.
     pub fn serving(purpose: Purpose) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |format| format.serves(purpose))
     }
 
-    /// The format of an ending, without its dot, in any case.
+    /// The format with this file extension, without the dot, in any case.
     pub fn of_ending(ending: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.ending().eq_ignore_ascii_case(ending))
     }
 
-    /// The format of a path's ending, in any case, for a purpose.
+    /// The format of a path's extension, in any case, for a purpose.
     ///
     /// # Errors
-    /// [`Error::File`] for a path without an ending or with one that does not serve the purpose; it lists those that do.
+    /// [`Error::File`] for a path without an extension or with one not supported for the purpose; it lists those that are.
     pub fn of_path(path: &Path, purpose: Purpose) -> Result<Self> {
         able(path, |description| purpose.is_served_by(description).then_some(())).map(|(format, ())| format)
     }
 
-    /// The format that hosts name by an ending, of those that are written as one file.
+    /// The single-file output format with this extension, as hosts name it.
     ///
     /// # Errors
-    /// [`Error::Request`] for any other; it lists those that are.
+    /// [`Error::Request`] for any other name; it lists the valid ones.
     pub fn of_one_file(name: &str) -> Result<Self> {
         Self::of_ending(name).filter(|format| format.is_one_file()).ok_or_else(|| Self::one_file_fault(name))
     }
@@ -158,7 +158,7 @@ impl Format {
         matches!(self.description().write, Some(Write::Alone(_)))
     }
 
-    /// What is said of a format that is not written as one file.
+    /// The error for a format that is not written as a single file.
     pub(super) fn one_file_fault(name: &str) -> Error {
         let one_file = Self::ALL.iter().copied().filter(|format| format.is_one_file());
         let known: Vec<&str> = one_file.map(Self::ending).collect();
@@ -166,7 +166,7 @@ impl Format {
         Error::request("format", format!("{expected}, got `{name}`"))
     }
 
-    /// How it is written, if it is.
+    /// How the format is written, if it is.
     pub(super) fn writer(self) -> Option<Write> {
         self.description().write
     }
@@ -183,10 +183,10 @@ impl Purpose {
     }
 }
 
-/// The format of a path's ending, in any case, of those that have an ability; and the ability.
+/// The format of a path's extension, in any case, and its ability, among the formats that have that ability.
 ///
 /// # Errors
-/// [`Error::File`] for any other ending; it lists those that have it.
+/// [`Error::File`] for any other extension; it lists those that have it.
 pub(super) fn able<T>(
     path: &Path,
     ability: impl Fn(&'static Description) -> Option<T>,

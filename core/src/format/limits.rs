@@ -1,6 +1,6 @@
-//! What no file of characters needs more of: a few bytes must not ask for all memory.
+//! Limits that no character file needs to exceed: a few bytes must not allocate all memory.
 
-/// Most vertices, and most triangles, of all meshes of one file together.
+/// Maximum number of vertices, and of triangles, over all meshes of a file.
 pub(crate) const MAX_ELEMENTS: usize = 4 << 20;
-/// Most meshes of one file.
+/// Maximum number of meshes of a file.
 pub(crate) const MAX_MESHES: usize = 1 << 16;

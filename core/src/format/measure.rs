@@ -1,4 +1,4 @@
-//! Measuring the body of a file.
+//! Measures the body in a file.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use crate::error::Fault;
 use crate::model::{MeasuredMesh, Model};
 use crate::{Error, Result};
 
-/// Measures the body of a file: its first mesh, at any level of detail, in any format that
+/// Measures the body in a file: its first mesh, at any level of detail, in any format that
 /// [`read_meshes`](super::read_meshes) reads.
 ///
 /// # Errors
-/// As [`read_meshes`](super::read_meshes); [`Error::File`] for a file without a mesh, or whose first mesh is no body of the
-/// model's vertex order.
+/// As [`read_meshes`](super::read_meshes); [`Error::File`] for a file without a mesh, or whose first mesh is not a body in
+/// the model's vertex order.
 pub fn measure_file(model: &Model, path: impl AsRef<Path>) -> Result<MeasuredMesh> {
     let path = path.as_ref();
     let scene = super::read_meshes(path)?;

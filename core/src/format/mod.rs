@@ -1,21 +1,21 @@
-//! Files: what is read of them and written to them.
+//! Reading and writing files.
 //!
 //! | To | Call | Returns |
 //! |---|---|---|
 //! | read a character | [`read_scene`] | a [`Scene`](crate::scene::Scene) with skeleton, skin, materials and clips |
-//! | read surfaces alone | [`read_meshes`] | a scene of meshes, in the bind pose, without a skeleton |
-//! | read the motion of any skeleton | [`read_motion`] | [`Motion`]: clips, and how the file was understood |
-//! | write a character | [`write_scene`] | a file, whole or not at all |
+//! | read meshes only | [`read_meshes`] | a scene of meshes, in the bind pose, without a skeleton |
+//! | read the motion of any skeleton | [`read_motion`] | [`Motion`]: clips, and how the file was interpreted |
+//! | write a character | [`write_scene`] | a file, written completely or not at all |
 //!
 //! Each has a variant for bytes in memory: [`read_scene_from_bytes`], [`read_meshes_from_bytes`],
-//! [`read_motion_from_bytes`], [`write_scene_to_bytes`]. The ending of the path chooses the [`Format`].
+//! [`read_motion_from_bytes`], [`write_scene_to_bytes`]. The file extension chooses the [`Format`].
 //!
 //! # One folder per format
 //!
-//! A folder has as many of these as apply: `document` (bytes to a parsed document, every size checked), `motion` (document
-//! to `motion::raw::RawMotion`), `character` and `meshes` (document to scene), `write` (scene to bytes). What the
-//! folder offers is in one `kind::Description`, which [`Format`] lists: a new format is a folder and a line
-//! there.
+//! A folder has those of these modules that apply: `document` (bytes to a parsed document, every size checked), `motion`
+//! (document to `motion::raw::RawMotion`), `character` and `meshes` (document to scene), `write` (scene to bytes). One
+//! `kind::Description` lists what the folder supports, and [`Format`] lists the descriptions: a new format is a folder
+//! and a line there.
 
 mod bvh;
 mod disk;

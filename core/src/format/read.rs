@@ -1,4 +1,4 @@
-//! Reading: the format by the ending, then the reader of its folder.
+//! Reading: the file extension chooses the format, whose folder has the reader.
 
 use std::path::Path;
 
@@ -11,23 +11,22 @@ use crate::{Error, Result};
 /// Reads a character: joints and bind pose, meshes with texture coordinates and weights, materials, extras, clips. From
 /// `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usda`, `.usdc`, `.usdz`. Metres, +Y up. The scene validates.
 ///
-/// What a scene has no place for is not read: pictures, cameras, lights, motion of anything but the skeleton and the
-/// morph targets. Faces of glTF come back as triangles, those of USD as they are. Files of ours come back in model
-/// order, with texture seams merged; those of others as they are. A skeleton must have one root and no scale; nodes
-/// above and between its joints are folded into the joints. Where the rest pose is not the bind pose, the scene is in
-/// the bind pose. Meshes of a character without a skin have to be below a joint and are bound to it.
+/// Ignored is what a scene cannot represent: images, cameras, lights, animation of anything but the skeleton and the morph
+/// targets. glTF faces are triangles; USD faces are kept. Files written by this library come back in the model's vertex
+/// order with UV seams merged; other files keep their vertices. A skeleton must have one root and no scale; nodes above
+/// and between its joints are folded into the joints. Where the rest pose differs from the bind pose, the scene is in the
+/// bind pose. In a character without a skin, every mesh must be below a joint and is bound to it.
 ///
 /// # Errors
-/// [`Error::File`] says what is wrong and where: another ending, damage, several roots, scale in the skeleton, a mesh
-/// that is below no joint; [`Error::Io`] when reading fails.
+/// [`Error::File`] says what is wrong and where: an unsupported extension, damage, several roots, scale in the skeleton, a
+/// mesh that is below no joint; [`Error::Io`] when reading fails.
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene> {
     let path = path.as_ref();
     let (_, read) = able(path, |format| format.read_scene)?;
     read(&disk::read(path)?, path)
 }
 
-/// [`read_scene`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
-/// looked for.
+/// [`read_scene`] for a file already in memory; `path` chooses the format and locates the buffers of a `.gltf`.
 ///
 /// # Errors
 /// As [`read_scene`].
@@ -37,24 +36,23 @@ pub fn read_scene_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sce
     read(bytes, path)
 }
 
-/// Reads the surfaces alone, to measure or to draw them: from all that [`read_scene`] reads, and `.obj`. Metres, +Y up,
-/// as the file has them.
+/// Reads only the meshes, to measure or draw them: from all formats of [`read_scene`], and `.obj`. Metres, +Y up, with the
+/// positions of the file.
 ///
-/// The scene has meshes, materials and extras, but neither joints nor clips. Meshes with a skin come first, so that the
-/// body of our own files is the first mesh, and are in the bind pose; the others are where the file places them. Files of
-/// ours come back in model order, with texture seams merged. The scene need not [validate](Scene::validate): a mesh may
-/// be of points alone.
+/// The scene has meshes, materials and extras, but neither joints nor clips. Skinned meshes come first, so that the body
+/// of our own files is the first mesh, and are in the bind pose; the others are where the file places them. Files written
+/// by this library come back in the model's vertex order with UV seams merged. The scene need not
+/// [validate](Scene::validate): a mesh may consist of points only.
 ///
 /// # Errors
-/// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails.
+/// [`Error::File`] for an unsupported extension or invalid content, [`Error::Io`] when reading fails.
 pub fn read_meshes(path: impl AsRef<Path>) -> Result<Scene> {
     let path = path.as_ref();
     let (_, read) = able(path, |format| format.read_meshes)?;
     read(&disk::read(path)?, path)
 }
 
-/// [`read_meshes`] of a file that is already in memory; `path` decides the format, and where buffers of a `.gltf` are
-/// looked for.
+/// [`read_meshes`] for a file already in memory; `path` chooses the format and locates the buffers of a `.gltf`.
 ///
 /// # Errors
 /// As [`read_meshes`].
@@ -65,19 +63,19 @@ pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sc
 }
 
 /// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
-/// `.usda`, `.usdc`, `.usdz`. The ending decides the format, the first bytes confirm it.
+/// `.usda`, `.usdc`, `.usdz`. The extension chooses the format, the first bytes confirm it.
 ///
 /// # Errors
-/// [`Error::File`] for another ending or content that is not what it should be, [`Error::Io`] when reading fails,
-/// [`Error::Request`] for a rate that is none.
+/// [`Error::File`] for an unsupported extension or invalid content, [`Error::Io`] when reading fails, [`Error::Request`]
+/// for an invalid frame rate.
 pub fn read_motion(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
     let path = path.as_ref();
     able(path, |format| format.read_motion)?;
     read_motion_from_bytes(&disk::read(path)?, path, options)
 }
 
-/// [`read_motion`] of a file that is already in memory; `path` decides the format, where buffers of a `.gltf` are looked
-/// for, and the name of a clip that has none.
+/// [`read_motion`] for a file already in memory; `path` chooses the format, locates the buffers of a `.gltf`, and names a
+/// clip that has no name.
 ///
 /// # Errors
 /// As [`read_motion`].

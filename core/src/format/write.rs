@@ -1,4 +1,4 @@
-//! Writing: the format by the ending, then the writer of its folder.
+//! Writing: the file extension chooses the format, whose folder has the writer.
 
 use std::{ffi::OsStr, path::Path};
 
@@ -10,21 +10,21 @@ use crate::error::Fault;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
-/// How the formats that leave a choice are written.
+/// Options of the formats that have any.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// Of `.glb` and `.gltf`.
+    /// For `.glb` and `.gltf`.
     pub gltf: GltfOptions,
-    /// Of `.vrm`.
+    /// For `.vrm`.
     pub vrm: VrmMeta,
 }
 
-/// Writes a scene in the format of the path's ending: `.glb`, `.gltf` with a `.bin` beside it, `.vrm`, `.usda`, `.usdc`,
-/// `.usdz`, or `.obj`, which takes the meshes alone.
+/// Writes a scene in the format of the path's extension: `.glb`, `.gltf` with a `.bin` beside it, `.vrm`, `.usda`, `.usdc`,
+/// `.usdz`, or `.obj`, which gets the meshes only.
 ///
 /// # Errors
-/// [`Error::File`] for another ending, [`Error::Invalid`] for a scene that does not [validate](Scene::validate) or that
-/// the format cannot hold, [`Error::Io`] when the system refuses; what was at the path is then as it was.
+/// [`Error::File`] for an unsupported extension, [`Error::Invalid`] for a scene that does not [validate](Scene::validate)
+/// or that the format cannot store, [`Error::Io`] when the system refuses; an existing file is then left unchanged.
 pub fn write_scene(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions) -> Result<()> {
     let path = path.as_ref();
     match able(path, |format| format.write)?.1 {
@@ -40,10 +40,10 @@ pub fn write_scene(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions
     }
 }
 
-/// [`write_scene`] to memory, in a format that is one file: see [`Format::of_one_file`].
+/// [`write_scene`] to memory, in a single-file format: see [`Format::of_one_file`].
 ///
 /// # Errors
-/// [`Error::Request`] for a format of several files or one that is not written, [`Error::Invalid`] as [`write_scene`].
+/// [`Error::Request`] for a format of several files or without a writer, [`Error::Invalid`] as [`write_scene`].
 pub fn write_scene_to_bytes(scene: &Scene, format: Format, options: &WriteOptions) -> Result<Vec<u8>> {
     match format.writer() {
         Some(Write::Alone(write)) => write(scene, options),

@@ -1,7 +1,7 @@
-//! The surface as the kernels read it: blocks of four vertices, one number of all four in a register.
+//! The surface in the layout of the kernels: blocks of four vertices, one component of all four in a SIMD register.
 //!
-//! Consecutive vertices mostly follow about as many joints. A block has as many slots as its busiest vertex needs, so
-//! four influences cost about 2.5 slots per vertex, and eight little more.
+//! Consecutive vertices mostly have about as many influences. A block has as many slots as its vertex with the most
+//! influences needs, so four influences cost about 2.5 slots per vertex, and eight little more.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -15,10 +15,10 @@ pub(super) type Lanes = [Vec4; 3];
 /// Vertices in a block.
 pub(super) const LANES: usize = 4;
 
-/// Blocks in the piece of work that one thread takes: long enough to hide the hand-over, short enough to share out.
+/// Blocks in the unit of work of one thread: large enough to hide scheduling costs, small enough to balance the load.
 const CHUNK_BLOCKS: usize = 256;
 
-/// Vertices in such a piece.
+/// Vertices in such a chunk.
 pub(super) const CHUNK_VERTICES: usize = CHUNK_BLOCKS * LANES;
 
 /// All blocks of a surface. Lanes past the last vertex are zero.
@@ -26,7 +26,7 @@ pub(super) const CHUNK_VERTICES: usize = CHUNK_BLOCKS * LANES;
 pub(super) struct Blocks {
     positions: Vec<Lanes>,
     normals: Vec<Lanes>,
-    /// Where the slots of each block end.
+    /// End of each block's slots in `weights` and `joints`.
     ends: Vec<u32>,
     weights: Vec<Vec4>,
     joints: Vec<[u16; LANES]>,
@@ -41,7 +41,7 @@ pub(super) struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// Weights and joints, slot after slot; a lane that follows fewer joints has weight 0.
+    /// Weights and joints, slot by slot; a lane with fewer influences has weight 0.
     #[inline(always)]
     pub(super) fn slots(&self) -> impl Iterator<Item = (Vec4, [usize; LANES])> + '_ {
         self.slots.iter().zip(self.joints).map(|(weights, joints)| (*weights, joints.map(usize::from)))
@@ -49,7 +49,7 @@ impl Block<'_> {
 }
 
 impl Blocks {
-    /// Arrays have one entry per vertex, checked by the caller.
+    /// Arrays must have one entry per vertex; the caller checks that.
     pub(super) fn new(
         positions: &[Vec3],
         normals: &[Vec3],
@@ -87,20 +87,20 @@ impl Blocks {
         Ok(blocks)
     }
 
-    /// Pieces of work, [`CHUNK_VERTICES`] vertices each, the last one shorter.
+    /// Units of work of [`CHUNK_VERTICES`] vertices each, the last one shorter.
     pub(super) fn chunks(&self) -> impl Iterator<Item = Chunk<'_>> {
         (0..self.positions.len()).step_by(CHUNK_BLOCKS).map(|first| Chunk { blocks: self, first })
     }
 }
 
-/// Sum of a vertex's weights.
+/// Checks a vertex's joints and weights and returns the sum of the weights.
 fn checked_sum(vertex: usize, joints: &[u16], weights: &[f32], joint_count: usize) -> Result<f64> {
     let fail = |message: String| Err(Error::invalid("skin weights", format!("vertex {vertex}: {message}")));
     if let Some(joint) = joints.iter().find(|j| usize::from(**j) >= joint_count) {
         return fail(format!("expected joints below {joint_count}, got {joint}"));
     }
     let sum: f64 = weights.iter().map(|w| f64::from(*w)).sum();
-    // As far off as weights in bytes are.
+    // Weights quantised to bytes are off by this much.
     if !(weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() <= 1e-2) {
         return fail(format!("expected weights from 0 with sum 1, got {weights:?}"));
     }
@@ -119,9 +119,9 @@ pub(super) struct Chunk<'a> {
 }
 
 impl Chunk<'_> {
-    /// Sends every block, its offsets added, through `deform` to the target.
+    /// Runs `deform` on every block, with offsets added, and writes the results to the target.
     ///
-    /// `offsets` are those of the chunk's vertices.
+    /// `offsets` has one entry per vertex of the chunk.
     #[inline(always)]
     pub(super) fn run(
         self,
@@ -152,7 +152,7 @@ impl Chunk<'_> {
     }
 }
 
-/// At most four vectors, side by side.
+/// Transposes at most four vectors to lanes.
 fn lanes(vectors: &[Vec3]) -> Lanes {
     let mut lanes = [Vec4::ZERO; 3];
     for (i, vector) in vectors.iter().enumerate() {
@@ -163,7 +163,7 @@ fn lanes(vectors: &[Vec3]) -> Lanes {
     lanes
 }
 
-/// Rows to columns: the first numbers of all four, the second ones, and so on.
+/// The transpose: the first components of all four, the second ones, and so on.
 #[inline(always)]
 pub(super) fn transposed(rows: [Vec4; 4]) -> [Vec4; 4] {
     let columns = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();

@@ -1,5 +1,5 @@
-//! Buffers of the caller's that skinned vertices are written to: three f32 per vertex in the machine's byte order,
-//! any number of bytes from vertex to vertex, no alignment asked for.
+//! The caller's buffers for skinned vertices: three f32 per vertex in native byte order, any stride, no alignment
+//! required.
 
 use std::mem::MaybeUninit;
 
@@ -8,15 +8,15 @@ use glam::Vec4;
 use super::block::{CHUNK_VERTICES, LANES, Lanes, transposed};
 use crate::{Error, Result};
 
-/// Bytes of three f32.
+/// Size of three f32, bytes.
 const WIDTH: usize = 12;
 
-/// Bytes that are written and never read.
+/// Write-only bytes.
 #[derive(Debug)]
 pub enum BytesMut<'a> {
-    /// They hold something.
+    /// Initialised memory.
     Init(&'a mut [u8]),
-    /// They may hold nothing yet, as memory that C has just allocated.
+    /// Possibly uninitialised memory, such as C has just allocated.
     Uninit(&'a mut [MaybeUninit<u8>]),
 }
 
@@ -40,7 +40,7 @@ impl<'a> BytesMut<'a> {
         }
     }
 
-    /// The first `count` bytes, or all when there are no more, and the others.
+    /// Splits off the first `count` bytes, or all if there are fewer.
     fn split(self, count: usize) -> (Self, Self) {
         let count = count.min(self.len());
         match self {
@@ -55,11 +55,11 @@ impl<'a> BytesMut<'a> {
         }
     }
 
-    /// Writes a block of packed vectors; false when they do not fit there.
+    /// Writes a block of packed vectors; returns false if they do not fit.
     #[inline(always)]
     fn write_packed(&mut self, at: usize, vectors: &[[u8; 16]; LANES]) -> bool {
         let place = at..at + LANES * WIDTH;
-        // Whole registers, each over the last one's unused fourth number.
+        // Writes whole registers, each overwriting the previous one's unused fourth component.
         let (whole, last) = (&vectors[..LANES - 1], &vectors[LANES - 1][..WIDTH]);
         match self {
             Self::Init(bytes) => {
@@ -80,7 +80,7 @@ impl<'a> BytesMut<'a> {
         true
     }
 
-    /// Writes at a place; nothing when they do not fit there.
+    /// Writes at a byte offset; does nothing if the values do not fit.
     #[inline(always)]
     fn write(&mut self, at: usize, values: &[u8]) {
         match self {
@@ -98,36 +98,36 @@ impl<'a> BytesMut<'a> {
     }
 }
 
-/// Three f32 per vertex somewhere in a buffer: vertex v at `offset + v · stride`.
+/// Three f32 per vertex in a buffer: vertex v at byte `offset + v · stride`.
 #[derive(Debug)]
 pub struct StridedMut<'a> {
-    /// The buffer; bytes between the vertices are left as they are.
+    /// The buffer; bytes between the vertices are not changed.
     pub bytes: BytesMut<'a>,
-    /// Where the first vertex begins, bytes.
+    /// Offset of the first vertex, bytes.
     pub offset: usize,
-    /// From vertex to vertex, bytes; at least 12.
+    /// Distance between vertices, bytes; at least 12.
     pub stride: usize,
 }
 
-/// Where positions and normals go.
+/// Destination of positions and normals.
 #[derive(Debug)]
 pub enum SurfaceMut<'a> {
-    /// Two buffers, or positions alone.
+    /// Two buffers, or positions only.
     Separate {
         /// Metres.
         positions: StridedMut<'a>,
         /// Unit vectors.
         normals: Option<StridedMut<'a>>,
     },
-    /// One buffer that holds both per vertex, as graphics cards like it.
+    /// One buffer with both per vertex, the usual layout on GPUs.
     Interleaved {
-        /// The buffer; bytes between the vertices' parts are left as they are.
+        /// The buffer; bytes between the attributes are not changed.
         bytes: BytesMut<'a>,
-        /// From vertex to vertex, bytes.
+        /// Distance between vertices, bytes.
         stride: usize,
-        /// Where a vertex's position begins, bytes from the vertex's beginning.
+        /// Offset of the position within a vertex, bytes.
         position_offset: usize,
-        /// Where a vertex's normal begins, bytes from the vertex's beginning.
+        /// Offset of the normal within a vertex, bytes.
         normal_offset: usize,
     },
 }
@@ -144,7 +144,7 @@ impl<'a> SurfaceMut<'a> {
         Self::Separate { positions: positions.into(), normals: Some(normals.into()) }
     }
 
-    /// The buffers cut where the chunks of `count` vertices begin.
+    /// Splits the buffers, which hold `count` vertices, at the chunk boundaries.
     ///
     /// # Errors
     /// [`Error::Invalid`] when a buffer is too small or its parts overlap.
@@ -191,7 +191,7 @@ impl<'a> StridedMut<'a> {
         self.into_chunks_of(what, count, WIDTH)
     }
 
-    /// `width`: bytes that are used of the last vertex.
+    /// `width`: bytes needed for the last vertex.
     fn into_chunks_of(
         self,
         what: &'static str,
@@ -224,7 +224,7 @@ impl<'a> StridedMut<'a> {
     }
 }
 
-/// What a chunk's vertices occupy of a buffer.
+/// The part of a buffer that holds a chunk's vertices.
 pub(super) struct Part<'a> {
     bytes: BytesMut<'a>,
     offset: usize,
@@ -239,14 +239,14 @@ enum Normals<'a> {
     Beside(usize),
 }
 
-/// What one chunk writes to.
+/// The destination of one chunk.
 pub(super) struct Target<'a> {
     first: Part<'a>,
     second: Normals<'a>,
 }
 
 impl Target<'_> {
-    /// Writes a block whose first vertex is the chunk's `first`; lanes past the last vertex go nowhere.
+    /// Writes a block that starts at vertex `first` of the chunk; lanes past the last vertex are dropped.
     #[inline(always)]
     pub(super) fn write(&mut self, first: usize, positions: Lanes, normals: Lanes) {
         let offset = self.first.offset;

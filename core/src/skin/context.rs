@@ -1,17 +1,16 @@
-//! The memory that skinning works in.
+//! Scratch memory of skinning.
 
 use super::palette::Palette;
 use crate::math::RigidTransformF64;
 
-/// Memory that a skinning call works in and that the next call uses again: how each joint of each character moves what
-/// follows it.
+/// Scratch memory that skinning calls reuse: the skinning transforms of each character's joints.
 ///
-/// It says nothing about results, which are the same with a new one; it only saves allocations. Keep one per character or
-/// per thread that skins. It grows to the most joints and characters of a call and shrinks when it is dropped.
+/// It has no influence on results, which are the same with a new one; it only saves allocations. Keep one per character or
+/// per skinning thread. It grows to the most joints and characters of any call and is freed when dropped.
 #[derive(Clone, Debug, Default)]
 pub struct SkinContext {
-    /// Posed `model_from_joint` of the character at hand.
+    /// Posed `model_from_joint` of the character being prepared.
     pub(super) posed: Vec<RigidTransformF64>,
-    /// One per character.
+    /// One per character of a call.
     pub(super) palettes: Vec<Palette>,
 }

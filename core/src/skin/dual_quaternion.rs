@@ -1,8 +1,8 @@
 //! Dual quaternion linear blending (Kavan, Collins, Žára, O'Sullivan, *Geometric Skinning with Approximate Dual
-//! Quaternion Blending*, 2008), as Blender's Armature modifier has it under *Preserve Volume*.
+//! Quaternion Blending*, 2008), as in Blender's Armature modifier with *Preserve Volume*.
 //!
-//! q and −q turn alike but blend differently. As in Blender, each joint's sign is the one that agrees with the sum of
-//! the joints before it, in the order of the vertex's influences: strongest first.
+//! q and −q are the same rotation but blend differently. As in Blender, each joint's sign is chosen to agree with the sum
+//! of the joints before it, in the order of the vertex's influences: strongest first.
 
 use glam::Vec4;
 
@@ -19,7 +19,7 @@ pub(super) fn dual_quaternion(motion: &RigidTransformF64) -> DualQuaternion {
     [glam::DVec4::from(motion.rotation).as_vec4(), dual.as_vec4()]
 }
 
-/// The motion that the normalised blend stands for; it is rigid, so unit normals stay such.
+/// Applies the normalised blend, which is a rigid transform, so unit normals stay unit normals.
 #[inline(always)]
 pub(super) fn deform(palette: &[DualQuaternion], block: &Block<'_>) -> (Lanes, Lanes) {
     let mut real = [Vec4::ZERO; 4];
@@ -38,7 +38,7 @@ pub(super) fn deform(palette: &[DualQuaternion], block: &Block<'_>) -> (Lanes, L
     }
     let ([x, y, z, w], [dual_x, dual_y, dual_z, dual_w]) = (real, dual);
     let (axis, dual_axis) = ([x, y, z], [dual_x, dual_y, dual_z]);
-    // Lanes past the last vertex blend nothing.
+    // Lanes past the last vertex have a blend of zero.
     let squared = (dot(axis, axis) + w * w).max(Vec4::splat(f32::MIN_POSITIVE));
     let twice = Vec4::splat(2.0) / squared;
     let rotated = |v: Lanes| {

@@ -1,11 +1,11 @@
 //! The paper's own skinning formula (section on deep mesh rigging, skinning and posing): transforms made of joint
-//! positions alone, with offsets from a network.
+//! positions only, with offsets from a network.
 //!
-//! T_j = [1 θ_j; 0 1] holds no rotation, so a vertex moves by the weighted mean of how far its joints moved. The paper
-//! prints T_j(θ) T_j(θ̄)⁻¹, θ the bind pose and θ̄ the current one, which moves vertices the wrong way, and leaves the
-//! sum over joints out; its text and what follows from it are Σ_j w_j T_j(θ̄) T_j(θ)⁻¹, which this is. Exact where
-//! joints only move. Where a bone turns, the vertices around it keep their directions, by centimetres wrong, and the
-//! offsets have to bring all of it; the normals stay those of the bind pose.
+//! T_j = [1 θ_j; 0 1] contains no rotation, so a vertex moves by the weighted mean of its joints' displacements. The paper
+//! prints T_j(θ) T_j(θ̄)⁻¹, with θ the bind pose and θ̄ the current one, which moves vertices the wrong way, and omits the
+//! sum over joints; its text implies Σ_j w_j T_j(θ̄) T_j(θ)⁻¹, which is implemented here. It is exact where joints only
+//! translate. Where a bone rotates, the vertices around it do not rotate with it and are centimetres off, which the offsets
+//! have to correct entirely; the normals stay those of the bind pose.
 
 use glam::Vec4;
 

@@ -8,15 +8,15 @@ use crate::math::RigidTransformF64;
 /// The first three rows of a matrix.
 pub(super) type Rows = [Vec4; 3];
 
-/// The matrix of a joint's motion.
+/// The matrix of a joint's skinning transform.
 pub(super) fn rows(motion: &RigidTransformF64) -> Rows {
     let rotation = DMat3::from_quat(motion.rotation);
     std::array::from_fn(|i| rotation.row(i).extend(motion.translation[i]).as_vec4())
 }
 
-/// Positions by the blended matrix; normals by its linear part, normalised. All joints turn rigidly, hence no inverse
-/// transpose: what UsdSkel makes of such joints, and what shaders do. A normal that blending leaves without a
-/// direction is zero.
+/// Transforms positions by the blended matrix; normals by its linear part, then normalises them. All joint transforms are
+/// rigid, hence no inverse transpose, as in UsdSkel with such joints and in shaders. A normal that blending cancels out is
+/// zero.
 #[inline(always)]
 pub(super) fn deform(palette: &[Rows], block: &Block<'_>) -> (Lanes, Lanes) {
     let mut blended = [[Vec4::ZERO; 3]; 4];
@@ -37,7 +37,7 @@ pub(super) fn deform(palette: &[Rows], block: &Block<'_>) -> (Lanes, Lanes) {
         normals[row] = dot([x, y, z], block.normals);
     }
     let squared = dot(normals, normals).max(Vec4::splat(f32::MIN_POSITIVE));
-    // `Vec4::sqrt` takes the roots one by one; these become one instruction. IEEE 754 leaves no choice of result.
+    // `Vec4::sqrt` is four scalar roots; this compiles to one instruction. IEEE 754 requires the same result.
     let length = Vec4::from_array(squared.to_array().map(f32::sqrt));
     (positions, scaled(normals, length.recip()))
 }

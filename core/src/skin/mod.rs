@@ -1,9 +1,9 @@
-//! Skinning: a posed skeleton moves the vertices and normals of a surface, on top of the room [`pose`](crate::pose).
+//! Skinning: a posed skeleton deforms the vertices and normals of a surface; builds on [`pose`](crate::pose).
 //!
-//! A [`Skinner`] holds a surface in its bind pose, ready to be posed; it is immutable and may be shared between
-//! threads. [`Skinner::skin`] poses one character, [`skin_many`] any number of them, on all threads of the pool, into
-//! buffers of the caller's: [`SurfaceMut`]. Both work in memory of the caller's, a [`SkinContext`]. Every vertex is computed on its own with the same operations in the same
-//! order, so the bits do not depend on the number of threads nor on the processor.
+//! A [`Skinner`] holds a surface in its bind pose; it is immutable and may be shared between threads. [`Skinner::skin`]
+//! poses one character, [`skin_many`] any number of them, on all threads of the pool, into the caller's buffers:
+//! [`SurfaceMut`]. Both use the caller's scratch memory, a [`SkinContext`]. Every vertex is computed independently with the
+//! same operations in the same order, so the bits depend neither on the number of threads nor on the processor.
 //!
 //! Metres; right-handed; column vectors. With `D_j = posed model_from_joint · bind joint_from_model`, vertex x, its
 //! unit normal n, offset Δ in bind space and weights w_j:

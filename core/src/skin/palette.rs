@@ -1,4 +1,4 @@
-//! How each joint of a posed character moves what follows it, as the kernels look it up.
+//! The skinning transforms of a posed character's joints, in the layout of the kernels.
 
 use glam::{Vec3, Vec4};
 
@@ -7,16 +7,16 @@ use super::buffers::Target;
 use super::{SkinMethod, dual_quaternion, joint_translation, linear};
 use crate::math::RigidTransformF64;
 
-/// What the kernel of a method looks joints up in.
+/// The skinning transforms of all joints for one method.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Palette {
     method: SkinMethod,
-    /// As many per joint as the method needs.
+    /// A fixed number per joint, which depends on the method.
     vectors: Vec<Vec4>,
 }
 
 impl Palette {
-    /// Fills it with posed `model_from_joint` · bind `joint_from_model` of each joint.
+    /// Fills it from posed `model_from_joint` · bind `joint_from_model` of each joint.
     pub(super) fn fill(
         &mut self,
         method: SkinMethod,

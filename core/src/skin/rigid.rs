@@ -1,11 +1,11 @@
-//! Joints of a pose in double precision.
+//! Converts the joints of a pose to double precision.
 
 use glam::DQuat;
 
 use crate::math::{RigidTransform, RigidTransformF64};
 use crate::{Error, Result};
 
-/// Checked and normalised, into a list that is emptied first.
+/// Checks and normalises the joints, and replaces the content of `out` with them.
 pub(super) fn in_double(
     what: &'static str,
     joints: &[RigidTransform],
@@ -14,7 +14,7 @@ pub(super) fn in_double(
     out.clear();
     for (j, joint) in joints.iter().enumerate() {
         let (rotation, translation) = (DQuat::from(joint.rotation), joint.translation.as_dvec3());
-        // False for what is not a number, too.
+        // Also false for NaN.
         let unit = (rotation.length() - 1.0).abs() <= 1e-3;
         if !(unit && translation.is_finite()) {
             let message = format!(

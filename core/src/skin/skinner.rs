@@ -1,4 +1,4 @@
-//! A surface ready to be posed, and the work of posing it.
+//! The skinned surface, and the parallel work of posing it.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -15,23 +15,23 @@ use crate::math::RigidTransformF64;
 use crate::skeleton::Influences;
 use crate::{Error, Result};
 
-/// The most influences that a vertex may have; files carry 4 or 8.
+/// Maximum number of influences per vertex; files have 4 or 8.
 const MAX_INFLUENCES: usize = 64;
 
-/// How joints move vertices; the formulas stand in the documentation of the [module](crate::skin).
+/// How joints move vertices; see the [module](crate::skin) for the formulas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkinMethod {
-    /// Linear blend skinning: what glTF, UsdSkel and game engines do. Joints that turn far pinch.
+    /// Linear blend skinning, as in glTF, UsdSkel and game engines. Strongly rotated joints collapse.
     #[default]
     Linear,
-    /// Dual quaternions, Blender's *Preserve Volume*: keeps the girth of a twisted limb, bulges bent ones.
+    /// Dual quaternions, Blender's *Preserve Volume*: keeps the girth of twisted limbs, bulges at bent joints.
     DualQuaternion,
-    /// The paper's own formula: joints move vertices but do not turn them. Without offsets made for it, poses are
+    /// The paper's own formula: joints translate vertices but do not rotate them. Without offsets trained for it, poses are
     /// centimetres wrong.
     JointTranslation,
 }
 
-/// A surface in its bind pose with what each vertex follows. Immutable.
+/// A surface in its bind pose with the influences of each vertex. Immutable.
 #[derive(Clone, Debug)]
 pub struct Skinner {
     vertex_count: usize,
@@ -40,7 +40,7 @@ pub struct Skinner {
     blocks: Blocks,
 }
 
-/// One character's skinning: what is posed, how, and where the result goes.
+/// One character to skin: its surface, pose and destination.
 #[derive(Debug)]
 pub struct SkinJob<'a> {
     /// The surface.
@@ -51,13 +51,13 @@ pub struct SkinJob<'a> {
     pub model_from_joints: &'a [RigidTransform],
     /// Added to the bind positions before they are posed: correctives. One per vertex, metres.
     pub offsets: Option<&'a [Vec3]>,
-    /// What is written.
+    /// The destination.
     pub out: SurfaceMut<'a>,
 }
 
 impl Skinner {
-    /// From positions (metres) and unit normals in the bind pose, influences of each vertex, and the joints' bind pose
-    /// `model_from_joint`. Weights of a vertex are normalised.
+    /// Makes a skinner of positions (metres) and unit normals in the bind pose, influences per vertex, and the joints' bind
+    /// `model_from_joint`. The weights of each vertex are normalised.
     ///
     /// # Errors
     /// [`Error::Invalid`] when arrays differ in length, a number is not finite, a joint does not exist, or the weights
@@ -105,7 +105,7 @@ impl Skinner {
         self.joint_from_model.len()
     }
 
-    /// Poses the surface: [`skin_many`] of one character without offsets.
+    /// Poses the surface: [`skin_many`] for one character without offsets.
     ///
     /// # Errors
     /// As [`skin_many`].
@@ -125,12 +125,12 @@ impl Skinner {
     }
 }
 
-/// Poses many characters, each vertex of each on whatever thread is free. Nothing is written unless all are in order.
+/// Poses many characters, distributed over the threads of the pool. Nothing is written unless all jobs are valid.
 ///
 /// # Errors
-/// [`Error::Invalid`] when the joints or offsets of a job are not as many as its skinner's, a number is not finite, a
-/// rotation is not of unit length, or a buffer is too small for its offset and stride; the message counts the
-/// characters from 0.
+/// [`Error::Invalid`] when a job has another number of joints or offsets than its skinner, a number is not finite, a
+/// rotation is not of unit length, or a buffer is too small for its offset and stride; the message counts characters
+/// from 0.
 pub fn skin_many(jobs: Vec<SkinJob<'_>>, context: &mut SkinContext) -> Result<()> {
     let SkinContext { posed, palettes } = context;
     if palettes.len() < jobs.len() {
@@ -196,10 +196,10 @@ fn run(mut characters: Vec<CheckedJob<'_>>) {
     }
 }
 
-/// Whether the pool's threads live in this process: a child made by `fork` has the pool's memory and none of its threads,
-/// and would wait for them for ever.
+/// Whether the pool's threads exist in this process: a child made by `fork` has the pool's memory but none of its threads,
+/// and would wait for them forever.
 fn pool_has_threads() -> bool {
-    /// The process that was the first to pose; 0 before.
+    /// The first process that posed in parallel; 0 before.
     static OWNER: AtomicU32 = AtomicU32::new(0);
     let here = std::process::id();
     match OWNER.compare_exchange(0, here, Ordering::Relaxed, Ordering::Relaxed) {

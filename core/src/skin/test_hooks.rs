@@ -1,10 +1,10 @@
-//! What only tests use: a defect in the middle of the work.
+//! For tests only: a panic in the middle of the work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static PANIC: AtomicBool = AtomicBool::new(false);
 
-/// Lets the next piece of work of whichever thread panic.
+/// Makes the next chunk panic, on whichever thread it runs.
 pub fn panic_in_the_next_chunk() {
     PANIC.store(true, Ordering::Relaxed);
 }

@@ -1,4 +1,4 @@
-//! Kernels against double precision, one vertex at a time.
+//! Compares the kernels with double precision, one vertex at a time.
 
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
@@ -63,7 +63,7 @@ impl Case {
         out
     }
 
-    /// Joints, weights of a vertex, strongest first.
+    /// Joints and weights of a vertex, strongest first.
     fn row(&self, v: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let slots = v * self.influences.per_vertex..(v + 1) * self.influences.per_vertex;
         let weights = self.influences.weights[slots.clone()].iter().map(|w| f64::from(*w));
@@ -87,8 +87,8 @@ impl Case {
         (position, matrix.transform_vector3(self.normals[v].as_dvec3()))
     }
 
-    /// By the definition: blend real and dual parts, normalise, turn and shift. The last number is the least agreement
-    /// of a joint with the sum before it: where that is about 0, rounding chooses the sign.
+    /// By definition: blend real and dual parts, normalise, rotate and translate. The last value is the minimum agreement of a
+    /// joint with the sum before it: near 0, rounding decides the sign.
     fn dual_quaternion(&self, v: usize) -> (DVec3, DVec3, f64) {
         let (mut real, mut dual) = (DQuat::from_array([0.0; 4]), DQuat::from_array([0.0; 4]));
         let mut certain = f64::INFINITY;
@@ -114,7 +114,7 @@ fn near(got: [f32; 3], expected: DVec3, tolerance: f64) -> bool {
 }
 
 proptest! {
-    // 19 vertices: whole blocks and one that is not.
+    // 19 vertices: whole blocks and an incomplete one.
     #[test]
     fn every_method_agrees_with_double_precision(seed: u64, eight: bool) {
         let case = Case::new(seed, 19, 7, if eight { 8 } else { 4 });
@@ -122,10 +122,10 @@ proptest! {
         let dual = case.skin(SkinMethod::DualQuaternion, &case.posed);
         let moved = case.skin(SkinMethod::JointTranslation, &case.posed);
         for v in 0..19 {
-            // Tolerance: a dozen roundings of numbers up to about 8.
+            // Tolerance: a dozen rounding errors of numbers up to about 8.
             let (position, normal) = case.linear(v);
             prop_assert!(near(linear.0[v], position, 1e-5));
-            // Blending may shorten a normal: its error grows as it shrinks.
+            // Blending may shorten a normal, which increases its relative error.
             prop_assert!(near(linear.1[v], normal.normalize_or_zero(), 1e-6 / normal.length()));
 
             let (position, normal, certain) = case.dual_quaternion(v);
@@ -149,7 +149,7 @@ fn the_rest_pose_changes_nothing() {
     for method in [SkinMethod::Linear, SkinMethod::DualQuaternion, SkinMethod::JointTranslation] {
         let (positions, normals) = case.skin(method, &case.bind);
         for v in 0..101 {
-            // Weights sum to one but for a rounding, normals are as long.
+            // Weights sum to 1 and normals have length 1 up to rounding.
             assert!(Vec3::from_array(positions[v]).distance(case.positions[v]) <= 1e-6, "{method:?}");
             assert!(Vec3::from_array(normals[v]).distance(case.normals[v]) <= 1e-6, "{method:?}");
         }
@@ -171,7 +171,7 @@ fn what_follows_one_joint_moves_rigidly() {
     }
 }
 
-/// A ring of vertices half way between two joints, one of them twisted.
+/// A ring of vertices halfway between two joints, one of them twisted.
 fn twisted_ring(degrees: f32) -> Case {
     let around = |i: usize| Rotation::from_rotation_y(i as f32) * Vec3::X;
     let joint = |turn| RigidTransform { rotation: Rotation::from_rotation_y(turn), translation: Vec3::ZERO };
@@ -197,7 +197,7 @@ fn a_half_turn_keeps_its_girth_by_dual_quaternions_alone() {
     }
     let cosine =
         |ring: &Case| Vec3::from_array(ring.skin(SkinMethod::Linear, &ring.posed).0[0]).length() / 0.1;
-    // Half of 1 and half of e^iφ.
+    // |1 + e^iφ| / 2.
     assert!((cosine(&twisted_ring(120.0)) - 0.5).abs() < 1e-6);
 }
 
@@ -210,7 +210,7 @@ fn a_collapsed_normal_is_zero_and_not_nan() {
 
 #[test]
 fn every_layout_of_buffers_gets_the_same_numbers() {
-    // More than one chunk, the last block not whole.
+    // More than one chunk, with an incomplete last block.
     let case = Case::new(3, 2050, 5, 4);
     let (positions, normals) = case.skin(SkinMethod::Linear, &case.posed);
     let skinner = case.skinner();
@@ -235,7 +235,7 @@ fn every_layout_of_buffers_gets_the_same_numbers() {
         }
     }
 
-    // The smallest buffers that will do.
+    // The smallest sufficient buffers.
     let mut wide = vec![0xA5; 5 + 16 * 2049 + 12];
     let mut packed = vec![[0.0; 3]; 2050];
     let out = SurfaceMut::Separate {
@@ -313,7 +313,7 @@ fn a_context_that_was_used_before_gives_the_same_bits() {
     let skinners = cases.each_ref().map(Case::skinner);
     let mut context = SkinContext::default();
     for method in [SkinMethod::DualQuaternion, SkinMethod::Linear, SkinMethod::JointTranslation] {
-        // One more character each time, and then each alone.
+        // One more character each time, then each separately.
         for count in 1..=cases.len() {
             let mut out = cases.each_ref().map(|c| [(); 2].map(|()| vec![[f32::NAN; 3]; c.positions.len()]));
             let used = skinners.iter().zip(&cases).zip(&mut out).take(count);
@@ -335,7 +335,7 @@ fn a_context_that_was_used_before_gives_the_same_bits() {
             let surface = SurfaceMut::packed(positions, normals);
             skinner.skin(method, &case.posed, surface, &mut context).unwrap();
             assert_eq!(out, <[_; 2]>::from(case.skin(method, &case.posed)), "{method:?}");
-            // What is refused leaves it fit for use.
+            // A refused call leaves the context usable.
             let short = SurfaceMut::packed(&mut [], &mut []);
             skinner.skin(method, &case.posed, short, &mut context).unwrap_err();
         }

@@ -1,4 +1,4 @@
-//! The second part of a BVH file: frames, one a line.
+//! The MOTION section of a BVH file: one frame per line.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ use crate::format::bvh::Result;
 use crate::format::motion::raw::{Recorder, Take, snapped_rate};
 use crate::math::{RigidTransform, Rotation};
 
-/// Reads from after the word MOTION to the end of the file.
+/// Reads from after the keyword MOTION to the end of the file.
 pub(super) fn read(
     lexer: &mut Lexer,
     skeleton: &Hierarchy,
@@ -36,7 +36,7 @@ pub(super) fn read(
     if width == 0 {
         return lexer.unexpected("a joint with channels", "none");
     }
-    // Each number takes a digit and a blank.
+    // Each number takes at least a digit and a separator.
     if frames.saturating_mul(width) > lexer.remaining().div_ceil(2) {
         let bytes = lexer.remaining();
         let expected = format!("{frames} frames of {width} channels");
@@ -59,7 +59,7 @@ pub(super) fn read(
     Ok(recorder.take(name.to_owned(), rate, rest))
 }
 
-/// Reads the numbers of a line.
+/// Reads the numbers of one frame.
 fn read_frame(lexer: &mut Lexer, numbers: &mut [f64], frame: usize, frames: usize) -> Result<()> {
     let width = numbers.len();
     for (i, number) in numbers.iter_mut().enumerate() {
@@ -75,7 +75,7 @@ fn read_frame(lexer: &mut Lexer, numbers: &mut [f64], frame: usize, frames: usiz
     lexer.end_of_line(&format!("{width} channels"))
 }
 
-/// A joint's transform: its channels one after the other, each in the axes that those before have left.
+/// A joint's local transform: its channels applied in order, each in the axes left by those before it.
 fn transform<'a>(
     offset: Vec3,
     channels: &[Channel],

@@ -1,5 +1,5 @@
-//! The first part of a BVH file: joints, offsets, channels. Nesting is kept in a list, not on the call stack, so that
-//! no depth of it does harm.
+//! The HIERARCHY section of a BVH file: joints, offsets, channels. Nesting is kept in a list, not on the call stack, so
+//! that any depth is safe.
 
 use glam::Vec3;
 
@@ -8,27 +8,27 @@ use crate::error::Fault;
 use crate::format::bvh::Result;
 use crate::skeleton::MAX_JOINTS;
 
-/// One number of a frame.
+/// The meaning of one value of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Channel {
-    /// Along an axis.
+    /// Translation along an axis.
     Position(usize),
-    /// About an axis, degrees.
+    /// Rotation about an axis, degrees.
     Rotation(usize),
 }
 
-/// Joints in the order of the file, in which parents come first.
+/// Joints in file order, in which parents come first.
 #[derive(Debug, Default)]
 pub(super) struct Hierarchy {
     pub(super) names: Vec<String>,
     pub(super) parents: Vec<Option<u32>>,
     pub(super) offsets: Vec<Vec3>,
     pub(super) ends: Vec<Option<Vec3>>,
-    /// Of each joint, in the order of a frame's numbers.
+    /// Per joint, in the order of a frame's numbers.
     pub(super) channels: Vec<Vec<Channel>>,
 }
 
-/// A block that is open.
+/// An open block.
 struct Open {
     /// `None` in an end site.
     joint: Option<usize>,
@@ -36,7 +36,7 @@ struct Open {
     channels: bool,
 }
 
-/// Reads up to and with the word MOTION.
+/// Reads up to and including the keyword MOTION.
 pub(super) fn read(lexer: &mut Lexer) -> Result<Hierarchy> {
     lexer.expect("HIERARCHY")?;
     let mut found = Hierarchy::default();
@@ -63,7 +63,7 @@ pub(super) fn read(lexer: &mut Lexer) -> Result<Hierarchy> {
                 let (offset, site) = (vector(lexer)?, block.joint.is_none());
                 let joint = open.iter().rev().find_map(|o| o.joint).unwrap_or_default();
                 if site {
-                    // Of several end sites the first is where the bone points.
+                    // The first of several end sites gives the bone's direction.
                     found.ends[joint].get_or_insert(offset);
                 } else {
                     found.offsets[joint] = offset;

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use crate::error::{BvhError, Fault};
 use crate::format::bvh::Result;
 
-/// Goes through the words of a text.
+/// Iterates over the words of a text.
 pub(super) struct Lexer<'a> {
     rest: &'a [u8],
     line: usize,
@@ -16,22 +16,22 @@ impl<'a> Lexer<'a> {
         Self { rest: text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text), line: 1 }
     }
 
-    /// An error at the present line.
+    /// An error at the current line.
     pub(super) fn fail<T>(&self, fault: Fault) -> Result<T> {
         Err(BvhError { line: self.line, fault })
     }
 
-    /// An error at the present line: something else was expected.
+    /// An error at the current line: something else was expected.
     pub(super) fn unexpected<T>(&self, expected: impl Display, found: impl Display) -> Result<T> {
         self.fail(Fault::unexpected(expected, found))
     }
 
-    /// The bytes that are left.
+    /// Number of bytes left.
     pub(super) fn remaining(&self) -> usize {
         self.rest.len()
     }
 
-    /// The next word, in this line or a later one; `None` at the end.
+    /// The next word, on this line or a later one; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Option<&'a [u8]> {
         while let Some((&first, rest)) = self.rest.split_first() {
             if !first.is_ascii_whitespace() {
@@ -43,7 +43,7 @@ impl<'a> Lexer<'a> {
         self.word()
     }
 
-    /// The next word of this line; `None` at its end.
+    /// The next word on this line; `None` at its end.
     pub(super) fn next_in_line(&mut self) -> Option<&'a [u8]> {
         let blanks = self.rest.iter().take_while(|&&c| c != b'\n' && c.is_ascii_whitespace()).count();
         self.rest = &self.rest[blanks..];
@@ -57,7 +57,7 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Consumes a word that has to be next, in upper or lower case.
+    /// Consumes the next word, which must be this one in any case.
     pub(super) fn expect(&mut self, expected: &str) -> Result<()> {
         match self.next() {
             Some(word) if word.eq_ignore_ascii_case(expected.as_bytes()) => Ok(()),
@@ -66,7 +66,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A finite number of this line.
+    /// The next word on this line as a finite number.
     pub(super) fn number(&mut self, what: &str) -> Result<f64> {
         let Some(word) = self.next_in_line() else {
             return self.unexpected(what, "the end of the line");
@@ -84,14 +84,14 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A whole number of this line.
+    /// The next word on this line as a non-negative integer.
     pub(super) fn count(&mut self, what: &str) -> Result<usize> {
         let word = self.next_in_line().unwrap_or_default();
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
         number.map_or_else(|| self.unexpected(what, shown(word)), Ok)
     }
 
-    /// Checks that nothing else is in this line.
+    /// Checks that nothing else follows on this line.
     pub(super) fn end_of_line(&mut self, after: &str) -> Result<()> {
         match self.next_in_line() {
             None => Ok(()),
@@ -99,7 +99,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The words of this line up to its end, or up to an opening brace, which is not consumed, joined by single blanks.
+    /// The words up to the end of this line or an opening brace, which is not consumed, joined by single spaces.
     pub(super) fn name(&mut self) -> Result<String> {
         let mut name = String::new();
         loop {
@@ -123,7 +123,7 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// The start of a word in quotes, fit for a message.
+/// The start of a word, quoted and escaped for a message.
 pub(super) fn shown(word: &[u8]) -> String {
     let start = word[..word.len().min(40)].escape_ascii();
     format!("`{start}{}`", if word.len() > 40 { "…" } else { "" })

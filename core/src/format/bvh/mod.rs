@@ -1,10 +1,10 @@
 //! BVH, Biovision's hierarchy and motion in one text file.
 //!
-//! There is no standard but "Biovision BVH" (Meredith and Maddock, "Motion Capture File Formats Explained", 2001) and
-//! the files. What they leave open is read as the programs do that write most of them: angles are degrees, turned one
-//! after the other in the order of the channels, each about the axes that the one before has left (`R = R₁ R₂ R₃`); a
-//! position channel replaces its number of the joint's OFFSET; a joint rests unturned at its OFFSET. Neither unit nor
-//! up axis is said.
+//! There is no standard beyond "Biovision BVH" (Meredith and Maddock, "Motion Capture File Formats Explained", 2001) and
+//! existing files. What they leave open is read as the common exporters write it: angles are degrees, rotations are
+//! applied in channel order, each about the axes rotated by those before it (`R = R₁ R₂ R₃`); a position channel replaces
+//! that component of the joint's OFFSET; a joint's rest pose is its OFFSET without rotation. Neither unit nor up axis is
+//! stated.
 
 mod frames;
 mod hierarchy;

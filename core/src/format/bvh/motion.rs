@@ -1,4 +1,4 @@
-//! A whole file: the joints rest at their offsets, the frames are the one motion.
+//! A whole file: the OFFSETs are the rest pose, the frames are its one motion.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::format::motion::{Found, ReadOptions, clip_name};
 use crate::math::RigidTransform;
 use crate::skeleton::Skeleton;
 
-/// Reads the text of a file; the clip is named after it.
+/// Reads the text of a file; the clip is named after the file.
 pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
     let mut lexer = Lexer::new(bytes);
     let mut joints = hierarchy::read(&mut lexer).map_err(|error| Error::file(path, error))?;

@@ -29,7 +29,7 @@ fn reads_joints_and_frames() {
     assert_eq!(rest.ends(), [None, Some(Vec3::new(0.0, -0.9, 0.0))]);
     assert_eq!(rest.rest_pose().locals[1].translation, Vec3::new(0.1, -0.1, 0.0));
     let pose = clip.pose(0);
-    // Numbers go by the order of channels: x, z, y.
+    // Numbers follow the order of channels: x, z, y.
     assert_eq!(pose.locals[0].translation, Vec3::new(1.0, 3.0, 2.0));
     let radians = |degrees: f32| degrees.to_radians();
     let expected = Rotation::from_euler(EulerRot::ZXY, radians(10.0), radians(20.0), radians(30.0));
@@ -63,7 +63,7 @@ fn several_roots_and_moving_joints() {
     let motion = read(&text).unwrap();
     let clip = &motion.clips[0];
     assert_eq!(clip.skeleton().parents(), [None, Some(0), None]);
-    // The channel replaces its number of the offset; the others stay.
+    // The channel replaces its component of the offset; the others are kept.
     assert_eq!(clip.pose(0).locals[1].translation, Vec3::new(0.1, -0.5, 0.0));
     assert_eq!(clip.translations().iter().map(|t| t.joint).collect::<Vec<_>>(), [0, 1]);
 }

@@ -1,4 +1,4 @@
-//! Files on the disk: read whole if they are of a sensible size, written whole or not at all.
+//! Files on disk: read completely up to a size limit, written completely or not at all.
 
 mod read;
 mod write;

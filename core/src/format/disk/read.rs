@@ -1,4 +1,4 @@
-//! Whole files of a sensible size.
+//! Reads whole files up to a size limit.
 
 use std::{fs, path::Path};
 
@@ -8,10 +8,10 @@ use crate::{Error, Result};
 /// Largest file that is read: far above any character or motion, far below the memory of a small machine.
 const MAX_FILE_BYTES: u64 = 1 << 30;
 
-/// The whole of a regular file of a sensible size.
+/// Reads a regular file of at most `MAX_FILE_BYTES`.
 ///
 /// # Errors
-/// [`Error::File`] when it is larger or no regular file, [`Error::Io`] when reading fails.
+/// [`Error::File`] when it is larger or not a regular file, [`Error::Io`] when reading fails.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     let fault = |source| Error::Io { path: path.into(), action: "read", source };
     let metadata = fs::metadata(path).map_err(fault)?;

@@ -1,7 +1,7 @@
-//! FBX text as a binary file, for tests: the same nodes in the layout of version 7400 (A. Gessler, "FBX binary file
-//! format specification", Blender developers' blog, 2013).
+//! Converts FBX text to a binary file, for tests: the same nodes in the layout of version 7400 (A. Gessler, "FBX binary
+//! file format specification", Blender developers' blog, 2013).
 
-/// A node: name, properties, nodes below.
+/// A node: name, properties, child nodes.
 struct Node {
     name: String,
     properties: Vec<Property>,
@@ -18,8 +18,8 @@ enum Property {
     Floats(Vec<f32>),
 }
 
-/// The file of a text that has a node a line, arrays as `Name: *N {` with `a: …` in the next line, and no strings with
-/// commas or braces.
+/// The binary file for a text with one node per line, arrays as `Name: *N {` with `a: …` on the next line, and no commas
+/// or braces in strings.
 pub(super) fn binary(text: &str) -> Vec<u8> {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with(';'));
     let nodes = nodes(&mut lines);
@@ -29,7 +29,7 @@ pub(super) fn binary(text: &str) -> Vec<u8> {
         write(node, &mut out);
     }
     out.extend([0; 13]);
-    // The footer: an identity, padding, the version and its mark.
+    // The footer: an ID, padding, the version and its magic bytes.
     out.extend([
         0xfa, 0xbc, 0xab, 0x09, 0xd0, 0xc8, 0xd4, 0x66, 0xb1, 0x76, 0xfb, 0x83, 0x1c, 0xf7, 0x26, 0x7e,
     ]);
@@ -56,7 +56,7 @@ fn nodes<'a>(lines: &mut impl Iterator<Item = &'a str>) -> Vec<Node> {
         }
         let mut properties: Vec<Property> = rest.split(',').filter(|p| !p.is_empty()).map(property).collect();
         if name == "P" {
-            // Identities are long, and so are times; what a property calls a number is one.
+            // Object IDs and times are 64-bit integers; properties of a floating-point type are doubles.
             let double = ["double", "Number", "Vector3D", "Lcl Translation", "Lcl Scaling", "Lcl Rotation"];
             let Property::Text(kind) = &properties[1] else { panic!("{line}") };
             let (double, long) = (double.contains(&kind.as_str()), kind == "KTime");
@@ -86,7 +86,7 @@ fn property(text: &str) -> Property {
     let text = text.trim();
     if let Some(text) = text.strip_prefix('"') {
         let text = text.trim_end_matches('"');
-        // The kind of an object follows its name in binary files.
+        // In binary files an object's class follows its name.
         let text = text.split_once("::").map_or(text.into(), |(kind, name)| format!("{name}\0\x01{kind}"));
         return Property::Text(text);
     }
@@ -109,7 +109,7 @@ fn array(name: &str, text: &str) -> Property {
 
 fn write(node: &Node, out: &mut Vec<u8>) {
     let start = out.len();
-    // Where the node ends is known at its end.
+    // The node's end offset is filled in below.
     out.extend([0; 4]);
     let properties: Vec<u8> = node.properties.iter().flat_map(bytes).collect();
     out.extend((node.properties.len() as u32).to_le_bytes());
@@ -130,7 +130,7 @@ fn write(node: &Node, out: &mut Vec<u8>) {
 fn bytes(property: &Property) -> Vec<u8> {
     fn all<T: Copy, const N: usize>(code: u8, values: &[T], bytes: impl Fn(T) -> [u8; N]) -> Vec<u8> {
         let data: Vec<u8> = values.iter().flat_map(|value| bytes(*value)).collect();
-        // Their number, not compressed, their bytes.
+        // Array length, encoding (0 = uncompressed), byte length.
         let head = [values.len() as u32, 0, data.len() as u32].map(u32::to_le_bytes).concat();
         [&[code][..], &head, &data].concat()
     }

@@ -1,4 +1,4 @@
-//! A scene as `ufbx` reads it, and its nodes as a tree.
+//! A scene as `ufbx` reads it, and its node tree.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,13 @@ use ufbx::{Node, Scene};
 use crate::error::{Fault, FbxError, ParserError, Within};
 use crate::format::fbx::Result;
 
-/// Most bytes that `ufbx` may take for a scene and while it reads one.
+/// Maximum memory, bytes, that `ufbx` may use for a scene, and again while reading it.
 const MAX_MEMORY: usize = 1 << 31;
-/// Most nodes of a file.
+/// Maximum number of nodes of a file.
 const MAX_NODES: usize = 1 << 16;
-/// Deepest nesting of nodes.
+/// Maximum depth of the node tree.
 const MAX_DEPTH: u32 = 1 << 12;
-/// The scene of a file's bytes, without its surfaces.
+/// Parses a file's bytes into a scene, without geometry.
 pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
     let memory = || ufbx::AllocatorOpts { memory_limit: MAX_MEMORY, ..Default::default() };
     let opts = ufbx::LoadOpts {
@@ -36,7 +36,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
     })
 }
 
-/// Refuses numbers that are none: places and turns would become others of them.
+/// Refuses transforms that are not finite: removing the scale could make finite but wrong ones of them.
 pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Result<()> {
     let is = |t: &ufbx::Transform| {
         vec3(t.translation).is_finite() && quat(t.rotation).is_finite() && vec3(t.scale).is_finite()
@@ -52,7 +52,7 @@ pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Result<()> {
     }
 }
 
-/// Refuses text that ends within a node, which the parser takes for the end of it.
+/// Refuses text that ends inside a node, which the parser would accept as complete.
 fn check_braces(text: &[u8]) -> Result<()> {
     let (mut open, mut quoted, mut comment, mut line) = (Vec::new(), false, false, 1);
     for byte in text {
@@ -73,7 +73,7 @@ fn check_braces(text: &[u8]) -> Result<()> {
     }
 }
 
-/// The nodes of a scene by their place in `Scene::nodes`, which is their `typed_id`.
+/// The nodes of a scene by their index in `Scene::nodes`, which is their `typed_id`.
 pub(super) struct Nodes {
     parents: Vec<Option<usize>>,
     /// Parents first.
@@ -114,10 +114,10 @@ impl Nodes {
         std::iter::successors(self.parents[node], |&above| self.parents[above])
     }
 
-    /// World transforms of all nodes, each with its own mode of inheriting scale.
+    /// World transforms of all nodes, each with its own scale inheritance mode.
     pub(super) fn world(&self, scene: &Scene, locals: &[ufbx::Transform]) -> Vec<DAffine3> {
         let mut world = vec![DAffine3::IDENTITY; locals.len()];
-        // Rotations alone, for nodes that do without their parent's scale.
+        // Rotations only, for nodes that do not inherit their parent's scale.
         let mut turned = vec![DQuat::IDENTITY; locals.len()];
         for &node in &self.order {
             let local = &locals[node];
@@ -141,8 +141,8 @@ impl Nodes {
         world
     }
 
-    /// World transforms of joints in the bind pose: of a skin, else of a pose, else of the nodes without
-    /// motion. Joints that the bind pose does not hold follow their parents.
+    /// World transforms of joints in the bind pose: from skin clusters, else from bind poses, else from the nodes at rest.
+    /// Joints without a bind transform follow their parents.
     pub(super) fn bind_pose(
         &self,
         scene: &Scene,

@@ -1,8 +1,8 @@
-//! FBX, binary and text, through the `ufbx` library, which handles its pre- and post-rotations, pivots and layers.
+//! FBX, binary and text, through the `ufbx` library, which handles pre- and post-rotations, pivots and layers.
 //!
-//! Nodes are evaluated in the file's own unit and composed here to the world, scale and all; joints are those nodes
-//! that are bones; nodes between and above them are folded in. They rest in the file's bind pose where it
-//! has one. Axes other than +Y or +Z up are turned here, as the format lets any axis point anywhere.
+//! Nodes are evaluated in the file's own unit and composed to world space here, including scale; joints are the bone nodes
+//! (the animated nodes where there are none), with nodes between and above them folded in. The rest pose is the file's
+//! bind pose where it has one. Files whose up axis is neither +Y nor +Z are rotated here, as FBX allows any axes.
 
 #[cfg(test)]
 mod binary;

@@ -1,4 +1,4 @@
-//! A scene's bones and animations as a motion.
+//! Converts a scene's bones and animations to a motion.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,10 +16,10 @@ use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
 
-/// Most animations of a file.
+/// Maximum number of animations of a file.
 const MAX_TAKES: usize = 1 << 10;
 
-/// Reads a file; a clip without a name of its own is named after it.
+/// Reads a file; an unnamed clip is named after it.
 pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::Result<RawMotion> {
     motion(bytes, &clip_name(path), options).map_err(|error| Error::file(path, error))
 }
@@ -81,20 +81,20 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
     })
 }
 
-/// What moves, and how it rests.
+/// The animated skeleton and its rest pose.
 struct Animated<'a> {
     scene: &'a Scene,
     nodes: &'a Nodes,
-    /// Places in `Scene::nodes`, parents first.
+    /// Indices into `Scene::nodes`, parents first.
     joints: &'a [usize],
     parents: &'a [Option<u32>],
-    /// From the file's axes to those that are handed on.
+    /// Rotation from the file's axes to those of the result.
     turn: DAffine3,
     rest: &'a [RigidTransform],
 }
 
 impl Animated<'_> {
-    /// Every animation, sampled at a rate; one without a name is called `name`.
+    /// Every animation, sampled at a rate; an unnamed one is called `name`.
     fn read(&self, rate: f64, name: &str) -> Result<Vec<Take>> {
         let Self { scene, nodes, joints, parents, turn, rest } = *self;
         if scene.anim_stacks.is_empty() {
@@ -136,7 +136,7 @@ impl Animated<'_> {
     }
 }
 
-/// The time that the file says an animation lasts; where it does not, from the first to the last key.
+/// Start and end of an animation: as stated in the file, else from the first to the last key.
 fn span(stack: &ufbx::AnimStack) -> (f64, f64) {
     if stack.time_begin < stack.time_end {
         return (stack.time_begin, stack.time_end);
@@ -149,7 +149,7 @@ fn span(stack: &ufbx::AnimStack) -> (f64, f64) {
     if begin < end { (begin, end) } else { (stack.time_begin, stack.time_begin) }
 }
 
-/// The nodes that are bones, parents first; where there are none, those that are animated.
+/// The bone nodes, parents first; the animated nodes where there are no bones.
 fn joints(scene: &Scene, nodes: &Nodes) -> Result<Vec<usize>> {
     let mut joints: Vec<usize> =
         nodes.order.iter().copied().filter(|&node| scene.nodes[node].bone.is_some()).collect();
@@ -171,7 +171,7 @@ fn joints(scene: &Scene, nodes: &Nodes) -> Result<Vec<usize>> {
     }
 }
 
-/// The axis that the file says is up, and a turn for files of other axes, for which it is `None`.
+/// The file's up axis, `None` unless +Y or +Z, and the rotation to +Y up for files with other axes.
 fn axes(scene: &Scene, options: &ReadOptions) -> Result<(Option<Axis>, DAffine3)> {
     let axes = scene.settings.axes;
     let said = match axes.up {

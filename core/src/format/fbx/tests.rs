@@ -10,8 +10,8 @@ use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
-/// Hips above a leg, in centimetres, +Y up, 30 frames a second: the hips rise by 20 cm in a second; the leg, which
-/// rests turned by its pre-rotation of 90° about Z, turns by 90° about X; the empty above both is scaled.
+/// Hips above a leg, in centimetres, +Y up, 30 frames per second: the hips rise by 20 cm in a second; the leg, which has a
+/// pre-rotation of 90° about Z at rest, rotates by 90° about X; the empty above both is scaled.
 const SMALL: &str = r#"; FBX 7.4.0 project file
 FBXHeaderExtension: {
     FBXVersion: 7400
@@ -140,7 +140,7 @@ fn bones_turn_as_their_curves_say() {
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::File));
     assert_eq!((motion.report.unit, motion.report.unit_found), (Unit::Centimetre, Found::File));
     let [hips, leg] = clip.pose(30).locals[..] else { panic!() };
-    // The scale of what stands above is in the lengths.
+    // The scale of the nodes above is folded into the translations.
     assert!(hips.translation.distance(Vec3::Y * 1.2) < 1e-5, "{hips:?}");
     assert!(leg.translation.distance(Vec3::new(0.1, -0.1, 0.1)) < 1e-5, "{leg:?}");
     let turned = Rotation::from_rotation_z(FRAC_PI_2) * Rotation::from_rotation_x(FRAC_PI_2);
@@ -210,14 +210,14 @@ fn a_scaled_joint_moves_its_children_away() {
     assert!(leg.distance(Vec3::new(0.3, -0.3, 0.3)) < 1e-5, "{leg}");
 }
 
-/// What a reader makes of damage: a motion of finite numbers, or a reason that is ours.
+/// Reads damaged bytes: a motion of finite numbers, or an error about the file's content.
 fn or_reason(bytes: &[u8]) -> crate::Result<()> {
     let motion =
         read_motion_from_bytes(bytes, Path::new("a.fbx"), &ReadOptions::default()).inspect_err(|error| {
             let Error::File { source, .. } = error else { panic!("{error}") };
             assert!(matches!(source, FormatError::Fbx(_) | FormatError::Content(_)), "{error}");
         })?;
-    // Numbers are finite, or there is no clip.
+    // `Clip::new` has checked that all numbers are finite.
     assert!(!motion.clips.is_empty());
     Ok(())
 }
@@ -262,7 +262,7 @@ fn says_what_is_wrong() {
         ),
         ("expected at most 1048576 frames and", SMALL.replace("\"\",46186158000", "\"\",46186158000000000")),
         ("is damaged or truncated", SMALL[..SMALL.len() / 2].into()),
-        // Curves: other numbers of values than of times; none at all where flags say there are.
+        // Curves with different numbers of values and key times.
         (
             "is damaged or truncated",
             key("KeyValueFloat: *2 {\n            a: 0,90", "KeyValueFloat: *1 {\n            a: 0"),
@@ -278,7 +278,7 @@ fn says_what_is_wrong() {
         let error = read(&text).unwrap_err().to_string();
         assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
     }
-    // A key that is no number.
+    // A key whose value is NaN.
     let mut bytes = binary(SMALL);
     let value = bytes.windows(4).position(|w| w == 90.0_f32.to_le_bytes()).unwrap();
     bytes[value..value + 4].copy_from_slice(&f32::NAN.to_le_bytes());

@@ -1,5 +1,5 @@
-//! What the readers of motion share: their options, their result ([`raw`]), and how units and axes are found
-//! for all of them ([`units_and_axes`], by the body's [`proportions`]).
+//! Shared by the motion readers: options, result ([`raw`]), and detection of units and axes ([`units_and_axes`], from the
+//! body's [`proportions`]).
 
 mod proportions;
 pub(crate) mod raw;
@@ -14,20 +14,20 @@ use crate::error::Fault;
 use crate::space::{Axis, Unit};
 use crate::{Error, Result};
 
-/// What the caller knows of a file; it overrides what the file states.
+/// What the caller knows about a file; overrides what the file states.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReadOptions {
     /// The unit of lengths.
     pub unit: Option<Unit>,
     /// The axis that points up.
     pub up: Option<Axis>,
-    /// Frames per second. Formats of frames (BVH, npz) are taken to be recorded at this rate; formats of curves (FBX,
-    /// glTF) are sampled at it.
+    /// Frames per second. Frame-based formats (BVH, npz) are taken to be recorded at this rate; curve-based formats (FBX, glTF)
+    /// are sampled at it.
     pub frames_per_second: Option<f64>,
 }
 
 impl ReadOptions {
-    /// The same options with the unit of lengths in metres.
+    /// The same options with a unit of this many metres.
     ///
     /// # Errors
     /// [`Error::Request`] when the number is not finite and positive.
@@ -38,7 +38,7 @@ impl ReadOptions {
         Ok(Self { unit: Some(unit), ..self })
     }
 
-    /// Refuses a rate that is none.
+    /// Refuses a frame rate outside 0.1 to 1000.
     pub(super) fn check(&self) -> Result<()> {
         match self.frames_per_second {
             Some(rate) if !(0.1..=1000.0).contains(&rate) => {
@@ -49,30 +49,30 @@ impl ReadOptions {
     }
 }
 
-/// Where a value is from.
+/// Source of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Found {
-    /// The file, or its format, says so.
+    /// Stated by the file or its format.
     File,
-    /// From the proportions and stance of the body, or the times of keys.
+    /// Detected from the proportions and stance of the body, or the times of keys.
     Detected,
-    /// From [`ReadOptions`].
+    /// Requested by [`ReadOptions`].
     Asked,
-    /// Nothing states it: what is usual for the format.
+    /// Not stated: the format's usual value.
     Assumed,
 }
 
-/// How a file was understood.
+/// How a file was interpreted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReadReport {
     /// The format's name.
     pub format: &'static str,
-    /// The unit that its lengths were taken to be in.
+    /// The unit in which its lengths were read.
     pub unit: Unit,
     /// How the unit was found.
     pub unit_found: Found,
-    /// The axis that was taken to point up.
+    /// The axis read as up.
     pub up: Axis,
     /// How the axis was found.
     pub up_found: Found,
@@ -80,23 +80,23 @@ pub struct ReadReport {
     pub frames_per_second: f64,
     /// How the rate was found.
     pub rate_found: Found,
-    /// About how tall the body is, metres, from the lengths of its bones; 0 where there are no bones.
+    /// Approximate stature of the body, metres, from the lengths of its bones; 0 without bones.
     pub stature: f64,
-    /// What was corrected or assumed, or looks wrong.
+    /// Corrections, assumptions and suspicious values.
     pub warnings: Vec<String>,
 }
 
-/// What was read of a motion file: at least one clip; metres, +Y up, facing as in the file.
+/// The content of a motion file: at least one clip; metres, +Y up, facing as in the file.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// The clips, which share a rest pose.
     pub clips: Vec<Clip>,
-    /// How the file was understood.
+    /// How the file was interpreted.
     pub report: ReadReport,
 }
 
 impl Motion {
-    /// A clip that was made by a program instead of read from a file: metres, +Y up.
+    /// Wraps a clip that was generated instead of read from a file: metres, +Y up.
     pub fn of_clip(clip: Clip) -> Self {
         let report = ReadReport {
             format: "poses",
@@ -113,12 +113,12 @@ impl Motion {
     }
 }
 
-/// The file's name without its ending: what a clip is called that has no other name.
+/// The file name without its extension, for clips without a name.
 pub(crate) fn clip_name(path: &Path) -> String {
     path.file_stem().map_or_else(|| "clip".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Refuses bytes that do not start as those of a format do.
+/// Refuses bytes that do not start with one of a format's magic numbers.
 pub(crate) fn check_start(bytes: &[u8], magics: &[&[u8]], expected: &str) -> std::result::Result<(), Fault> {
     if magics.iter().any(|magic| bytes.starts_with(magic)) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The size and stance of a skeleton that nothing is known of: what [`units_and_axes`](super::units_and_axes) decides by.
+//! The size and stance of an unknown skeleton, from which [`units_and_axes`](super::units_and_axes) infers unit and up axis.
 
 use glam::Vec3;
 
@@ -7,17 +7,17 @@ use crate::math::RigidTransform;
 use crate::skeleton::model_from_joints;
 use crate::space::Axis;
 
-/// How many times a person is as long from fingertip to toe, along the bones, as tall. Of skeletons that end at wrists
-/// and ankles 1.25, of those with fingers and toes 1.5.
+/// Path length from fingertip to toe along the bones, divided by stature: 1.25 for skeletons that end at wrists and ankles,
+/// 1.5 for those with fingers and toes.
 const SPAN_PER_STATURE: f64 = 1.4;
-/// How much longer one extent has to be than another to decide which way is up.
+/// Ratio of two extents from which the longer one decides the up axis.
 const CLEAR: f32 = 1.5;
-/// The fewest joints of a person.
+/// Minimum number of joints of a person.
 const FIGURE: usize = 10;
-/// Most frames that are looked at.
+/// Maximum number of frames to sample.
 const SAMPLES: usize = 24;
 
-/// How far a pose reaches, on average over the poses of a kind.
+/// Extents and lowest point of the body, averaged over a set of poses.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stance {
     extents: Vec3,
@@ -31,14 +31,14 @@ impl Stance {
         if y > CLEAR * z { Some(Axis::Y) } else { (z > CLEAR * y).then_some(Axis::Z) }
     }
 
-    /// Whether the lowest joints are about at zero, as on a floor.
+    /// Whether the lowest joints are near zero, as on a floor.
     fn on_floor(self, axis: Axis) -> bool {
         self.lowest[axis.index()].abs() < 0.2 * self.extents[axis.index()]
     }
 }
 
-/// The body within a file's joints: those that bones of fixed length connect. A root on the floor that the
-/// hips move away from is not part of it.
+/// The body among a file's joints: those connected by bones of fixed length. A root on the floor from which the hips move
+/// away is not part of it.
 pub(super) struct Proportions {
     lengths: Vec<f32>,
     member: Vec<bool>,
@@ -53,7 +53,7 @@ impl Proportions {
             let (joint, count) = (track.joint as usize, track.values.len().max(1));
             let mean = track.values.iter().sum::<Vec3>() / count as f32;
             let spread = track.values.iter().map(|v| v.distance(mean)).fold(0.0, f32::max);
-            // Bones that stretch a little are still bones.
+            // Bones may stretch a little.
             loose[joint] |= spread > 0.25 * mean.length() + 0.05 * longest;
             steps[joint] = mean;
         }
@@ -72,16 +72,16 @@ impl Proportions {
         Self { lengths, member: top.iter().map(|&t| Some(t) == largest).collect() }
     }
 
-    /// Whether there are joints enough for limbs: a door is not to be scaled to a person.
+    /// Whether there are enough joints for a person: a door must not be scaled to human size.
     pub(super) fn is_figure(&self) -> bool {
         self.member.iter().filter(|m| **m).count() >= FIGURE
     }
 
-    /// How tall the body is in the file's unit, from the longest path along its bones, which no pose changes; 0 where
-    /// there are no bones.
+    /// The body's stature in the file's unit, from the longest path along its bones, which is independent of the pose; 0
+    /// without bones.
     pub(super) fn stature(&self, raw: &RawMotion) -> f64 {
         let count = self.lengths.len();
-        // The longest path down from each joint; children come after their parents.
+        // The longest path downwards from each joint; children come after their parents.
         let (mut down, mut span) = (vec![0.0f64; count], 0.0f64);
         for joint in (0..count).rev().filter(|&j| self.member[j]) {
             let end = raw.skeleton.ends()[joint].map_or(0.0, |end| f64::from(end.length()));
@@ -98,9 +98,8 @@ impl Proportions {
         span / SPAN_PER_STATURE
     }
 
-    /// The axis along which the body is clearly upright: from its rest pose and its motion, which may contradict each
-    /// other, as when a person lies down, or a root turns the file's axes. To overrule the file takes both, or
-    /// feet on a floor.
+    /// The axis along which the body is clearly upright, from its rest pose and its motion. These may disagree, when a person
+    /// lies down or a root rotates the file's axes. Overruling the file takes agreement of both, or feet on a floor.
     pub(super) fn upright(&self, raw: &RawMotion) -> Option<Axis> {
         let rest = (!raw.rest_is_upright).then(|| self.stance(raw, std::iter::once(rest_of(raw).to_vec())));
         let rest = rest.and_then(Stance::upright);
@@ -132,12 +131,12 @@ impl Proportions {
     }
 }
 
-/// Each joint at rest in its parent.
+/// Local rest transform of each joint.
 fn rest_of(raw: &RawMotion) -> &[RigidTransform] {
     &raw.skeleton.rest_pose().locals
 }
 
-/// Poses of a take, evenly spread.
+/// Evenly spaced poses of a take.
 fn poses<'a>(raw: &'a RawMotion, take: &'a Take) -> impl Iterator<Item = Vec<RigidTransform>> + 'a {
     let frames = take.rotations.len() / raw.skeleton.len();
     let samples = frames.min((SAMPLES / raw.takes.len().max(1)).max(1));

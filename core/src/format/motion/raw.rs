@@ -1,4 +1,4 @@
-//! What the readers of the formats return: a motion in the units and axes of its file.
+//! The common result of all motion readers: a motion in the units and axes of its file.
 
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ use crate::math::{RigidTransform, RigidTransformF64, Rotation};
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
-/// A skeleton and its motions as a file has them.
+/// A skeleton and its motions as stored in a file.
 #[derive(Debug)]
 pub(crate) struct RawMotion {
     /// The format's name.
@@ -17,11 +17,11 @@ pub(crate) struct RawMotion {
     /// In the file's unit and axes.
     pub(crate) skeleton: Skeleton,
     pub(crate) takes: Vec<Take>,
-    /// What the file says of its unit; `None` where the format does not.
+    /// The unit stated by the file, if any.
     pub(crate) unit: Option<Unit>,
-    /// What the file says of its axis; `None` where the format does not.
+    /// The up axis stated by the file, if any.
     pub(crate) up: Option<Axis>,
-    /// The rest pose is ours (+Y up) whatever the motion's axis is.
+    /// The rest pose is +Y up regardless of the motion's up axis.
     pub(crate) rest_is_upright: bool,
     pub(crate) rate_found: Found,
     pub(crate) warnings: Vec<String>,
@@ -35,11 +35,11 @@ pub(crate) struct Take {
     /// Frames × joints.
     pub(crate) rotations: Vec<Rotation>,
     pub(crate) tracks: Vec<TranslationTrack>,
-    /// Weights of morph targets, for characters that have such targets.
+    /// Morph target weights, for characters with morph targets.
     pub(crate) weights: Vec<WeightTrack>,
 }
 
-/// The weight of what a file calls by a token.
+/// The weight of the morph targets identified by a token.
 #[derive(Debug)]
 pub(crate) struct WeightTrack {
     pub(crate) token: String,
@@ -47,7 +47,7 @@ pub(crate) struct WeightTrack {
     pub(crate) weights: Vec<f32>,
 }
 
-/// Gives the second and later joints of a name another one, and says so.
+/// Renames every joint that repeats an earlier name, with a warning.
 pub(crate) fn make_unique(names: &mut [String], warnings: &mut Vec<String>) {
     let all: std::collections::BTreeSet<String> = names.iter().cloned().collect();
     let mut counts = std::collections::BTreeMap::<String, usize>::new();
@@ -70,27 +70,27 @@ pub(crate) fn make_unique(names: &mut [String], warnings: &mut Vec<String>) {
     }
 }
 
-/// The rate that a rounded number was meant to be: a whole one within 0.02 %, as 1 / 0.0333 is 30.
+/// Rounds a rate within 0.02 % of a whole number to it: 1 / 0.0333333 becomes 30.
 pub(crate) fn snapped_rate(rate: f64) -> f64 {
     let whole = rate.round();
     if whole >= 1.0 && (rate / whole - 1.0).abs() < 2e-4 { whole } else { rate }
 }
 
-/// Translation tracks of those joints that leave their rest; `columns` holds every joint's translations.
+/// Translation tracks of the joints that leave their rest position; `columns` holds every joint's translations.
 pub(crate) fn moving(rest: &[RigidTransform], columns: Vec<Vec<Vec3>>) -> Vec<TranslationTrack> {
     let longest = rest.iter().map(|l| l.translation.length()).fold(0.0, f32::max);
-    // Rounding of the sums that led here, relative to the size of the skeleton.
+    // Accumulated rounding, relative to the size of the skeleton.
     let tolerance = 4e-6 * longest;
     let moves = |joint: usize, values: &[Vec3]| {
         let rest = rest[joint].translation;
-        // Written so that what is not a number moves, and is found by the clip's own check.
+        // NaN counts as movement, so that the clip's own check finds it.
         !values.iter().all(|v| v.distance(rest) <= tolerance)
     };
     let tracks = columns.into_iter().enumerate().filter(|(joint, values)| moves(*joint, values));
     tracks.map(|(joint, values)| TranslationTrack { joint: joint as u32, values }).collect()
 }
 
-/// Each joint's transform to its parent, for joints that come after their parents.
+/// Each joint's `parent_from_joint`, for joints that come after their parents.
 pub(crate) fn parent_from_joints(
     world: &[RigidTransformF64],
     parents: &[Option<u32>],
@@ -102,7 +102,7 @@ pub(crate) fn parent_from_joints(
     world.iter().zip(parents).map(local).collect()
 }
 
-/// Collects frames given as local transforms into a take.
+/// Collects frames of local transforms into a take.
 pub(crate) struct Recorder {
     rotations: Vec<Rotation>,
     columns: Vec<Vec<Vec3>>,
@@ -131,9 +131,9 @@ impl Recorder {
     }
 }
 
-/// How many frames a motion of so many seconds has, if a clip of so many joints may have them.
+/// Number of frames of a motion, if a clip with this many joints may have them.
 pub(crate) fn frame_count(seconds: f64, rate: f64, joints: usize) -> Result<usize, Fault> {
-    // Each frame of each joint is evaluated from curves: what a few bytes of a file may ask for has to end.
+    // Each joint is evaluated from curves in each frame: a few bytes of a file must not demand unbounded work.
     const MOST: u32 = 1 << 24;
     let frames = (seconds * rate).round() + 1.0;
     if (0.0..=MAX_FRAMES as f64).contains(&frames) && frames * joints as f64 <= f64::from(MOST) {

@@ -1,6 +1,5 @@
-//! Arrays of a numpy archive, in C order, as `f64`. A few bytes of such a file can ask for any amount of memory or
-//! depth of recursion, so that headers are looked at before the crate that reads them does, and data is read up to a
-//! limit.
+//! Arrays of a numpy archive, in C order, as `f64`. A few bytes of such a file can demand any amount of memory or recursion
+//! depth; therefore headers are checked before the `npyz` crate parses them, and data is read up to a limit.
 
 use std::io::{Cursor, Read};
 
@@ -10,9 +9,9 @@ use npyz::{NpyFile, Order};
 use crate::error::{Fault, NpzError, ParserError, Within};
 use crate::format::npz::Result;
 
-/// Most bytes of one array: an hour of SMPL-X at 100 frames a second takes 475 MB as `f64`.
+/// Maximum size of one array, bytes: an hour of SMPL-X at 100 frames per second takes 475 MB as `f64`.
 const MAX_BYTES: u64 = 1 << 29;
-/// Longest header of a plain array; numpy pads to 64 or 128.
+/// Longest header of a plain array, bytes; numpy pads headers to 64 or 128.
 const MAX_HEADER: usize = 1024;
 
 /// An array in memory.
@@ -24,12 +23,12 @@ pub(super) struct Array {
 }
 
 impl Array {
-    /// Length of the first axis; 1 of a single number.
+    /// Length of the first axis; 1 for a scalar.
     pub(super) fn rows(&self) -> usize {
         self.shape.first().map_or(1, |&rows| rows as usize)
     }
 
-    /// Numbers for each step along the first axis.
+    /// Number of values per step along the first axis.
     pub(super) fn width(&self) -> usize {
         self.values.len().checked_div(self.rows()).unwrap_or(0)
     }
@@ -46,7 +45,7 @@ impl<'a> Archive<'a> {
         Ok(Self { zip: zip.map_err(|e| refused("is not a zip archive, or truncated", e))? })
     }
 
-    /// The error for an array that is missing.
+    /// The error for a missing array.
     pub(super) fn missing(&self, wanted: &str) -> NpzError {
         let mut names: Vec<&str> = self.zip.array_names().collect();
         names.sort_unstable();
@@ -57,7 +56,7 @@ impl<'a> Archive<'a> {
         Fault::missing(format_args!("array {wanted}; the file has {}{more}", has.escape_debug())).into()
     }
 
-    /// The first of these arrays that is there, with its name.
+    /// The first of these arrays that exists, with its name.
     pub(super) fn first(&mut self, names: &[&'static str]) -> Result<Option<(&'static str, Array)>> {
         for &name in names {
             if self.zip.array_names().any(|n| n == name) {
@@ -79,12 +78,12 @@ impl<'a> Archive<'a> {
     }
 }
 
-/// What a crate says of bytes that it cannot read.
+/// The error for bytes that a parser crate refuses.
 fn refused(what: &str, error: impl std::fmt::Display) -> ParserError {
     ParserError::refused(format_args!("{what}: {error}"))
 }
 
-/// An array from the bytes of its `.npy`.
+/// Decodes the bytes of a `.npy` file.
 pub(super) fn decode(bytes: &[u8]) -> Result<Array> {
     check_header(bytes)?;
     let mut data = bytes;
@@ -109,7 +108,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Array> {
         other => return Err(Fault::unexpected("floating-point or whole numbers", other).into()),
     };
     let mut values = values.map_err(|e| refused("is not an array", e))?;
-    // One axis, or none, is the same in both orders.
+    // Arrays of one axis or none are the same in both orders.
     if order == Order::Fortran && shape.len() > 1 {
         let [rows, columns] = shape.as_slice() else {
             let found = format!("a shape of {shape:?}");
@@ -125,7 +124,7 @@ fn widened<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
     values.into_iter().map(Into::into).collect()
 }
 
-/// Refuses headers that are longer, deeper or of larger numbers than a plain array's.
+/// Refuses headers that are longer, more deeply nested or with larger numbers than those of a plain array.
 fn check_header(bytes: &[u8]) -> Result<()> {
     let length = match bytes {
         [0x93, b'N', b'U', b'M', b'P', b'Y', 1, 0, a, b, ..] => usize::from(u16::from_le_bytes([*a, *b])),
@@ -141,7 +140,7 @@ fn check_header(bytes: &[u8]) -> Result<()> {
         return Err(Fault::too_many(most, length).into());
     };
     let brackets = header.iter().filter(|c| b"([{".contains(c)).count();
-    // The product of numbers with so many digits together fits 64 bits.
+    // The product of numbers with this many digits in total fits in 64 bits.
     let digits = header.iter().filter(|c| c.is_ascii_digit()).count();
     if brackets > 4 || digits > 18 {
         return Err(Fault::unexpected("a plain array", header.trim_ascii_end().escape_ascii()).into());

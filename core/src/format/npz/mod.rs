@@ -1,14 +1,14 @@
-//! AMASS and SMPL-X motion: numpy archives of axis-angle rotations, as Mahmood et al., "AMASS: Archive of Motion
-//! Capture as Surface Shapes" (2019), and the SMPL, SMPL-H and SMPL-X body models' tools write them.
+//! AMASS and SMPL-X motion: numpy archives of axis-angle rotations, as in Mahmood et al., "AMASS: Archive of Motion Capture
+//! as Surface Shapes" (2019), and as written by the tools of the SMPL, SMPL-H and SMPL-X body models.
 //!
-//! The files hold no skeleton, which comes from the body model. The rest pose here has the public names of the
-//! joints and **assumed lengths of bones**, round numbers for a person of 1.70 m: see `smpl`. World axes are AMASS'
-//! +Z up, unless the body is upright along Y; rest poses of the body models are +Y up, facing +Z.
+//! The files contain no skeleton, which is part of the body model. The rest pose used here has the public joint names and
+//! **assumed bone lengths**, round numbers for a person of 1.70 m: see `smpl`. World axes are AMASS' +Z up, unless the body
+//! is upright along Y; rest poses of the body models are +Y up, facing +Z.
 //!
-//! The pelvis is placed at `trans`. The body models place it at `trans` + J₀, where J₀ is the pelvis' place in the
+//! The pelvis is placed at `trans`. The body models place it at `trans` + J₀, where J₀ is the pelvis position in the
 //! model's own rest pose: some 0.2 to 0.4 m below the model's origin, the same vector in every frame of a file. J₀ belongs
-//! to the body model, whose numbers may not be used here, and differs with the shape. What is missing is one constant
-//! shift of the whole clip, sideways in a world of +Z up and downwards in one of +Y up; it leaves poses, speeds and paths
+//! to the body model, whose data may not be used here, and varies with the shape. The missing term is one constant shift
+//! of the whole clip, horizontal in a world of +Z up and downwards in one of +Y up; it leaves poses, speeds and paths
 //! unchanged, and the height is found from the feet ([`plant`](crate::retarget::feet::plant)).
 
 mod array;

@@ -1,4 +1,4 @@
-//! The arrays of an archive as a motion of the skeleton that has their number of joints.
+//! Converts the arrays of an archive to a motion of the body model with that number of joints.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -86,29 +86,29 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
     })
 }
 
-/// The error for an array that is not as expected.
+/// The error for an array with unexpected content.
 fn wrong<T>(array: &str, expected: impl Display, found: impl Display) -> Result<T> {
     Err(NpzError::from(Fault::unexpected(expected, found)).within(array.to_owned()))
 }
 
-/// A turn about an axis by its length; `NaN` where it is not finite.
+/// The rotation of an axis-angle vector, whose length is the angle; `NaN` where it is not finite.
 fn rotation(turn: DVec3) -> Rotation {
     let angle = turn.length();
     let (sin, cos) = libm::sincos(angle / 2.0);
-    // sin(a/2) / a, whose limit at none is one half.
+    // sin(a/2) / a, which tends to one half at 0.
     let scale = if angle < 1e-9 { 0.5 } else { sin / angle };
     let axis: Vec3 = (turn * scale).as_vec3();
     Rotation::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
 }
 
-/// Frames × width numbers, three a joint.
+/// Frames × width values, three per joint.
 struct Poses {
     frames: usize,
     width: usize,
     values: Vec<f64>,
 }
 
-/// The key of the whole, or the keys of the parts in the order of the joints, of which those after the body are optional.
+/// Reads one array of all joints, or one array per part in joint order, of which those after the body are optional.
 fn read_poses(archive: &mut Archive) -> Result<Poses> {
     if let Some((key, poses)) = archive.first(&["poses", "smpl_poses", "fullpose"])? {
         let (frames, width) = (poses.rows(), poses.width());

@@ -1,8 +1,8 @@
-//! Skeletons of the SMPL family: public names and hierarchy of joints, places of our own.
+//! Skeletons of the SMPL family: public joint names and hierarchy, joint positions of our own.
 //!
-//! The body models' own joint places are under licences that forbid their use in products, and differ from body to
-//! body anyway. These are round numbers for a person 1.70 m tall in a T-pose, from everyday proportions: legs about
-//! half of the height, arm span about the height. Retargeting scales by legs, so that only ratios matter.
+//! The body models' own joint positions are under licences that forbid use in products, and vary with the shape anyway.
+//! These are round numbers for a person 1.70 m tall in a T-pose, from common proportions: legs about half of the stature,
+//! arm span about the stature. Retargeting scales by leg length, so that only ratios matter.
 
 use glam::Vec3;
 
@@ -11,13 +11,13 @@ use crate::Side;
 use crate::math::{RigidTransform, Rotation};
 use crate::skeleton::Skeleton;
 
-/// A rest pose: +Y up, facing +Z, metres; joints rest unturned.
+/// A rest pose: +Y up, facing +Z, metres; joint rotations are the identity.
 pub(super) struct BodyModel {
     pub(super) name: &'static str,
     pub(super) skeleton: Skeleton,
 }
 
-/// A joint: name, parent, place. Of a pair only the left one is written; `left_` becomes `right_` and x changes sign.
+/// A joint: name, parent, position. The right joint of a pair repeats the left one's position; its x changes sign on use.
 type Row = (&'static str, &'static str, [f32; 3]);
 
 /// The first 22 joints of every model of the family, in its order.
@@ -45,17 +45,17 @@ const BODY: [Row; 22] = [
     ("left_wrist", "left_elbow", [0.70, 1.40, -0.01]),
     ("right_wrist", "right_elbow", [0.70, 1.40, -0.01]),
 ];
-/// What SMPL has for hands.
+/// The hands of SMPL.
 const PALMS: [Row; 2] =
     [("left_hand", "left_wrist", [0.78, 1.40, -0.01]), ("right_hand", "right_wrist", [0.78, 1.40, -0.01])];
-/// What SMPL-X has between body and hands.
+/// The joints of SMPL-X between body and hands.
 const FACE: [Row; 3] = [
     ("jaw", "head", [0.0, 1.54, 0.03]),
     ("left_eye", "head", [0.03, 1.59, 0.08]),
     ("right_eye", "head", [0.03, 1.59, 0.08]),
 ];
-/// Fingers of the left hand in the order of SMPL-H and SMPL-X: the first knuckle, and the lengths to the next two
-/// and to the tip. A thumb points forwards and outwards, the others along the arm.
+/// Fingers of the left hand in the order of SMPL-H and SMPL-X: position of the first knuckle, and the lengths to the next
+/// two joints and to the tip. The thumb points forwards and outwards, the others along the arm.
 const FINGERS: [(&str, [f32; 3], [f32; 3]); 5] = [
     ("index", [0.79, 1.40, 0.02], [0.04, 0.025, 0.02]),
     ("middle", [0.80, 1.40, 0.0], [0.045, 0.03, 0.02]),
@@ -64,7 +64,7 @@ const FINGERS: [(&str, [f32; 3], [f32; 3]); 5] = [
     ("thumb", [0.72, 1.39, 0.02], [0.04, 0.03, 0.025]),
 ];
 
-/// The body model of so many joints: body alone, SMPL, SMPL-H or SMPL-X.
+/// The body model with this number of joints: body only, SMPL, SMPL-H or SMPL-X.
 pub(super) fn body_model(joints: usize) -> Result<Option<BodyModel>> {
     let mut found = Building::default();
     found.extend(&BODY);

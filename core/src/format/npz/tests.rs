@@ -10,7 +10,7 @@ use super::array::decode;
 use crate::format::{Found, Motion, ReadOptions, read_motion_from_bytes};
 use crate::space::Axis;
 
-/// An array: name, shape, numbers.
+/// An array: name, shape, values.
 type Named<'a> = (&'a str, &'a [u64], Vec<f64>);
 
 fn archive(arrays: &[Named]) -> Vec<u8> {
@@ -30,7 +30,7 @@ fn read(bytes: &[u8]) -> crate::Result<Motion> {
     read_motion_from_bytes(bytes, Path::new("walk.npz"), &ReadOptions::default())
 }
 
-/// Two frames of somebody standing with +Z up, the left knee bent in the second.
+/// Two frames of a standing person, +Z up, with the left knee bent in the second.
 fn standing(joints: usize) -> [Named<'static>; 3] {
     let mut poses = vec![0.0; 2 * 3 * joints];
     for frame in 0..2 {
@@ -65,7 +65,7 @@ fn every_model_of_the_family_stands_on_its_feet() {
             let pose = clip.pose(frame).model_from_joints(clip.skeleton().parents());
             pose[clip.skeleton().find(name).unwrap()].translation
         };
-        // The rest pose, which the root's turn and the file's axis leave as it is.
+        // Root rotation and up axis cancel out: the rest pose.
         for (joint, rest) in clip.skeleton().names().iter().zip(clip.skeleton().model_from_joints()) {
             assert!(place(0, joint).distance(rest.translation) < 1e-5, "{joint}");
         }
@@ -245,7 +245,7 @@ fn damage_is_an_error_or_another_motion() {
         for byte in [0x00, 0x7f, 0xff] {
             let mut bytes = bytes.clone();
             bytes[at] = byte;
-            // The directory's own fields have no check sum; the arrays have.
+            // The zip directory's fields have no checksum; the arrays have.
             if let Ok(motion) = read(&bytes) {
                 assert_eq!(motion.clips[0].frame_count(), 2);
             }

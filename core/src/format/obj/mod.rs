@@ -1,4 +1,4 @@
-//! Wavefront OBJ: surfaces in the bind pose. Skeleton, motion, morph targets and materials have no place in it.
+//! Wavefront OBJ: meshes in the bind pose. Skeleton, motion, morph targets and materials are not stored.
 
 mod read;
 mod write;

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: polygons, one mesh per `o` or `g` section that has faces.
 //!
-//! A mesh has the vertices that its section declares and those that its faces use, in the file's order, so that a file
-//! of ours keeps the model's order. Statements about colours, smoothing, curves and lines are ignored.
+//! A mesh has the vertices declared in its section and those used by its faces, in file order, so that files written by
+//! this library keep the model's order. Statements about colours, smoothing, curves and lines are ignored.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -14,11 +14,11 @@ use crate::format::limits::MAX_ELEMENTS;
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
 
-/// Reads an `.obj`; `path` is for messages. All meshes have one material, white.
+/// Reads an `.obj`; `path` is for messages. All meshes share one white material.
 ///
 /// # Errors
-/// [`Error::File`] with the line for a number that is none or not finite, an index of nothing, too few corners, a
-/// file of ours that lost its end, or a file without any vertices.
+/// [`Error::File`] with the line for an invalid or non-finite number, an index out of range or too few corners, and
+/// without a line for a truncated file of our own or a file without vertices.
 pub(super) fn read(bytes: &[u8], path: &Path) -> crate::Result<Scene> {
     let mut reader = Reader::default();
     for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> crate::Result<Scene> {
 
 type Result<T> = std::result::Result<T, Fault>;
 
-/// A corner: places in `positions` and, maybe, in `normals`.
+/// A corner: index into `positions` and, optionally, into `normals`.
 type Corner = (u32, Option<u32>);
 
 #[derive(Default)]
@@ -48,14 +48,14 @@ struct Reader {
     faces: usize,
     triangles: usize,
     sections: Vec<Section>,
-    /// Numbers of vertices and faces that our own files announce.
+    /// Numbers of vertices and faces stated in the header of our own files.
     announced: Option<(usize, usize)>,
 }
 
 impl Reader {
     fn line(&mut self, line: &[u8]) -> Result<()> {
         let Ok(line) = std::str::from_utf8(line) else {
-            // Names and comments come in any encoding; they alone may.
+            // Only names and comments may be in another encoding.
             return match line.first() {
                 Some(b'#' | b'o' | b'g' | b'u' | b'm') => self.statement(&String::from_utf8_lossy(line)),
                 _ => Err(Fault::unexpected("text in UTF-8", "other bytes")),
@@ -148,7 +148,7 @@ impl Reader {
         if self.positions.is_empty() {
             return Err(Fault::missing("vertices"));
         }
-        // A file of points alone has one mesh without faces.
+        // A file of points only becomes one mesh without faces.
         let any_faces = self.sections.iter().any(|s| !s.triangles.is_empty());
         let sections = self.sections.iter().filter(|s| !any_faces || !s.triangles.is_empty());
         let sections = sections.filter(|s| any_faces || s.end_vertex > s.first_vertex);
@@ -160,7 +160,7 @@ impl Reader {
     }
 
     fn mesh(&self, section: &Section) -> SceneMesh {
-        // Vertices that are not the section's own, in the file's order, then the place of each.
+        // Vertices from outside the section, in file order, mapped to their index in the mesh.
         let own = section.first_vertex as u32..section.end_vertex as u32;
         let corners = || section.triangles.iter().flatten();
         let mut places: BTreeMap<u32, u32> =
@@ -177,7 +177,7 @@ impl Reader {
         let positions: Vec<_> =
             vertices.map(|vertex| self.positions.get(vertex as usize).copied().unwrap_or_default()).collect();
 
-        // A vertex has the normal of its first corner; all corners must have one for the mesh to have any.
+        // A vertex gets the normal of its first corner; the mesh has normals only if all corners have one.
         let mut normals = Vec::new();
         if !section.triangles.is_empty() && corners().all(|corner| corner.1.is_some()) {
             normals = vec![None; positions.len()];
@@ -218,7 +218,7 @@ fn vector(rest: &str) -> Result<Vec3> {
     Ok(vector)
 }
 
-/// An index as OBJ counts: from 1, or backwards from −1.
+/// An OBJ index: counted from 1, or backwards from −1.
 fn place(text: &str, len: usize, what: &str) -> Result<u32> {
     let index: i64 = text
         .parse()

@@ -1,15 +1,15 @@
 //! Wavefront OBJ: the bind pose for programs without skeletons.
 //!
 //! One `o` object per mesh, the body first with its vertices in the scene's order and unsplit, quads kept, texture
-//! coordinates with v upwards as OBJ has them. Metres. Numbers have as many digits as their `f32` needs to come back
-//! exactly. Colours are left out: a reader that wants them takes the glTF.
+//! coordinates with v upwards as in OBJ. Metres. Numbers have enough digits to restore the exact `f32`. Colours are
+//! omitted: a program that needs them should read the glTF.
 
 use std::fmt::Write;
 
 use crate::Result;
 use crate::scene::{Scene, SceneMesh, flip_v};
 
-/// Where a mesh's own indices start in the file.
+/// Number of elements written before a mesh.
 #[derive(Default)]
 struct Offsets {
     position: u32,
@@ -19,7 +19,7 @@ struct Offsets {
 
 /// The scene's meshes as one OBJ file.
 ///
-/// Its second line holds the numbers of `v` and `f` lines that follow, so that a truncated file is noticed.
+/// Its second line states the numbers of `v` and `f` lines that follow, so that truncation is detected.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the scene does not [validate](Scene::validate).
@@ -39,7 +39,7 @@ pub fn to_obj(scene: &Scene) -> Result<Vec<u8>> {
     Ok(text.into_bytes())
 }
 
-/// Comment that precedes the numbers of `v` and of `f` lines.
+/// Comment before the numbers of `v` and `f` lines.
 pub(crate) const COUNTS: &str = "# anthronet counts v f:";
 
 fn push_mesh(text: &mut String, mesh: &SceneMesh, offsets: &mut Offsets) -> std::fmt::Result {
@@ -56,7 +56,7 @@ fn push_mesh(text: &mut String, mesh: &SceneMesh, offsets: &mut Offsets) -> std:
     for corners in faces(mesh) {
         text.push('f');
         for (position, uv) in corners {
-            // OBJ counts from 1.
+            // OBJ indices start at 1.
             let position_in_file = offsets.position + position + 1;
             let (uv, normal) = (offsets.uv + uv + 1, offsets.normal + position + 1);
             match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
@@ -74,7 +74,7 @@ fn push_mesh(text: &mut String, mesh: &SceneMesh, offsets: &mut Offsets) -> std:
     Ok(())
 }
 
-/// The faces as they are written: corners that repeat an earlier one are left out, and so are faces of fewer than three.
+/// The faces to write: without corners that repeat an earlier one, and without faces of fewer than three corners.
 fn faces(mesh: &SceneMesh) -> impl Iterator<Item = Vec<(u32, u32)>> + '_ {
     let quads = mesh.quads.iter().map(|face| distinct(&face));
     let triangles = mesh.triangles.iter().map(|face| distinct(&face));
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use crate::testing::scene::arm;
 
-    /// The numbers after a keyword, line by line.
+    /// The values after a keyword, line by line.
     fn lines<'a>(text: &'a str, keyword: &str) -> Vec<Vec<&'a str>> {
         let of = text.lines().map(|l| l.split_ascii_whitespace().collect::<Vec<_>>());
         of.filter(|l| l.first() == Some(&keyword)).map(|l| l[1..].to_vec()).collect()
@@ -109,7 +109,7 @@ mod tests {
         let faces = lines(&text, "f");
         assert_eq!(faces.len(), 11);
         assert_eq!(faces[0], ["1/1/1", "2/2/2", "7/8/7", "6/7/6"]);
-        // Closes the ring: the first vertex again, with the texture coordinate of the seam.
+        // Closes the ring: the first vertex again, with the texture coordinate across the seam.
         assert_eq!(faces[4], ["5/5/5", "1/6/1", "6/12/6", "10/11/10"]);
         assert_eq!(faces[10], ["16", "17", "18"]);
         assert_eq!(lines(&text, "o"), [["Sleeve"], ["Nail"]]);

@@ -1,4 +1,4 @@
-//! USD with UsdSkel: text, crate and package.
+//! USD with UsdSkel: text, crate and package files.
 
 mod character;
 mod document;
@@ -43,7 +43,7 @@ pub(super) const USDZ: Description = Description {
     ..USDA
 };
 
-/// Parses a file and reads something of it.
+/// Parses a file and reads part of it.
 fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
     Document::open(bytes).and_then(|document| read(&document)).map_err(|error| Error::file(path, error))
 }

@@ -1,8 +1,8 @@
-//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which names the author of the character and the nodes that are
-//! the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
+//! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which states the author of the character and the nodes that
+//! are the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
 //!
-//! Our bind pose is the T-pose facing +Z that the specification wants. It wants no motion in the file: a scene with
-//! clips is refused, as motion goes into a `.glb` of its own.
+//! Our bind pose is the T-pose facing +Z that the specification requires. Models contain no animation: a scene with clips
+//! is refused, as motion belongs in a separate `.glb`.
 
 use gltf_json::{Value, extensions};
 use serde_json::{Map, json};
@@ -16,7 +16,7 @@ use crate::{Error, Result};
 
 const NAME: &str = "VRMC_vrm";
 
-/// Read as the glTF that it is, except for motion, which VRM cannot hold.
+/// Read as the glTF that it is, except for motion, which VRM cannot store.
 pub(super) const VRM: Description = Description {
     ending: "vrm",
     title: "VRM 1.0",
@@ -26,19 +26,19 @@ pub(super) const VRM: Description = Description {
     ..gltf::GLB
 };
 
-/// The author and the licence of a character.
+/// Author and licence of a character.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VrmMeta {
     /// Title of the character; the scene's name if empty.
     pub name: String,
-    /// Version of the character, in any form; left out if empty.
+    /// Version of the character, in any form; omitted if empty.
     pub version: String,
     /// Its authors, at least one.
     pub authors: Vec<String>,
-    /// Licence of the character, which has to be the one that VRM 1.0 defines.
+    /// Licence URL of the character, which must be the one that VRM 1.0 defines.
     pub license_url: String,
-    /// Whether everybody may use, change and redistribute the character, commercially too. If not, the file has VRM's
-    /// defaults: only its author, and not commercially.
+    /// Whether everybody may use, modify and redistribute the character, also commercially. If not, the file has VRM's
+    /// defaults: use by its author only, and not commercially.
     pub free: bool,
 }
 
@@ -59,8 +59,8 @@ impl Default for VrmMeta {
 /// [`JointNames`](crate::skeleton::humanoid::JointNames).
 ///
 /// # Errors
-/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips, without one of the bones that VRM
-/// requires; for a character without author or with an empty name.
+/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips or without a bone that VRM
+/// requires; for a character without an author or with an empty name.
 pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
     if let Some(clip) = scene.clips.first() {
         let message = format!("`{}`: a .vrm holds no motion, write it to a .glb", clip.name());
@@ -103,7 +103,7 @@ fn meta_json(scene: &Scene, meta: &VrmMeta) -> Result<Value> {
     Ok(json)
 }
 
-/// `humanBones`: all humanoid bones that are among the joints.
+/// `humanBones`: all humanoid bones found among the joints.
 fn human_bones(scene: &Scene) -> Result<Value> {
     let find = |bone: &HumanoidBone| {
         let names = [&bone.native, &bone.vrm, &bone.unity, &bone.mixamo, &bone.blender];

@@ -1,7 +1,7 @@
-//! Files appear on the disk whole or not at all.
+//! Files are written completely or not at all.
 //!
-//! Bytes go to a temporary file in the folder of the target, which is then renamed over it. If anything fails before
-//! that, what was there stays as it was and nothing is left behind.
+//! Bytes go to a temporary file in the target's folder, which is then renamed over the target. If anything fails before
+//! that, an existing file is unchanged and no temporary file remains.
 
 use std::{
     fs, io,
@@ -13,27 +13,27 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::{Error, Result};
 
-/// Writes a document and the buffer that it refers to, both or none.
+/// Writes a document and the buffer it refers to, both or neither.
 ///
 /// # Errors
-/// [`Error::Io`] as of [`write_atomic`], of either file.
+/// [`Error::Io`] as [`write_atomic`], for either file.
 pub(crate) fn write_pair(document: (&Path, &[u8]), buffer: (&Path, &[u8])) -> Result<()> {
     let [bin, json] =
         [buffer, document].map(|(path, bytes)| Pending::new(path, |file| file.write_all(bytes)));
     commit_pair(bin?, json?)
 }
 
-/// Gives a document and its buffer their names, when both are on the disk. The document comes last, as it is what is
-/// opened; if it cannot have its name, the buffer that was there before is put back.
+/// Renames a document and its buffer to their final names, once both are on disk. The document comes last, because it is
+/// the file that programs open; if its rename fails, the previous buffer is restored.
 ///
-/// No file system renames two files at once: a program that is killed between the two renames leaves the new buffer
-/// beside the old document.
+/// No file system renames two files atomically: a program killed between the two renames leaves the new buffer beside the
+/// old document.
 fn commit_pair(bin: Pending, json: Pending) -> Result<()> {
     let bin_target = bin.target.clone();
     let before = bin_target.exists().then(|| keep(&bin)).transpose()?;
     bin.commit()?;
     json.commit().inspect_err(|_| {
-        // The failure itself is what the caller must hear of.
+        // The caller needs the original error, not one of the restore.
         let _ = match before {
             Some(before) => before.persist(&bin_target).map_err(|e| e.error),
             None => fs::remove_file(&bin_target),
@@ -41,8 +41,8 @@ fn commit_pair(bin: Pending, json: Pending) -> Result<()> {
     })
 }
 
-/// A second name for the file that is about to be replaced, removed when dropped; a copy where the file system has no
-/// second names.
+/// A hard link to the file that is about to be replaced, removed when dropped; a copy where the file system has no hard
+/// links.
 fn keep(pending: &Pending) -> Result<NamedTempFile<()>> {
     let target = &pending.target;
     let kept = temporary().make_in(folder_of(target), |place| {
@@ -51,7 +51,7 @@ fn keep(pending: &Pending) -> Result<NamedTempFile<()>> {
     kept.map_err(|source| fault(&pending.path, "create", source))
 }
 
-/// Writes a file whole or not at all; an existing regular file is replaced, through a symbolic link too.
+/// Writes a file completely or not at all; an existing regular file is replaced, also through a symbolic link.
 ///
 /// # Errors
 /// [`Error::Io`] names the path: the folder is missing or read-only, the target is a folder or a device, the disk is full.
@@ -59,11 +59,11 @@ pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     Pending::new(path.as_ref(), |file| file.write_all(bytes))?.commit()
 }
 
-/// A file that is written completely but has not got its name yet. Dropping it removes it.
+/// A completely written file that still has its temporary name. Dropping it removes it.
 struct Pending {
     file: NamedTempFile,
     target: PathBuf,
-    /// The path as the caller wrote it, for messages.
+    /// The path as the caller gave it, for messages.
     path: PathBuf,
 }
 
@@ -72,15 +72,15 @@ impl Pending {
         let create = || {
             let target = target_of(path)?;
             let mut builder = temporary();
-            // The default is private to the user; the finished file shall be like any other that the user makes.
+            // The default is private to the user; the finished file should have the user's ordinary permissions.
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            // Only the kind: the message would name the temporary file.
+            // Only the kind: the full message would name the temporary file.
             let file = builder.tempfile_in(folder_of(&target)).map_err(|e| io::Error::from(e.kind()))?;
             Ok((file, target))
         };
         let (mut file, target) = create().map_err(|source| fault(path, "create", source))?;
-        // A full disk may only be reported when the data is really written.
+        // A full disk may be reported only when the data is flushed.
         let written = write(file.as_file_mut()).and_then(|()| file.as_file().sync_all());
         written.map_err(|source| fault(path, "write", source))?;
         Ok(Self { file, target, path: path.into() })
@@ -102,7 +102,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."))
 }
 
-/// The regular file that a path names or will name. Renaming over a folder fails late and over a device destroys it.
+/// The regular file that a path names or will name. Renaming over a folder fails late; over a device it destroys the device.
 fn target_of(path: &Path) -> io::Result<PathBuf> {
     if path.file_name().is_none() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder, expected a file name"));

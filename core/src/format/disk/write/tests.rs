@@ -96,7 +96,7 @@ fn an_old_buffer_comes_back_when_its_document_cannot_be_replaced() {
         }
         let pending = |name: &str| Pending::new(&path(name), |file| file.write_all(b"new")).unwrap();
         let (bin, json) = (pending("a.bin"), pending("a.gltf"));
-        // What nothing can be renamed over comes into the way at the worst moment.
+        // A folder with the target's name makes the last rename fail.
         fs::create_dir(path("a.gltf")).unwrap();
         let message = commit_pair(bin, json).unwrap_err().to_string();
         assert!(message.contains("a.gltf: cannot write"), "{message}");
@@ -147,10 +147,10 @@ fn a_folder_that_takes_no_files_is_named() {
 
     let mut refused = vec![folder.path().join("file"), folder.path().join("missing")];
     if cfg!(target_os = "linux") {
-        // A file system that takes no files, whoever asks.
+        // A file system where nobody can create files.
         refused.push("/proc".into());
     }
-    // Root may write in any other folder; the command's tests drop root's rights for this one.
+    // Root may write to any other folder; the command's tests drop root's rights for this case.
     if fs::metadata(&read_only).unwrap().uid() != 0 {
         refused.push(read_only.clone());
     }

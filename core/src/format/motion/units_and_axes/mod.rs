@@ -1,8 +1,7 @@
-//! From a file's unit and axes to ours: what was requested, what the file states, or what its body suggests.
+//! Converts a file's unit and axes to metres, +Y up: as requested, as stated by the file, or as inferred from its body.
 //!
-//! Files are often wrong about both: programs export centimetres as metres, or bodies upright along another axis than
-//! they state.
-//! People are 1.3 to 2.3 m tall and are upright most of the time, which reveals most such mistakes.
+//! Files are often wrong about both: programs export centimetres as metres, or bodies upright along another axis than the
+//! file states. People are 1.3 to 2.3 m tall and upright most of the time, which reveals most such mistakes.
 
 use std::sync::Arc;
 
@@ -14,17 +13,17 @@ use crate::clip::Clip;
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
 
-/// What a body of unknown unit is taken to be tall, metres.
+/// Assumed stature of a body of unknown unit, metres.
 const TYPICAL: f64 = 1.7;
-/// Bodies that a file's own unit is believed for, metres: from babies to giants of games.
+/// Statures for which the file's own unit is trusted, metres: from babies to giants in games.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.4..=3.2;
-/// Bodies for which a found unit is not doubted, metres.
+/// Statures for which a detected unit is accepted without a warning, metres.
 const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
 
-/// A file's motion as clips in metres, +Y up.
+/// Converts a file's motion to clips in metres, +Y up.
 ///
 /// # Errors
-/// [`Invalid`](crate::Error::Invalid) says what of the joints or motions contradicts itself.
+/// [`Invalid`](crate::Error::Invalid) when joints or motions are inconsistent.
 pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
     let body = Proportions::of(&raw);
     let height = body.stature(&raw);
@@ -66,7 +65,7 @@ fn unit(raw: &mut RawMotion, body: &Proportions, height: f64, options: &ReadOpti
         return (unit, if raw.unit.is_some() { Found::File } else { Found::Assumed });
     }
     let off = |unit: &Unit| libm::log(height * unit.metres() / TYPICAL).abs();
-    // Beside units, mistakes in the file's own: scaled by a hundred once too often, mostly.
+    // Besides named units, errors in the file's own unit by a power of ten, usually a factor of 100 applied once too often.
     let powers =
         raw.unit.into_iter().flat_map(|said| [1e-4, 1e-3, 1e-2, 1e2, 1e3, 1e4].map(|p| said.metres() * p));
     let candidates = Unit::NAMED.into_iter().chain(powers.filter_map(Unit::from_metres));
@@ -107,7 +106,7 @@ fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, 
     }
 }
 
-/// The skeleton with all lengths scaled and its roots turned.
+/// The skeleton with lengths scaled to metres and root joints rotated to +Y up.
 fn convert_skeleton(raw: &RawMotion, unit: Unit, up: Axis) -> Result<Skeleton> {
     let metres = unit.metres() as f32;
     let mut locals = raw.skeleton.rest_pose().locals.clone();
@@ -122,7 +121,7 @@ fn convert_skeleton(raw: &RawMotion, unit: Unit, up: Axis) -> Result<Skeleton> {
     Skeleton::from_rest_pose(raw.skeleton.tree().clone(), locals, ends)
 }
 
-/// Scales all lengths, and turns the roots.
+/// Scales all lengths to metres and rotates the root joints to +Y up.
 fn convert_takes(raw: &mut RawMotion, unit: Unit, up: Axis) {
     let metres = unit.metres() as f32;
     let turn = up.ours_from_file();

@@ -6,7 +6,7 @@ use super::*;
 use crate::format::read_motion_from_bytes;
 use crate::math::Rotation;
 
-/// A standing person of 1.7 m as BVH, with lengths divided by `unit`, and +Z up where asked.
+/// A standing person of 1.7 m as BVH, with lengths divided by `unit` and the given up axis.
 fn person(unit: f64, up: Axis) -> String {
     let v = |x: f64, y: f64, z: f64| {
         let [x, y, z] = match up {
@@ -47,7 +47,7 @@ fn read(text: &str, options: &ReadOptions) -> Motion {
     read_motion_from_bytes(text.as_bytes(), Path::new("a.bvh"), options).unwrap()
 }
 
-/// Joints of the first frame.
+/// Position of a joint in the first frame.
 fn joint(motion: &Motion, name: &str) -> Vec3 {
     let clip = &motion.clips[0];
     let joints = clip.pose(0).model_from_joints(clip.skeleton().parents());
@@ -63,7 +63,7 @@ fn units_and_axes_are_found_from_the_body() {
             let report = &motion.report;
             assert_eq!((report.unit, report.unit_found), (unit, Found::Detected));
             assert_eq!((report.up, report.up_found), (up, Found::Detected));
-            // As far as a ratio of all people goes.
+            // The ratio of span to stature is only an average.
             assert!((report.stature - 1.7).abs() < 0.1, "{}", report.stature);
             assert!(report.warnings.is_empty(), "{:?}", report.warnings);
             for (name, place) in
@@ -98,7 +98,7 @@ fn what_is_asked_for_wins() {
     );
 }
 
-/// The person in metres, as a file that claims something.
+/// A person in this unit and up axis, in a file that claims another.
 fn claiming(unit: Unit, up: Axis, claim: (Unit, Axis)) -> Motion {
     let text = person(unit.metres(), up);
     let mut raw = crate::format::bvh::BVH.read_motion.unwrap()(
@@ -117,7 +117,7 @@ fn a_file_is_believed_unless_its_body_is_impossible() {
     assert_eq!((motion.report.unit_found, motion.report.up_found), (Found::File, Found::File));
     assert!(motion.report.warnings.is_empty());
 
-    // 170 m and 0.017 m tall, and lying on the floor with every frame.
+    // 170 m and 0.017 m tall according to the file, and horizontal in every frame.
     for (unit, claim) in [(Unit::Centimetre, Unit::Metre), (Unit::Metre, Unit::Centimetre)] {
         let motion = claiming(unit, Axis::Z, (claim, Axis::Y));
         assert_eq!((motion.report.unit, motion.report.unit_found), (unit, Found::Detected));
@@ -127,7 +127,7 @@ fn a_file_is_believed_unless_its_body_is_impossible() {
         assert!(warnings.contains("says that Y points up, but the body stands along Z"), "{warnings}");
         assert!(joint(&motion, "Neck").distance(Vec3::new(0.0, 1.47, 0.0)) < 1e-5);
     }
-    // A child's size is no mistake.
+    // The stature of a child is plausible.
     assert_eq!(
         claiming(Unit::Centimetre, Axis::Y, (Unit::Metres(0.005), Axis::Y)).report.unit_found,
         Found::File
@@ -144,10 +144,10 @@ fn a_body_of_no_usual_unit_is_scaled_to_a_person() {
 
 #[test]
 fn a_scale_of_a_hundred_too_much_is_seen() {
-    // Millimetres, said to be decimetres.
+    // Millimetres, claimed to be decimetres.
     let motion = claiming(Unit::Millimetre, Axis::Y, (Unit::Decimetre, Axis::Y));
     assert_eq!(motion.report.unit, Unit::Millimetre);
-    // A hundredth of a centimetre, for which there is no name.
+    // A hundredth of a centimetre, which is not a named unit.
     let motion = claiming(Unit::Metres(1e-4), Axis::Y, (Unit::Centimetre, Axis::Y));
     assert!((motion.report.unit.metres() - 1e-4).abs() < 1e-12);
     assert!(joint(&motion, "Neck").distance(Vec3::new(0.0, 1.47, 0.0)) < 1e-5);

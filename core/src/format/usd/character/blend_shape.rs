@@ -1,4 +1,4 @@
-//! BlendShapes as morph targets. In-between shapes are ignored.
+//! Reads BlendShapes as morph targets. In-between shapes are ignored.
 
 use glam::{DAffine3, DMat3, DVec3};
 use openusd::sdf::{Path, Value};
@@ -12,12 +12,12 @@ use crate::format::usd::document::values;
 use crate::scene::titles::Titles;
 use crate::scene::{MorphTarget, SceneMesh};
 
-/// Most vertices of all targets of a mesh together: a few bytes must not ask for all memory.
+/// Maximum number of points over all targets of a mesh: a few bytes must not allocate all memory.
 const MAX_TARGET_VERTICES: usize = 8 * MAX_ELEMENTS;
-/// How far the length of a normal may be from 1 to be taken for it.
+/// Deviation from length 1 up to which a normal counts as a unit vector.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
-/// Fills the targets of a mesh, whose normals are in our space; the tokens that their weights go by.
+/// Adds the morph targets of a mesh, whose normals are in our space; returns the tokens that identify their weights.
 pub(super) fn read(
     layer: &Layer,
     prim: &Path,
@@ -59,7 +59,7 @@ pub(super) fn read(
     Ok(tokens)
 }
 
-/// Offsets of normals, turned as the normals that they are added to, which are made to unit length there.
+/// Normal offsets, transformed and scaled like the base normals, which are normalised after the transform.
 fn turned(offsets: &[DVec3], normals: &[[f64; 3]], normal_matrix: DMat3) -> Vec<[f32; 3]> {
     let turn = |(offset, normal): (&DVec3, &[f64; 3])| {
         let length = (normal_matrix * DVec3::from_array(*normal)).length();
@@ -69,7 +69,7 @@ fn turned(offsets: &[DVec3], normals: &[[f64; 3]], normal_matrix: DMat3) -> Vec<
     offsets.iter().zip(normals).map(turn).collect()
 }
 
-/// The points that a shape's offsets are of; `None` for all of them, in order.
+/// Indices of the points to which a shape's offsets apply; `None` for all points in order.
 fn indices(layer: &Layer, shape: &Path, count: usize) -> Result<Option<Vec<usize>>> {
     let numbers = match layer.default(shape, "pointIndices")? {
         Some(Value::IntVec(numbers)) => numbers,
@@ -88,7 +88,7 @@ fn indices(layer: &Layer, shape: &Path, count: usize) -> Result<Option<Vec<usize
     places.map(Some).ok_or_else(fault).within(format_args!("{shape}.pointIndices"))
 }
 
-/// An attribute of offsets with a row for every point; `None` where the shape has none.
+/// An offset attribute with a row for every point; `None` where the shape has none.
 fn dense(
     layer: &Layer,
     shape: &Path,
@@ -104,7 +104,7 @@ fn dense(
     spread(rows, indices, count).map(Some).within(format_args!("{shape}.{name}"))
 }
 
-/// A row for each of `count` points, from those of the points of `indices`.
+/// A row for each of `count` points, from the rows for the points in `indices`; zero for the others.
 fn spread(rows: Option<Vec<[f64; 3]>>, indices: Option<&[usize]>, count: usize) -> Result<Vec<DVec3>> {
     let rows = rows.ok_or_else(|| Fault::unexpected("vectors", "another type"))?;
     let expected = indices.map_or(count, <[usize]>::len);

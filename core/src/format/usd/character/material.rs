@@ -1,4 +1,4 @@
-//! UsdPreviewSurface as our materials.
+//! Reads UsdPreviewSurface materials.
 
 use openusd::sdf::{FieldKey, Path, Value};
 
@@ -10,7 +10,7 @@ use crate::format::usd::write::SPECULAR;
 use crate::scene::titles::Titles;
 use crate::scene::{AlphaMode, SceneMaterial};
 
-/// The materials of all meshes so far, one for each material and side.
+/// The materials of the meshes read so far, one for each pair of material and sidedness.
 #[derive(Default)]
 pub(super) struct Materials {
     list: Vec<(Option<Path>, SceneMaterial)>,
@@ -18,7 +18,7 @@ pub(super) struct Materials {
 }
 
 impl Materials {
-    /// Place of the material that this mesh is bound to.
+    /// Index of the material to which this mesh is bound.
     pub(super) fn of(&mut self, layer: &Layer, mesh: &Path, double_sided: bool) -> Result<u32> {
         let mut bound = None;
         for prim in mesh.ancestors_below_root() {
@@ -59,7 +59,7 @@ fn read(layer: &Layer, path: &Path) -> Result<SceneMaterial> {
         let value = input(name, 1)?.and_then(|numbers| numbers.first().copied());
         Ok(value.filter(|v| v.is_finite()).map_or(default, |v| v.clamp(0.0, 1.0) as f32))
     };
-    // What is left out has UsdPreviewSurface's own default.
+    // Missing inputs have UsdPreviewSurface's defaults.
     let color = input("diffuseColor", 3)?.unwrap_or_else(|| vec![0.18; 3]);
     let channel =
         |i: usize| color.get(i).map_or(0.18, |v| if v.is_nan() { 0.18 } else { v.clamp(0.0, 1.0) as f32 });

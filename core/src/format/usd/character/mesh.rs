@@ -1,4 +1,4 @@
-//! One mesh of a USD file, in our space.
+//! Reads one mesh of a USD file in our space.
 
 use glam::{DAffine3, DMat4, DVec3};
 use openusd::sdf::{Path, Value};
@@ -14,22 +14,22 @@ use crate::format::usd::document::xform::Xforms;
 use crate::scene::SceneMesh;
 use crate::scene::flip_v;
 
-/// What the meshes are skinned to.
+/// The skeleton to which meshes are skinned.
 pub(super) struct Skin<'a> {
     pub(super) skeleton: &'a Skeleton,
-    /// Our space from the skeleton's.
+    /// From the skeleton's space to ours.
     pub(super) above: DAffine3,
 }
 
-/// A mesh without name and material.
+/// A mesh as read, still without name and material.
 pub(super) struct Read {
     pub(super) mesh: SceneMesh,
     pub(super) double_sided: bool,
-    /// What the weights of its morph targets go by.
+    /// The tokens that identify the weights of its morph targets.
     pub(super) tokens: Vec<String>,
 }
 
-/// The mesh at this path, in the bind pose where it is skinned.
+/// Reads the mesh at this path, in the bind pose where it is skinned.
 pub(super) fn read(
     layer: &Layer,
     prim: &Path,
@@ -64,7 +64,7 @@ pub(super) fn read(
         Some(normals) => normals,
         None => vectors("normals")?.unwrap_or_default(),
     };
-    // Normals of corners are of no use to a mesh with one per vertex.
+    // Per-corner normals are dropped, as a mesh has one normal per vertex.
     if normals.len() == points.len() {
         let normal = |n: &[f64; 3]| (normal_matrix * DVec3::from_array(*n)).normalize_or(DVec3::Y);
         mesh.normals = normals.iter().map(|n| single(normal(n))).collect();
@@ -82,7 +82,7 @@ pub(super) fn read(
     Ok(Read { mesh, double_sided, tokens })
 }
 
-/// What is wrong with an attribute of a prim.
+/// The error for an attribute of a prim.
 fn fault(prim: &Path, attribute: &str, fault: Fault) -> UsdError {
     UsdError::from(fault).within(format!("{prim}.{attribute}"))
 }
@@ -95,7 +95,7 @@ fn integers(layer: &Layer, prim: &Path, name: &str) -> Result<Option<Vec<i32>>> 
     }
 }
 
-/// Faces and texture coordinates.
+/// Reads faces and texture coordinates.
 fn faces(layer: &Layer, prim: &Path, mesh: &mut SceneMesh) -> Result<()> {
     let required =
         |name: &str| integers(layer, prim, name)?.ok_or_else(|| fault(prim, name, Fault::missing("value")));
@@ -137,7 +137,7 @@ fn faces(layer: &Layer, prim: &Path, mesh: &mut SceneMesh) -> Result<()> {
     Ok(())
 }
 
-/// Fills the mesh's texture coordinates; the place of each corner's.
+/// Reads the mesh's texture coordinates; returns the index of each corner's.
 fn texture_coordinates(
     layer: &Layer,
     prim: &Path,
@@ -179,14 +179,14 @@ fn geometry_bind(layer: &Layer, prim: &Path) -> Result<DAffine3> {
     Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix)))
 }
 
-/// Joints and weights as a file has them: `width` slots per vertex, joints in our order.
+/// Joints and weights as in the file: `width` slots per vertex, joints in our order.
 struct Influences {
     width: usize,
     joints: Vec<usize>,
     weights: Vec<f64>,
 }
 
-/// The mesh's own influences; `None` for a mesh without, or bound to another skeleton.
+/// The mesh's own influences; `None` for a mesh without any. A binding to another skeleton is an error.
 fn influences(
     layer: &Layer,
     prim: &Path,
@@ -196,7 +196,7 @@ fn influences(
     const JOINTS: &str = "primvars:skel:jointIndices";
     const WEIGHTS: &str = "primvars:skel:jointWeights";
     let Some(slots) = integers(layer, prim, JOINTS)? else { return Ok(None) };
-    // The binding is inherited from the prims above.
+    // The binding is inherited from ancestors.
     for above in prim.ancestors_below_root() {
         if let Some(target) = layer.target(&above, "skel:skeleton")? {
             if target != skeleton.prim {
@@ -218,7 +218,7 @@ fn influences(
         let expected = format!("as many for each of {vertices} points");
         return Err(fault(prim, JOINTS, Fault::unexpected(expected, format_args!("{count} in all"))));
     }
-    // Indices are into the mesh's own list of joints where it has one, else into the skeleton's.
+    // Indices refer to the mesh's own list of joints where it has one, else to the skeleton's.
     let paths = &skeleton.joints.paths;
     let listed: Vec<Option<usize>> = match layer.tokens(prim, "skel:joints")? {
         Some(own) => own.iter().map(|joint| paths.iter().position(|path| path == joint)).collect(),
@@ -230,7 +230,7 @@ fn influences(
     };
     let joint = |(slot, weight): (&i32, &f64)| {
         let joint = usize::try_from(*slot).ok().and_then(|slot| listed.get(slot).copied().flatten());
-        // The index of an unused slot does not matter.
+        // The index of an unused slot is irrelevant.
         joint.or((*weight == 0.0).then_some(0))
     };
     let joints: Option<Vec<usize>> = slots.iter().zip(&weights).map(joint).collect();
@@ -251,7 +251,7 @@ fn influences(
 }
 
 impl Influences {
-    /// The strongest four or eight of each vertex, sorted, with sum 1.
+    /// Keeps the strongest four or eight influences of each vertex, sorted and normalised.
     fn into_mesh(self, mesh: &mut SceneMesh, joint_count: usize) -> Result<()> {
         let slots = if self.width <= 4 { 4 } else { 8 };
         mesh.influences_per_vertex = slots;
@@ -263,7 +263,7 @@ impl Influences {
                 return Err(Fault::unexpected("weights of at least 0", weight).into())
                     .within(format_args!("vertex {vertex}"));
             }
-            // A joint may come twice.
+            // A joint may occur twice.
             joints.iter().zip(weights).for_each(|(joint, weight)| merged[*joint] += weight);
             let mut used: Vec<(usize, f64)> = Vec::with_capacity(self.width);
             for joint in joints {
@@ -279,7 +279,7 @@ impl Influences {
                 return Err(Fault::unexpected("weights with a positive sum", sum).into())
                     .within(format_args!("vertex {vertex}"));
             }
-            // Weights that sum to 1 but for rounding stay what they are.
+            // Weights that sum to 1 up to rounding are kept exactly.
             let whole = if (sum - 1.0).abs() < 1e-6 { 1.0 } else { sum };
             used.resize(slots, (0, 0.0));
             mesh.joint_indices.extend(used.iter().map(|slot| slot.0 as u16));

@@ -1,8 +1,8 @@
-//! Characters from USD: the first skeleton that is animated, or the first at all, with its meshes, materials and clips.
+//! Reads characters from USD: the first animated skeleton, or else the first, with its meshes, materials and clips.
 //!
-//! One layer is read; what it refers to in other files is not. What the writer keeps beside USD's own attributes comes
-//! back: display names, joint names, extras. Characters of other programs come in the bind pose, without scale; faces
-//! of more than four corners as fans of triangles, materials that are no UsdPreviewSurface in grey.
+//! One layer is read, without what it references in other files. What the writer stores beside USD's own attributes is
+//! restored: display names, joint names, extras. Characters from other programs are read in the bind pose, without scale;
+//! faces of more than four corners become triangle fans, materials that are not a UsdPreviewSurface become grey.
 
 mod blend_shape;
 mod material;
@@ -32,10 +32,10 @@ use crate::skeleton::JointTree;
 use crate::skeleton::written::rounded;
 use crate::space::{Axis, Unit};
 
-/// Where a rest pose leaves the bind pose by so many metres, a clip says where its joints are.
+/// A joint whose rest position is farther than this from its bind position, metres, gets a translation track.
 const REST_TOLERANCE: f32 = 1e-6;
 
-/// The meshes alone: those with a skin in the bind pose, the others where the file places them.
+/// Reads only the meshes: skinned ones in the bind pose, the others where the file places them.
 pub(super) fn meshes(document: &Document) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;
@@ -48,7 +48,7 @@ pub(super) fn meshes(document: &Document) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The whole character. Its clips are those of the same skeleton; `path` names those that have no name.
+/// Reads the whole character. Its clips are those of its skeleton; `path` names unnamed ones.
 pub(super) fn scene(document: &Document, path: &Path) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let skeleton = document.skeleton()?;
@@ -66,7 +66,7 @@ pub(super) fn scene(document: &Document, path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Adds the weights over a clip to all targets that go by their tokens; those that keep to 0 are left out.
+/// Adds a clip's weight tracks to all targets with their tokens; tracks that are always 0 are omitted.
 fn add_morph_tracks(scene: &mut Scene, clip: u32, weights: Vec<WeightTrack>, tokens: &[Vec<String>]) {
     for WeightTrack { token, weights } in weights {
         if weights.iter().all(|weight| *weight == 0.0) {
@@ -100,7 +100,7 @@ impl Space {
         Ok(Self { unit, up })
     }
 
-    /// Our space from the file's.
+    /// From the file's space to ours.
     fn ours_from_file(&self) -> DAffine3 {
         let [x, y, z, w] = self.up.ours_from_file().to_array().map(f64::from);
         let turn = DQuat::from_xyzw(x, y, z, w).normalize();
@@ -108,7 +108,7 @@ impl Space {
     }
 }
 
-/// Everything but the clips; and for each mesh what the weights of its morph targets go by.
+/// Everything but the clips; and for each mesh the tokens that identify its morph target weights.
 fn still(
     document: &Document,
     space: &Space,
@@ -149,7 +149,7 @@ fn still(
         let mut read = mesh::read(layer, prim, skin.as_ref(), &ours_from_file)?;
         read.mesh.name = titles.unique(&title(layer, prim)?);
         read.mesh.material = materials.of(layer, prim, read.double_sided)?;
-        // The body of our own files is the first already.
+        // In our own files the body is the first mesh already.
         scene.meshes.push(read.mesh);
         tokens.push(read.tokens);
     }
@@ -157,7 +157,7 @@ fn still(
     Ok((scene, tokens))
 }
 
-/// The joints in their bind pose, names made unique.
+/// The joints in their bind pose, with unique names.
 fn scene_skeleton(
     joints: &Joints,
     bind: &[DAffine3],
@@ -169,7 +169,7 @@ fn scene_skeleton(
     crate::skeleton::Skeleton::from_bind(tree, bind.iter().map(rounded).collect(), lengths)
 }
 
-/// What our own files say of the lengths of bones.
+/// Bone lengths, which only our own files state.
 fn bone_lengths(layer: &Layer, prim: &PrimPath, joints: &Joints) -> Result<Vec<Option<f32>>> {
     let Some(value) = layer.default(prim, BONE_LENGTHS)? else { return Ok(vec![None; joints.names.len()]) };
     let lengths = values::rows::<1>(&value).unwrap_or_default();
@@ -182,7 +182,7 @@ fn bone_lengths(layer: &Layer, prim: &PrimPath, joints: &Joints) -> Result<Vec<O
     Ok(joints.places.iter().map(length).collect())
 }
 
-/// The clips over the scene's own joints, which rest in the bind pose; files of others rest where they like.
+/// The clips on the scene's skeleton, whose rest pose is the bind pose; other programs' rest poses may differ from it.
 fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> crate::Result<Vec<Clip>> {
     let rest = Arc::new(scene.skeleton_with_ends(str::to_owned)?);
     let mut titles = Titles::default();
@@ -204,7 +204,7 @@ fn in_bind_pose(scene: &Scene, clips: Vec<Clip>) -> crate::Result<Vec<Clip>> {
     Ok(out)
 }
 
-/// A prim's display name, else its name.
+/// A prim's display name, or else its name.
 fn title(layer: &Layer, prim: &PrimPath) -> Result<String> {
     let shown = layer.text(prim, FieldKey::DisplayName.as_str())?.filter(|name| !name.is_empty());
     Ok(shown.unwrap_or_else(|| prim.name().unwrap_or("prim").to_owned()))

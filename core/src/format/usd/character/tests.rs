@@ -112,7 +112,7 @@ fn blend_shapes_of_others_are_dense_turned_and_of_one_token() {
         normals: Vec::new(),
     }];
     let text = String::from_utf8(to_usda(&scene).unwrap()).unwrap();
-    // The nail comes first and has the plain token, the cushion another.
+    // The nail comes first and has the plain token, the cushion a numbered one.
     assert!(text.contains("skel:blendShapes = [\"bulge_2\", \"lean_1\"]"), "{text}");
     let others = text.replace("bulge_2", "bulge").replace("upAxis = \"Y\"", "upAxis = \"Z\"");
     let others = others.replacen("uniform int[] pointIndices = [1]", "", 1).replacen(
@@ -169,7 +169,7 @@ fn names_what_is_wrong() {
     }
 }
 
-/// Damaged files give errors or, where the damage is in a number, other numbers; and never a panic.
+/// Damaged files give errors or, where a number is damaged, other numbers, but never a panic.
 #[test]
 fn damage_is_an_error() {
     for (name, write) in WRITERS {

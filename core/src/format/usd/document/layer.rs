@@ -1,4 +1,4 @@
-//! One layer of scene description, with checks before and around what parses it.
+//! One layer of scene description, with checks before and around the parser.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -10,16 +10,16 @@ use crate::error::{Fault, ParserError, Within};
 use crate::format::guard::guarded;
 use crate::format::usd::Result;
 
-/// Most prims of a layer.
+/// Maximum number of prims of a layer.
 const MAX_PRIMS: usize = 1 << 20;
-/// Deepest nesting of brackets in text: the parser calls itself for each.
+/// Maximum nesting of brackets in text: the parser recurses for each.
 const MAX_NESTING: usize = 256;
 
 /// A layer whose values are decoded on demand.
 pub(crate) struct Layer(Box<dyn AbstractData>);
 
 impl Layer {
-    /// Opens the bytes of a `.usda`, `.usdc` or `.usdz`, recognised by their first bytes.
+    /// Opens the bytes of a `.usda`, `.usdc` or `.usdz`, identified by their first bytes.
     pub(crate) fn open(bytes: &[u8]) -> Result<Self> {
         let data: Box<dyn AbstractData> = if bytes.starts_with(usdc::MAGIC) {
             Box::new(guarded(|| usdc::CrateData::open(bytes.to_vec(), true))?)
@@ -53,7 +53,7 @@ impl Layer {
         Self::open(&layer)
     }
 
-    /// All active, defined prims, parents first, in the file's order.
+    /// All active, defined prims in file order, parents first.
     pub(crate) fn prims(&self) -> Result<Vec<Path>> {
         let mut prims = Vec::new();
         let mut open = vec![Path::abs_root()];
@@ -81,14 +81,14 @@ impl Layer {
         Ok(prims)
     }
 
-    /// The default prim, else the first below the root.
+    /// The default prim, or else the first prim.
     pub(crate) fn main_prim(&self, prims: &[Path]) -> Result<Option<Path>> {
         let named = self.text(&Path::abs_root(), FieldKey::DefaultPrim.as_str())?;
         let named = named.and_then(|name| prims.iter().find(|p| p.is_root_prim() && p.name() == Some(&name)));
         Ok(named.or(prims.first()).cloned())
     }
 
-    /// A prim's type; empty for none.
+    /// A prim's type name; empty if it has none.
     pub(crate) fn type_name(&self, prim: &Path) -> Result<String> {
         Ok(self.text(prim, FieldKey::TypeName.as_str())?.unwrap_or_default())
     }
@@ -108,7 +108,7 @@ impl Layer {
         })
     }
 
-    /// A number of the layer's own metadata.
+    /// A number in the layer's metadata.
     pub(crate) fn number(&self, field: &str) -> Result<Option<f64>> {
         Ok(match self.field(&Path::abs_root(), field)? {
             Some(Value::Double(number)) => Some(number),
@@ -125,7 +125,7 @@ impl Layer {
         Ok(value.filter(|value| !matches!(value, Value::ValueBlock | Value::None)))
     }
 
-    /// An attribute's samples over time codes, in order; blocked ones left out.
+    /// An attribute's time samples, sorted by time code; without blocked ones.
     pub(crate) fn samples(&self, prim: &Path, attribute: &str) -> Result<Vec<(f64, Value)>> {
         let path = property_path(prim, attribute)?;
         let Some(Value::TimeSamples(mut samples)) = self.field(&path, FieldKey::TimeSamples.as_str())? else {
@@ -139,7 +139,7 @@ impl Layer {
         Ok(samples)
     }
 
-    /// An attribute of tokens.
+    /// The default value of a token array attribute.
     pub(crate) fn tokens(&self, prim: &Path, attribute: &str) -> Result<Option<Vec<String>>> {
         Ok(match self.default(prim, attribute)? {
             Some(Value::TokenVec(tokens)) => Some(tokens.iter().map(|t| t.as_str().to_owned()).collect()),
@@ -147,7 +147,7 @@ impl Layer {
         })
     }
 
-    /// An attribute that holds one token.
+    /// The default value of a token attribute.
     pub(crate) fn text_value(&self, prim: &Path, attribute: &str) -> Result<Option<String>> {
         Ok(match self.default(prim, attribute)? {
             Some(Value::Token(token)) => Some(token.as_str().to_owned()),
@@ -155,7 +155,7 @@ impl Layer {
         })
     }
 
-    /// What an attribute has a value for: `vertex`, `faceVarying`, `constant`.
+    /// A primvar's interpolation: `vertex`, `faceVarying`, `constant`.
     pub(crate) fn interpolation(&self, prim: &Path, attribute: &str) -> Result<Option<String>> {
         let path = property_path(prim, attribute)?;
         self.text(&path, "interpolation")
@@ -194,12 +194,12 @@ fn property_path(prim: &Path, property: &str) -> Result<Path> {
     prim.append_property(property).map_err(|e| refused(format_args!("{prim}.{property}"), e).into())
 }
 
-/// What the parser says of a name.
+/// The error for a name that the parser refuses.
 fn refused(place: impl Display, error: impl Display) -> ParserError {
     ParserError::refused(format_args!("{place}: {error}"))
 }
 
-/// Refuses text whose brackets nest deeper than any layer's: the parser's stack is finite.
+/// Refuses text with deeper nested brackets than any real layer, to protect the parser's stack.
 fn check_nesting(text: &str) -> Result<()> {
     let (mut depth, mut line) = (0_usize, 1);
     let mut rest = text;
@@ -226,7 +226,7 @@ fn check_nesting(text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Bytes up to and with the closing quote.
+/// Number of bytes up to and including the closing quote.
 fn quoted(text: &str, quote: &str) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices() {

@@ -1,4 +1,4 @@
-//! A parsed file: one layer, its prims by kind.
+//! A parsed file: one layer, with its prims by type.
 
 pub(super) mod layer;
 pub(super) mod skeleton;
@@ -11,20 +11,20 @@ use self::layer::Layer;
 use self::skeleton::Skeleton;
 use crate::format::usd::Result;
 
-/// One layer; what it refers to in other files is not read.
+/// One layer; what it references in other files is not read.
 pub(super) struct Document {
     /// Its values are decoded on demand.
     pub(super) layer: Layer,
-    /// All active, defined prims, parents first, in the file's order.
+    /// All active, defined prims in file order, parents first.
     pub(super) prims: Vec<Path>,
-    /// Those of them that are a `Skeleton`, a `SkelAnimation`, a `Mesh`.
+    /// Prims of type `Skeleton`, `SkelAnimation` and `Mesh`.
     skeletons: Vec<Path>,
     pub(super) animations: Vec<Path>,
     pub(super) meshes: Vec<Path>,
 }
 
 impl Document {
-    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, recognised by their first bytes.
+    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, identified by their first bytes.
     pub(super) fn open(bytes: &[u8]) -> Result<Self> {
         let layer = Layer::open(bytes)?;
         let prims = layer.prims()?;
@@ -40,12 +40,12 @@ impl Document {
         Ok(Self { layer, prims, skeletons, animations, meshes })
     }
 
-    /// How many skeletons there are, of which one is read.
+    /// Number of skeletons, of which one is read.
     pub(super) fn skeleton_count(&self) -> usize {
         self.skeletons.len()
     }
 
-    /// The first skeleton with an animation of its own, else the first.
+    /// The first skeleton with a bound animation, or else the first.
     pub(super) fn skeleton(&self) -> Result<Option<Skeleton>> {
         Skeleton::read(&self.layer, &self.skeletons)
     }

@@ -1,4 +1,4 @@
-//! The Skeleton that is read: its joints and their rest pose, its animation.
+//! The Skeleton that is read: joints, rest pose, animation.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +14,10 @@ use crate::format::usd::Result;
 use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::MAX_JOINTS;
 
-/// The skeleton that is read of a file.
+/// The skeleton that is read from a file.
 pub(crate) struct Skeleton {
     pub(crate) prim: Path,
-    /// The animation that is bound to it.
+    /// The animation bound to it.
     pub(crate) animation: Option<Path>,
     pub(crate) joints: Joints,
     /// The transforms of the prims above it.
@@ -25,7 +25,7 @@ pub(crate) struct Skeleton {
 }
 
 impl Skeleton {
-    /// Of these the first with an animation of its own, else the first.
+    /// Reads the first of these with a bound animation, or else the first.
     pub(super) fn read(layer: &Layer, skeletons: &[Path]) -> Result<Option<Self>> {
         let Some((prim, animation)) = chosen(layer, skeletons)? else { return Ok(None) };
         let (joints, above) = (Joints::read(layer, prim)?, Xforms::read(layer, prim)?);
@@ -35,7 +35,7 @@ impl Skeleton {
 
 fn chosen<'a>(layer: &Layer, skeletons: &'a [Path]) -> Result<Option<(&'a Path, Option<Path>)>> {
     for skeleton in skeletons {
-        // The binding is inherited from the prims above.
+        // The binding is inherited from ancestors.
         for prim in skeleton.ancestors_below_root() {
             if let Some(source) = layer.target(&prim, "skel:animationSource")? {
                 return Ok(Some((skeleton, Some(source))));
@@ -45,7 +45,7 @@ fn chosen<'a>(layer: &Layer, skeletons: &'a [Path]) -> Result<Option<(&'a Path, 
     Ok(skeletons.first().map(|first| (first, None)))
 }
 
-/// A joint's transform to its parent, with scale: scale first, then rotation, then translation.
+/// A joint's local transform with scale: scale first, then rotation, then translation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Transform {
     pub(crate) rotation: DQuat,
@@ -54,7 +54,7 @@ pub(crate) struct Transform {
 }
 
 impl Transform {
-    /// Sets the rotation to a quaternion w, x, y, z of any length but none.
+    /// Sets the rotation to a quaternion w, x, y, z, normalised; one of length 0 is ignored.
     pub(crate) fn rotate(&mut self, [w, x, y, z]: [f64; 4]) {
         let rotation = DQuat::from_xyzw(x, y, z, w);
         if rotation.length_squared() > 1e-24 {
@@ -69,14 +69,14 @@ impl Transform {
 
 /// The joints of a skeleton, parents first.
 pub(crate) struct Joints {
-    /// Paths from the root joint, as the file has them.
+    /// Paths from the root joint, as in the file.
     pub(crate) paths: Vec<String>,
-    /// Names: `jointNames` where the file has them, else the last part of the path.
+    /// `jointNames` where the file has them, or else the last element of the path.
     pub(crate) names: Vec<String>,
     pub(crate) parents: Vec<Option<u32>>,
     /// Rest pose.
     pub(crate) rest: Vec<Transform>,
-    /// The index of each joint in the file's own list.
+    /// Index of each joint in the file's own list.
     pub(crate) places: Vec<usize>,
 }
 
@@ -88,7 +88,7 @@ impl Joints {
             return Err(Fault::unexpected(expected, listed.len()).into())
                 .within(format_args!("{prim}.joints"));
         }
-        // A parent's path is shorter than its joint's; where parents are first already the order is kept.
+        // A parent's path is shorter than its joint's; the order is kept if parents come first already.
         let place_of: BTreeMap<&str, usize> =
             listed.iter().enumerate().map(|(i, path)| (path.as_str(), i)).collect();
         if place_of.len() != listed.len() {
@@ -124,8 +124,8 @@ impl Joints {
         Ok(Self { paths, names, parents, rest, places })
     }
 
-    /// The bind pose, `model_from_joint` without scale, below the prims above the skeleton; the file's own numbers where
-    /// it has none. The rest pose where the file has no other.
+    /// The bind pose, `model_from_joint` without scale, transformed by `above`; matrices without scale are kept exactly. The
+    /// rest pose if the file has no bind pose.
     pub(crate) fn bind_pose(&self, layer: &Layer, prim: &Path, above: &DAffine3) -> Result<Vec<DAffine3>> {
         let world: Vec<DAffine3> = match Self::matrices(layer, prim, "bindTransforms", &self.places)? {
             Some(bind) => bind.iter().map(|joint| *above * *joint).collect(),
@@ -192,7 +192,7 @@ impl Joints {
         }
     }
 
-    /// The rest pose without scale, which goes into the translations, below the prims above the skeleton.
+    /// The rest pose, with `above` applied to the root joints and scale folded into the translations.
     pub(crate) fn locals(&self, above: &DAffine3) -> Vec<RigidTransform> {
         let rigid: Vec<RigidTransformF64> =
             self.world(above).iter().map(RigidTransformF64::without_scale).collect();
@@ -209,7 +209,7 @@ impl Joints {
     }
 }
 
-/// Whether there is neither scale nor shear but for the rounding of numbers of `f32`.
+/// Whether there is neither scale nor shear, up to rounding of `f32`.
 fn is_rigid(transform: &DAffine3) -> bool {
     let m = transform.matrix3;
     let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();

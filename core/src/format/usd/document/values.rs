@@ -1,11 +1,11 @@
-//! Numbers of USD's many vector types.
+//! Conversion of USD's many vector types to `f64`.
 
 use bytemuck::Pod;
 use openusd::sdf::Value;
 
-/// The numbers of a value or an array of values, one after the other; `None` for anything but floating-point vectors,
-/// quaternions and matrices. Quaternions are w, x, y, z; matrices row by row for row vectors, which is column by column
-/// for column vectors.
+/// The components of a value or an array of values, flattened; `None` for anything but floating-point numbers, vectors,
+/// quaternions and matrices. Quaternions are w, x, y, z; matrices row by row for row vectors, which is column by column for
+/// column vectors.
 pub(crate) fn numbers(value: &Value) -> Option<Vec<f64>> {
     use openusd::gf::f16;
     fn each<T: Pod, N: Pod + Into<f64>>(values: &[T]) -> Vec<f64> {
@@ -36,7 +36,7 @@ pub(crate) fn numbers(value: &Value) -> Option<Vec<f64>> {
     })
 }
 
-/// The same as rows of `N`; `None` too where the last row is not whole.
+/// [`numbers`] in rows of `N`; `None` also if the last row is incomplete.
 pub(crate) fn rows<const N: usize>(value: &Value) -> Option<Vec<[f64; N]>> {
     let numbers = numbers(value)?;
     let (rows, rest) = numbers.as_chunks::<N>();

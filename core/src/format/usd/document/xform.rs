@@ -1,4 +1,4 @@
-//! The transform of a prim: the xformOps of it and of its ancestors (openusd.org, UsdGeomXformable).
+//! The transform of a prim: its xformOps and those of its ancestors (openusd.org, UsdGeomXformable).
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use openusd::sdf::{Path, Value};
@@ -8,7 +8,7 @@ use super::values;
 use crate::error::{Fault, UsdError, Within};
 use crate::format::usd::Result;
 
-/// One operation; its numbers over time codes, at least one sample.
+/// One operation with its values over time codes, at least one sample.
 struct Op {
     /// Its path, for messages.
     path: String,
@@ -18,11 +18,11 @@ struct Op {
     animated: bool,
 }
 
-/// Operations from the world inwards.
+/// Operations from the outermost ancestor inwards.
 pub(crate) struct Xforms(Vec<Op>);
 
 impl Xforms {
-    /// Those of the prim and all above it.
+    /// Reads those of the prim and all its ancestors.
     pub(crate) fn read(layer: &Layer, prim: &Path) -> Result<Self> {
         let mut ops = Vec::new();
         let mut prims: Vec<Path> = prim.ancestors_below_root().collect();
@@ -48,12 +48,12 @@ impl Xforms {
         animated.map(|op| op.samples.iter().map(|s| s.0).collect())
     }
 
-    /// The earliest of them.
+    /// The earliest of these time codes.
     pub(crate) fn first_time(&self) -> Option<f64> {
         self.times().filter_map(|times| times.first().copied()).min_by(f64::total_cmp)
     }
 
-    /// World from prim, for column vectors.
+    /// `world_from_prim` at a time code, for column vectors.
     pub(crate) fn at(&self, time: f64) -> Result<DAffine3> {
         let mut world = DAffine3::IDENTITY;
         for op in &self.0 {
@@ -62,7 +62,7 @@ impl Xforms {
         Ok(world)
     }
 
-    /// World from prim at the first time.
+    /// `world_from_prim` at the first time code.
     pub(crate) fn at_start(&self) -> Result<DAffine3> {
         self.at(self.first_time().unwrap_or(0.0))
     }
@@ -99,7 +99,7 @@ impl Op {
         Ok(if self.inverted { matrix.inverse() } else { matrix })
     }
 
-    /// Linear between samples.
+    /// The values at a time code, linear between samples.
     fn numbers(&self, time: f64) -> Vec<f64> {
         let after = self.samples.partition_point(|sample| sample.0 <= time);
         let a = &self.samples[after.saturating_sub(1)];
@@ -107,7 +107,7 @@ impl Op {
             return a.1.clone();
         };
         let share = (time - a.0) / (b.0 - a.0);
-        // Of a quaternion's two signs the nearer one.
+        // Take the quaternion sign that gives the shorter arc.
         let dot: f64 = a.1.iter().zip(&b.1).map(|(a, b)| a * b).sum();
         let sign = if self.kind == "orient" && dot < 0.0 { -1.0 } else { 1.0 };
         a.1.iter().zip(&b.1).map(|(a, b)| a + (b * sign - a) * share).collect()
@@ -126,7 +126,7 @@ impl Op {
             }
             "transform" => DAffine3::from_mat4(DMat4::from_cols_array(numbers.first_chunk::<16>()?)),
             kind => {
-                // The axes in the order in which they turn a point: the last is leftmost.
+                // The axes in order of application: the last is leftmost.
                 let axes = kind.strip_prefix("rotate")?.chars();
                 let mut rotation = DQuat::IDENTITY;
                 for axis in axes.clone() {

@@ -1,7 +1,7 @@
-//! SkelAnimations of `.usda`, `.usdc` and `.usdz` (openusd.org, "UsdSkel: Schemas In-Depth").
+//! Reads SkelAnimations of `.usda`, `.usdc` and `.usdz` (openusd.org, "UsdSkel: Schemas In-Depth").
 //!
-//! One layer is read: what it refers to in other files is not. Sizes, turns and moves above the skeleton, animated or
-//! not, become part of its root joints; scales of joints are folded into the translations below them.
+//! One layer is read, without what it references in other files. Transforms of the prims above the skeleton, animated or
+//! not, are applied to its root joints; joint scales are folded into the translations below them.
 
 mod track;
 
@@ -22,12 +22,12 @@ use crate::format::motion::{Found, ReadOptions};
 use crate::math::RigidTransformF64;
 use crate::space::{Axis, Unit};
 
-/// Most joints of an animation; those that the skeleton does not have are ignored.
+/// Maximum number of joints of an animation; those that the skeleton does not have are ignored.
 const MAX_JOINTS: usize = crate::skeleton::MAX_JOINTS;
-/// Below this, keys are poses to interpolate, not frames.
+/// Keys at a lower rate, per second, are poses to interpolate, not frames.
 const LEAST_FRAME_RATE: f64 = 10.0;
 
-/// Every animation of the file's first skeleton that one is bound to. `name` is for clips without a name.
+/// Reads every animation of the skeleton chosen by [`Document::skeleton`]. `name` is for unnamed clips.
 pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Result<RawMotion> {
     if document.animations.is_empty() {
         let prims = document.prims.len();
@@ -37,7 +37,7 @@ pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Re
     of_skeleton(document, &skeleton, name, options)
 }
 
-/// Every animation that moves this skeleton, the one that is bound to it first.
+/// Reads every animation that moves this skeleton, the bound one first.
 pub(super) fn of_skeleton(
     document: &Document,
     skeleton: &Skeleton,
@@ -89,7 +89,7 @@ pub(super) fn of_skeleton(
     })
 }
 
-/// How time codes pass.
+/// Time codes per second, and the source of that value.
 struct TimeCodes {
     per_second: f64,
     found: Found,
@@ -101,7 +101,7 @@ impl TimeCodes {
             Some(rate) => Some(rate),
             None => layer.number("framesPerSecond")?,
         };
-        // USD's own default.
+        // USD's default.
         let per_second = stated.unwrap_or(24.0);
         if !(1e-3..=1e6).contains(&per_second) {
             return Err(Fault::unexpected("a positive number", per_second).into())
@@ -111,14 +111,14 @@ impl TimeCodes {
     }
 }
 
-/// A SkelAnimation's own joints and how they move.
+/// A SkelAnimation's joints and their tracks.
 struct Animation {
-    /// Per joint of the skeleton its place in the animation.
+    /// For each joint of the skeleton, its index in the animation.
     joints: Vec<Option<usize>>,
     rotations: Track<4>,
     translations: Track<3>,
     scales: Track<3>,
-    /// What weights of morph targets go by, and those weights.
+    /// The token of each row of `weights`, which identifies its morph targets.
     tokens: Vec<String>,
     weights: Track<1>,
 }
@@ -159,7 +159,7 @@ impl Animation {
                 .into_iter()
                 .chain(above.times()),
         );
-        // The times of joints decide where any moves; else those of weights.
+        // Key times of the joints if any is animated; else those of the weights.
         let times = if times.is_empty() { self.weights.times() } else { times };
         let (start, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
         let seconds = (end - start) / rate.per_second;
@@ -210,7 +210,7 @@ impl Animation {
     }
 }
 
-/// Frames a second of keys at these time codes: their own rate where they are evenly spaced, else that of time codes.
+/// Frame rate of keys at these time codes: their own if they are evenly spaced, else that of the time codes.
 fn frame_rate(times: &[f64], time_codes_per_second: f64) -> f64 {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return time_codes_per_second };
     let gap = (last - first) / (times.len() - 1).max(1) as f64;

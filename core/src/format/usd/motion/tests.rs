@@ -3,8 +3,8 @@ use glam::Vec3;
 use super::*;
 use crate::math::Rotation;
 
-/// What other programs write: centimetres, +Z up, ops above the skeleton, a child before its parent, an animation with
-/// an order of its own, without one joint and with one of somebody else.
+/// Typical of other programs: centimetres, +Z up, xformOps above the skeleton, a child before its parent, an animation
+/// whose joint order differs and which lacks one joint and has a foreign one.
 const OTHERS: &str = r#"#usda 1.0
 (
     metersPerUnit = 0.01
@@ -61,7 +61,7 @@ fn files_of_others_are_read() {
     assert_eq!(raw.skeleton.names(), ["hips", "the leg", "arm"]);
     assert_eq!(raw.skeleton.parents(), [None, Some(0), Some(0)]);
     assert_eq!((raw.unit, raw.up), (Some(Unit::Centimetre), Some(Axis::Z)));
-    // The ops above turn +Y into +Z, double every length, lift by 100.
+    // The xformOps above rotate +Y to +Z, double every length and lift by 100.
     let upright = Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2);
     assert!(raw.skeleton.rest_pose().locals[0].translation.distance(Vec3::new(0.0, 0.0, 200.0)) < 1e-4);
     assert!(raw.skeleton.rest_pose().locals[0].rotation.dot(upright).abs() > 0.999_999);
@@ -79,7 +79,7 @@ fn files_of_others_are_read() {
     same(0, 2, Rotation::IDENTITY);
     same(1, 2, Rotation::from_rotation_z(std::f32::consts::PI));
     same(2, 0, upright * Rotation::from_rotation_x(std::f32::consts::PI));
-    // The leg is not in the animation and rests in its parent, which is half as large as at rest.
+    // The leg is not animated and keeps its local rest transform; its parent is scaled by half.
     same(1, 1, Rotation::IDENTITY);
     let tracks: Vec<_> = take.tracks.iter().map(|t| (t.joint, t.values.clone())).collect();
     assert_eq!(tracks.iter().map(|t| t.0).collect::<Vec<_>>(), [0, 1, 2]);

@@ -1,4 +1,4 @@
-//! An array that changes over time codes.
+//! A time-sampled array attribute.
 
 use glam::{DQuat, DVec4};
 use openusd::sdf::{Path, Value};
@@ -8,18 +8,18 @@ use crate::format::usd::Result;
 use crate::format::usd::document::layer::Layer;
 use crate::format::usd::document::values;
 
-/// One row of `N` numbers per joint or blend shape.
+/// One row of `N` components per joint or blend shape.
 type Rows<const N: usize> = Vec<[f64; N]>;
 
-/// Samples of numbers (`N` = 1), vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint or blend shape.
+/// Samples of scalars (`N` = 1), vectors (`N` = 3) or quaternions w, x, y, z (`N` = 4), one per joint or blend shape.
 pub(super) struct Track<const N: usize> {
-    /// In order of time; one at time 0 is a value that does not change; empty without a value.
+    /// Sorted by time; a constant is one sample at time 0; empty without a value.
     samples: Vec<(f64, Rows<N>)>,
     animated: bool,
 }
 
 impl<const N: usize> Track<N> {
-    /// An attribute with a value for each of `count` joints or blend shapes, or without any.
+    /// Reads an attribute with a value for each of `count` joints or blend shapes, or with no value at all.
     pub(super) fn read(layer: &Layer, prim: &Path, attribute: &str, count: usize) -> Result<Self> {
         let rows = |value: &Value| {
             let rows = values::rows::<N>(value)
@@ -41,7 +41,7 @@ impl<const N: usize> Track<N> {
         }
         let animated = !samples.is_empty();
         if let (false, Some(value)) = (animated, layer.default(prim, attribute)?) {
-            // An empty array is how some programs leave an attribute out.
+            // Some programs write an empty array instead of omitting the attribute.
             if values::numbers(&value).is_none_or(|n| !n.is_empty()) {
                 samples.push((0.0, rows(&value).within(format_args!("{prim}.{attribute}"))?));
             }
@@ -49,30 +49,30 @@ impl<const N: usize> Track<N> {
         Ok(Self { samples, animated })
     }
 
-    /// Without a value at any time.
+    /// A track without any value.
     pub(super) fn none() -> Self {
         Self { samples: Vec::new(), animated: false }
     }
 
-    /// Whether there is a value at any time.
+    /// Whether there is any value.
     pub(super) fn has_values(&self) -> bool {
         !self.samples.is_empty()
     }
 
-    /// Time codes of the samples.
+    /// Time codes of the samples; empty for a constant.
     pub(super) fn times(&self) -> Vec<f64> {
         if self.animated { self.samples.iter().map(|s| s.0).collect() } else { Vec::new() }
     }
 
-    /// The values at a time code: linear between samples, quaternions along the shorter arc, as USD has it. Empty
-    /// where there is no value at any time.
+    /// The values at a time code: linear between samples, quaternions along the shorter arc, as in USD. Empty without any
+    /// value.
     pub(super) fn at(&self, time: f64) -> Rows<N> {
         let after = self.samples.partition_point(|sample| sample.0 <= time);
         let before = after.saturating_sub(1);
         let (Some(a), b) = (self.samples.get(before), self.samples.get(after)) else { return Vec::new() };
         let Some(b) = b else { return a.1.clone() };
         let share = (time - a.0) / (b.0 - a.0);
-        // A sample's own time is met but for rounding.
+        // The time of a sample is hit only up to rounding.
         match share {
             ..1e-6 => a.1.clone(),
             0.999_999.. => b.1.clone(),
@@ -85,18 +85,18 @@ fn between<const N: usize>(a: &[f64; N], b: &[f64; N], share: f64) -> [f64; N] {
     let mut out: [f64; N] = std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
     if let (Ok(a), Ok(b)) = (<[f64; 4]>::try_from(a.as_slice()), <[f64; 4]>::try_from(b.as_slice())) {
         let [a, b] = [a, b].map(|q| DVec4::from_array(q).normalize_or(DVec4::X));
-        // Slerp does not mind what the four numbers are called.
+        // Slerp does not depend on the order of the components.
         let turned = DQuat::from_vec4(a).slerp(DQuat::from_vec4(b), share);
         out.copy_from_slice(&turned.to_array()[..N.min(4)]);
     }
     out
 }
 
-/// All times in order, each once.
+/// All times, sorted and without duplicates.
 pub(super) fn merged(times: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
     let mut times: Vec<f64> = times.flatten().collect();
     times.sort_by(f64::total_cmp);
-    // Two attributes keyed at one time may differ by rounding.
+    // The key times of two attributes may differ by rounding.
     times.dedup_by(|later, earlier| *later - *earlier < 1e-6);
     times
 }

@@ -1,4 +1,4 @@
-//! A clip as a SkelAnimation.
+//! Writes a clip as a SkelAnimation.
 
 use openusd::gf::{Quatf, Vec3f, Vec3h, f16};
 use openusd::sdf::{FieldKey, Value, Variability};
@@ -9,7 +9,7 @@ use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::skeleton::Pose;
 
-/// The clip at this path. `joints` is the skeleton's own list of joints, `pace` how many time codes a frame takes.
+/// Writes the clip to this path. `joints` is the skeleton's own joint list, `pace` the number of time codes per frame.
 pub(super) fn write(layer: &mut Layer, path: &str, clip: &Clip, joints: &Value, pace: f64) -> Result<()> {
     layer.prim(path, clip.name(), "SkelAnimation")?;
     layer.uniform(path, "joints", "token[]", joints.clone())?;
@@ -22,7 +22,7 @@ pub(super) fn write(layer: &mut Layer, path: &str, clip: &Clip, joints: &Value, 
         };
         Value::TimeSamples((0..clip.frame_count()).map(sample).collect())
     };
-    // UsdSkel takes an animation only with all three, each with a value for every joint.
+    // UsdSkel requires all three attributes, each with a value for every joint.
     let rotations = layer.declare(path, "rotations", "quatf[]", Variability::Varying, None)?;
     layer.set(&rotations, FieldKey::TimeSamples, samples(&rotations_of))?;
     if clip.translations().is_empty() {

@@ -1,9 +1,9 @@
-//! Morph targets as BlendShapes below their meshes, and their weights in the SkelAnimations (openusd.org, "UsdSkel: Schemas
-//! In-Depth").
+//! Writes morph targets as BlendShapes below their meshes, and their weights to the SkelAnimations (openusd.org, "UsdSkel:
+//! Schemas In-Depth").
 //!
 //! A weight is identified by a token, which names the same shape in the mesh's `skel:blendShapes` and in the animation's
-//! `blendShapes`. Targets of one name share a token where their weights are the same in all clips, as those of a face and its
-//! teeth are; else each has a token of its own. Programs show tokens as names.
+//! `blendShapes`. Targets with the same name share a token if their weights are equal in all clips, such as those of a face
+//! and its teeth; otherwise each has its own token. Programs show tokens as names.
 
 use std::collections::BTreeSet;
 
@@ -15,10 +15,10 @@ use super::names::Names;
 use crate::Result;
 use crate::scene::{MorphTarget, MorphTrack, Scene, SceneMesh};
 
-/// For each mesh of a scene a token for each target.
+/// For each mesh of a scene, a token for each target.
 pub(super) fn tokens(scene: &Scene) -> Vec<Vec<String>> {
     let mut names = Names::default();
-    // Of every token so far: the name of its targets, their weights.
+    // For every target so far: its name, weight tracks and token.
     let mut given: Vec<(&str, Vec<&MorphTrack>, String)> = Vec::new();
     let mut tokens = Vec::with_capacity(scene.meshes.len());
     for (index, mesh) in scene.meshes.iter().enumerate() {
@@ -39,7 +39,7 @@ pub(super) fn tokens(scene: &Scene) -> Vec<Vec<String>> {
     tokens
 }
 
-/// The tracks of a target in the order of the clips, those left out that keep to 0.
+/// The tracks of a target in the order of the clips, without those that are always 0.
 fn tracks(scene: &Scene, mesh: usize, target: usize) -> Vec<&MorphTrack> {
     let is = |track: &&MorphTrack| {
         (track.mesh as usize, track.target as usize) == (mesh, target)
@@ -50,7 +50,7 @@ fn tracks(scene: &Scene, mesh: usize, target: usize) -> Vec<&MorphTrack> {
     tracks
 }
 
-/// The targets of the mesh at this path, which may have a skin already.
+/// Writes the targets of the mesh at this path, which may already have a skin.
 pub(super) fn write(layer: &mut Layer, path: &str, mesh: &SceneMesh, tokens: &[String]) -> Result<()> {
     if mesh.morph_targets.is_empty() {
         return Ok(());
@@ -71,7 +71,7 @@ pub(super) fn write(layer: &mut Layer, path: &str, mesh: &SceneMesh, tokens: &[S
     mesh.morph_targets.iter().zip(&paths).try_for_each(|(target, path)| shape(layer, path, target))
 }
 
-/// Offsets of the vertices that move or turn alone.
+/// Writes the offsets, only of vertices whose position or normal changes.
 fn shape(layer: &mut Layer, path: &str, target: &MorphTarget) -> Result<()> {
     layer.prim(path, &target.name, "BlendShape")?;
     let stays = |vertex: &usize| {
@@ -80,7 +80,7 @@ fn shape(layer: &mut Layer, path: &str, target: &MorphTarget) -> Result<()> {
     };
     let mut moved: Vec<usize> = (0..target.positions.len()).filter(|vertex| !stays(vertex)).collect();
     if moved.is_empty() {
-        // No indices would mean all vertices.
+        // An empty index list would mean all vertices.
         moved.push(0);
     }
     let offsets = |rows: &[[f32; 3]]| {
@@ -96,7 +96,7 @@ fn shape(layer: &mut Layer, path: &str, target: &MorphTarget) -> Result<()> {
     layer.uniform(path, "pointIndices", "int[]", Value::IntVec(indices)).map(drop)
 }
 
-/// The weights over a clip, in its SkelAnimation; the others are 0. `pace` is how many time codes a frame takes.
+/// Writes the weights of a clip to its SkelAnimation; omitted ones are 0. `pace` is the number of time codes per frame.
 pub(super) fn animate(
     layer: &mut Layer,
     path: &str,

@@ -1,8 +1,8 @@
-//! The room that a character takes, at rest and over a clip.
+//! The bounding box of a character, at rest and over a clip.
 //!
-//! Skinning makes every vertex a weighted mean of itself carried along by its joints, so the joints' boxes, each
-//! around the vertices that the joint moves at all and carried along by it, hold the skinned vertices. Their common
-//! box is larger than the tightest one, never smaller, and costs a few matrices a frame instead of the whole mesh.
+//! A skinned vertex is a weighted mean of the vertex as transformed by each of its joints. The joints' boxes, each around
+//! all vertices that the joint influences and transformed with it, therefore contain all skinned vertices. Their union is
+//! at least as large as the tightest box, and costs a few matrices per frame instead of skinning the whole mesh.
 
 use glam::{Affine3A, Vec3A};
 use openusd::gf::Vec3f;
@@ -14,10 +14,10 @@ use crate::math::RigidTransform;
 use crate::scene::{MorphTrack, Scene, SceneMesh};
 use crate::skeleton::model_from_joints;
 
-/// Metres added on every side for the rounding of single precision.
+/// Metres added on every side to allow for single-precision rounding.
 const MARGIN: f32 = 1e-4;
 
-/// A box along the axes.
+/// An axis-aligned bounding box.
 #[derive(Clone, Copy)]
 struct Bounds {
     low: Vec3A,
@@ -32,7 +32,7 @@ impl Bounds {
         self.high = self.high.max(point);
     }
 
-    /// Takes in the box around this box after a transform.
+    /// Adds the axis-aligned box around `inner` after a transform.
     fn add_moved(&mut self, inner: &Self, transform: &Affine3A) {
         let center = transform.transform_point3a((inner.low + inner.high) * 0.5);
         let half = (inner.high - inner.low) * 0.5;
@@ -47,14 +47,14 @@ impl Bounds {
     }
 }
 
-/// The extent of a mesh in its bind pose.
+/// The extent of a mesh in the bind pose.
 pub(super) fn of_mesh(mesh: &SceneMesh) -> Value {
     let mut bounds = Bounds::EMPTY;
     mesh.positions.iter().for_each(|p| bounds.add(Vec3A::from_array(*p)));
     bounds.value()
 }
 
-/// The extent of the whole character: at rest, and over the frames of its first clip.
+/// Writes the extent of the whole character: at rest, and over the frames of its first clip.
 pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> {
     let mut rest = Bounds::EMPTY;
     scene.meshes.iter().flat_map(|m| &m.positions).for_each(|p| rest.add(Vec3A::from_array(*p)));
@@ -79,7 +79,7 @@ pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> 
     layer.set(&extent, FieldKey::TimeSamples, Value::TimeSamples(samples))
 }
 
-/// In each joint's own space, the box around the vertices that it moves; an empty one where it moves none.
+/// For each joint, in its own space, the box around the vertices it influences; empty if it influences none.
 fn joint_boxes(scene: &Scene) -> Vec<Bounds> {
     let bind = scene.skeleton.as_ref().map_or(&[][..], |skeleton| skeleton.bind());
     let joint_from_model: Vec<Affine3A> = bind.iter().map(Affine3A::inverse).collect();
@@ -102,10 +102,10 @@ fn joint_boxes(scene: &Scene) -> Vec<Bounds> {
     boxes
 }
 
-/// A morph target of a mesh and the least and the largest weight that it has over the first clip or at rest.
+/// A morph target of a mesh with its minimum and maximum weight over the first clip and 0.
 type Share = (usize, f32, f32);
 
-/// Those of the targets that have any.
+/// The weight ranges of the targets that the first clip animates.
 fn shares(scene: &Scene, mesh: usize) -> Vec<Share> {
     let tracks = scene.morph_tracks_of(0).filter(|track| track.mesh as usize == mesh);
     let share = |track: &MorphTrack| {
@@ -115,7 +115,7 @@ fn shares(scene: &Scene, mesh: usize) -> Vec<Share> {
     tracks.map(share).collect()
 }
 
-/// Where morph targets may move a vertex in the bind pose.
+/// The box that a vertex of the bind pose can reach by morph targets.
 fn reach(mesh: &SceneMesh, vertex: usize, shares: &[Share]) -> Bounds {
     let position = Vec3A::from_array(mesh.positions[vertex]);
     let mut bounds = Bounds { low: position, high: position };

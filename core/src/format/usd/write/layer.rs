@@ -1,4 +1,4 @@
-//! A layer in the making: prims, attributes, relationships, in the order in which they are added.
+//! A layer under construction: prims, attributes, relationships, in the order in which they are added.
 
 use std::fmt::Display;
 
@@ -9,22 +9,22 @@ use openusd::sdf::{
 
 use crate::{Error, Result};
 
-/// The error for a path or value that USD refuses; a scene that validates has none.
+/// The error for a path or value that USD refuses; a scene that validates has none of these.
 pub(super) fn fault(error: impl Display) -> Error {
     Error::invalid("USD layer", error.to_string())
 }
 
-/// Scene description that a writer turns into bytes.
+/// Scene description, to be serialised.
 #[derive(Default)]
 pub(super) struct Layer(Data);
 
 impl Layer {
-    /// For a writer.
+    /// The data for a serialiser.
     pub(super) fn data(&self) -> &Data {
         &self.0
     }
 
-    /// Defines a prim; `name` becomes its display name where the path says something else.
+    /// Defines a prim; `name` becomes its display name if the path ends with another name.
     pub(super) fn prim(&mut self, path: &str, name: &str, type_name: &str) -> Result<()> {
         let mut prim = PrimSpecMut::new(&mut self.0, path, Specifier::Def, type_name).map_err(fault)?;
         if !path.ends_with(&format!("/{name}")) {
@@ -40,14 +40,14 @@ impl Layer {
         Ok(())
     }
 
-    /// Sets a field of the layer (`/`), of a prim or of a property.
+    /// Sets a field of the layer (`/`), a prim or a property.
     pub(super) fn set(&mut self, path: &str, field: impl AsRef<str>, value: Value) -> Result<()> {
         let path = Path::new(path).map_err(fault)?;
         self.0.set_field(&path, field.as_ref(), value);
         Ok(())
     }
 
-    /// An attribute with a default value; its path.
+    /// Adds an attribute with a default value; returns its path.
     pub(super) fn attribute(
         &mut self,
         prim: &str,
@@ -58,7 +58,7 @@ impl Layer {
         self.declare(prim, name, type_name, Variability::Varying, Some(value))
     }
 
-    /// An attribute that never changes over time; its path.
+    /// Adds a uniform attribute, which cannot be animated; returns its path.
     pub(super) fn uniform(
         &mut self,
         prim: &str,
@@ -69,7 +69,7 @@ impl Layer {
         self.declare(prim, name, type_name, Variability::Uniform, Some(value))
     }
 
-    /// An attribute that no schema has and that never changes over time.
+    /// Adds a uniform attribute that belongs to no schema.
     pub(super) fn custom(&mut self, prim: &str, name: &str, type_name: &str, value: Value) -> Result<()> {
         let path = format!("{prim}.{name}");
         AttributeSpecMut::new(&mut self.0, path.as_str(), type_name, Variability::Uniform, true)
@@ -79,7 +79,7 @@ impl Layer {
         Ok(())
     }
 
-    /// An attribute without a value, for connections and samples; its path.
+    /// Adds an attribute, without a value if it will have connections or time samples; returns its path.
     pub(super) fn declare(
         &mut self,
         prim: &str,
@@ -103,12 +103,12 @@ impl Layer {
         self.set(attribute, FieldKey::ConnectionPaths, Value::PathListOp(PathListOp::explicit([source])))
     }
 
-    /// A relationship with one target.
+    /// Adds a relationship with one target.
     pub(super) fn relate(&mut self, prim: &str, name: &str, target: &str) -> Result<()> {
         self.relate_all(prim, name, &[target])
     }
 
-    /// A relationship with these targets.
+    /// Adds a relationship with these targets.
     pub(super) fn relate_all<T: AsRef<str>>(&mut self, prim: &str, name: &str, targets: &[T]) -> Result<()> {
         let path = format!("{prim}.{name}");
         RelationshipSpecMut::new(&mut self.0, path, Variability::Uniform, false)

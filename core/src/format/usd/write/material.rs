@@ -1,4 +1,4 @@
-//! Materials as UsdPreviewSurface.
+//! Writes materials as UsdPreviewSurface.
 
 use std::collections::HashMap;
 
@@ -11,13 +11,13 @@ use super::names::Names;
 use crate::Result;
 use crate::scene::{AlphaMode, SceneMaterial};
 
-/// Where the materials are, one path each.
+/// The path of each material.
 pub(super) fn paths(scope: &str, materials: &[SceneMaterial]) -> Vec<String> {
     let mut names = Names::default();
     materials.iter().map(|material| format!("{scope}/{}", names.unique(&material.name))).collect()
 }
 
-/// The material at this path.
+/// Writes the material to this path.
 pub(super) fn write(layer: &mut Layer, path: &str, material: &SceneMaterial) -> Result<()> {
     layer.prim(path, &material.name, "Material")?;
     if material.specular != 1.0 {

@@ -1,4 +1,4 @@
-//! One mesh: faces as they are, normals per vertex, texture coordinates per corner, skin and material.
+//! Writes one mesh: faces unchanged, normals per vertex, texture coordinates per corner, skin and material.
 
 use openusd::gf::{Matrix4d, Vec2f, Vec3f};
 use openusd::sdf::Value;
@@ -9,17 +9,17 @@ use crate::Result;
 use crate::scene::SceneMesh;
 use crate::scene::flip_v;
 
-/// What a mesh is bound to.
+/// The skeleton and material to which a mesh is bound.
 pub(super) struct Binding<'a> {
     /// Path of the skeleton; `None` for a mesh without a skin.
     pub(super) skeleton: Option<&'a str>,
     /// Path of the material.
     pub(super) material: &'a str,
-    /// Whether back faces are drawn too; USD has it on the mesh.
+    /// Whether back faces are drawn; USD stores this on the mesh.
     pub(super) double_sided: bool,
 }
 
-/// The mesh at this path.
+/// Writes the mesh to this path.
 pub(super) fn write(layer: &mut Layer, path: &str, mesh: &SceneMesh, binding: &Binding) -> Result<()> {
     layer.prim(path, &mesh.name, "Mesh")?;
     let (counts, corners, uvs) = faces(mesh);
@@ -32,14 +32,14 @@ pub(super) fn write(layer: &mut Layer, path: &str, mesh: &SceneMesh, binding: &B
         interpolate(layer, &normals, "vertex")?;
     }
     if !mesh.uvs.is_empty() {
-        // USD's v grows upwards.
+        // USD's v points upwards.
         let st = mesh.uvs.iter().map(|uv| Vec2f::from(flip_v(*uv))).collect();
         let st = layer.attribute(path, "primvars:st", "texCoord2f[]", Value::Vec2fVec(st))?;
         interpolate(layer, &st, "faceVarying")?;
         layer.attribute(path, "primvars:st:indices", "int[]", Value::IntVec(uvs))?;
     }
     layer.attribute(path, "doubleSided", "bool", Value::Bool(binding.double_sided)).map(drop)?;
-    // The surface is subdivided already: what is written is what is seen.
+    // The surface is subdivided already: viewers must not subdivide it again.
     layer.uniform(path, "subdivisionScheme", "token", Value::token("none"))?;
     layer.apply(path, "MaterialBindingAPI")?;
     layer.relate(path, "material:binding", binding.material)?;
@@ -51,7 +51,7 @@ fn skin(layer: &mut Layer, path: &str, mesh: &SceneMesh, skeleton: &str) -> Resu
     layer.relate(path, "skel:skeleton", skeleton)?;
     let identity = Matrix4d(glam::DMat4::IDENTITY.to_cols_array());
     layer.attribute(path, "primvars:skel:geomBindTransform", "matrix4d", Value::Matrix4d(identity))?;
-    // The index of an unused slot does not matter, but must be that of a joint.
+    // The index of an unused slot is irrelevant but must be valid.
     let joint = |(joint, weight): (&u16, &f32)| if *weight > 0.0 { i32::from(*joint) } else { 0 };
     let joints = mesh.joint_indices.iter().zip(&mesh.joint_weights).map(joint).collect();
     let weights = mesh.joint_weights.clone();
@@ -66,7 +66,7 @@ fn skin(layer: &mut Layer, path: &str, mesh: &SceneMesh, skeleton: &str) -> Resu
     Ok(())
 }
 
-/// Numbers of corners per face, and per corner the vertex and the texture coordinate: the quads, then the triangles.
+/// Number of corners per face, and vertex and texture coordinate index per corner: the quads, then the triangles.
 fn faces(mesh: &SceneMesh) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
     let corners = 4 * mesh.quads.positions.len() + 3 * mesh.triangles.positions.len();
     let mut counts = Vec::with_capacity(mesh.quads.positions.len() + mesh.triangles.positions.len());
@@ -74,7 +74,7 @@ fn faces(mesh: &SceneMesh) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
     let mut face = |corners: &[(u32, u32)]| {
         let before = vertices.len();
         for (i, (vertex, uv)) in corners.iter().enumerate() {
-            // A corner that repeats the one before it makes a triangle of a quad.
+            // A quad with a corner that repeats the one before it becomes a triangle.
             if corners[(i + corners.len() - 1) % corners.len()].0 != *vertex {
                 vertices.push(*vertex as i32);
                 uvs.push(*uv as i32);

@@ -1,23 +1,23 @@
-//! USD with UsdSkel, as text (`.usda`), as a crate file (`.usdc`) and as a package of one (`.usdz`).
+//! Writes USD with UsdSkel, as text (`.usda`), as a crate file (`.usdc`) and as a package of one (`.usdz`).
 //!
-//! One layer, in metres, +Y up, laid out as the UsdSkel documentation asks for it (openusd.org, "UsdSkel: Schemas In-Depth"):
+//! One layer, in metres, +Y up, laid out as in the UsdSkel documentation (openusd.org, "UsdSkel: Schemas In-Depth"):
 //!
 //! ```text
 //! /Character           SkelRoot, kind = component, extent (with samples over the first clip)
 //!   /Skel              Skeleton: joints, bindTransforms, restTransforms, jointNames
-//!     /Anim            SkelAnimation of the first clip, which is the one that plays
-//!     /<clip>          SkelAnimation of every further clip, bound to nothing
+//!     /Anim            SkelAnimation of the first clip, bound to the skeleton
+//!     /<clip>          SkelAnimation of each further clip, not bound
 //!   /<mesh>            Mesh: skin, normals per vertex, primvars:st per corner, material
 //!     /<target>        BlendShape of a morph target; its weights are in the SkelAnimations
 //!   /mtl/<material>    Material with a UsdPreviewSurface
 //! ```
 //!
-//! Names that are no USD identifiers are narrowed to such, and the original is kept: of prims in `displayName`, of
-//! joints in the skeleton's `jointNames`. How long bones are is in its `anthronet:boneLengths`. The scene's extras are a JSON text in the root's `customData`, under
-//! `anthronetExtras`. A character without joints is an `Xform` with meshes alone.
+//! Names that are not USD identifiers are converted to such, and the original is kept: of prims in `displayName`, of joints
+//! in the skeleton's `jointNames`. Bone lengths are in its `anthronet:boneLengths`. The scene's extras are JSON text in the
+//! root's `customData`, under `anthronetExtras`. A character without joints is an `Xform` with meshes only.
 //!
-//! Time codes are frames of the first clip; a further clip of another rate keeps its seconds. Bytes depend on the
-//! scene alone: no file holds the time of its making.
+//! Time codes are frames of the first clip; further clips with another rate keep their duration. The bytes depend only on
+//! the scene: no file contains a timestamp.
 
 mod animation;
 mod blend_shape;
@@ -39,9 +39,9 @@ use self::names::Names;
 use crate::Result;
 use crate::scene::Scene;
 
-/// Key of the root prim's `customData` under which the scene's extras are, as JSON.
+/// Key in the root prim's `customData` for the scene's extras, as JSON.
 pub(crate) const EXTRAS: &str = "anthronetExtras";
-/// Key of a material's `customData` for the strength of its reflection, which UsdPreviewSurface does not have.
+/// Key in a material's `customData` for its specular strength, which UsdPreviewSurface does not have.
 pub(crate) const SPECULAR: &str = "anthronetSpecular";
 /// The layer's name inside a package.
 const PACKAGED_LAYER: &str = "character.usdc";
@@ -56,7 +56,7 @@ pub fn to_usda(scene: &Scene) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The scene as a crate file, USD's binary form.
+/// The scene as a crate file, USD's binary encoding.
 ///
 /// # Errors
 /// As [`to_usda`].
@@ -66,7 +66,7 @@ pub fn to_usdc(scene: &Scene) -> Result<Vec<u8>> {
     Ok(bytes.into_inner())
 }
 
-/// The scene as a package: a zip archive that holds the crate file uncompressed, at a multiple of 64 bytes.
+/// The scene as a package: a zip archive that holds the crate file uncompressed, aligned to 64 bytes.
 ///
 /// # Errors
 /// As [`to_usda`].
@@ -76,7 +76,7 @@ pub fn to_usdz(scene: &Scene) -> Result<Vec<u8>> {
     Ok(archive.finish().map_err(fault)?.into_inner())
 }
 
-/// The whole layer of a scene that validates.
+/// The complete layer of a scene, which is validated first.
 fn layer(scene: &Scene) -> Result<Layer> {
     scene.validate()?;
     let mut layer = Layer::default();
@@ -127,7 +127,7 @@ fn layer_metadata(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> {
     if let Some(clip) = scene.clips.first() {
         layer.set("/", FieldKey::StartTimeCode, Value::Double(0.0))?;
         layer.set("/", FieldKey::EndTimeCode, Value::Double((clip.frame_count() - 1) as f64))?;
-        // One time code is one frame; viewers that read only one of the two play at the right pace.
+        // One time code is one frame; set both, so that viewers that read only one play at the right speed.
         for rate in [FieldKey::TimeCodesPerSecond, FieldKey::FramesPerSecond] {
             layer.set("/", rate, Value::Double(clip.frames_per_second()))?;
         }

@@ -1,8 +1,8 @@
-//! Free names as USD identifiers.
+//! Converts arbitrary names to USD identifiers.
 
 use std::collections::BTreeSet;
 
-/// A name as an identifier: letters, digits and underscores of ASCII, which every version of USD takes, and no digit in front.
+/// A name as an identifier: ASCII letters, digits and underscores, accepted by every version of USD, without leading digit.
 pub(crate) fn identifier(name: &str) -> String {
     let mut identifier: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -12,17 +12,17 @@ pub(crate) fn identifier(name: &str) -> String {
     identifier
 }
 
-/// Identifiers given out so far.
+/// Identifiers in use.
 #[derive(Default)]
 pub(super) struct Names(BTreeSet<String>);
 
 impl Names {
-    /// These are taken.
+    /// Starts with these identifiers in use.
     pub(super) fn reserved<const N: usize>(names: [&str; N]) -> Self {
         Self(names.map(String::from).into())
     }
 
-    /// The name's identifier, with a number behind it where it is taken.
+    /// The name's identifier, with a number appended if it is in use already.
     pub(super) fn unique(&mut self, name: &str) -> String {
         let identifier = identifier(name);
         let numbered = (2..).map(|n| format!("{identifier}_{n}"));

@@ -1,4 +1,4 @@
-//! The joint tree as a Skeleton, with the clips below it.
+//! Writes the joint tree as a Skeleton, with the clips below it.
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3};
 use openusd::gf::Matrix4d;
@@ -11,10 +11,10 @@ use crate::Result;
 use crate::scene::Scene;
 use crate::skeleton::{JointTree, Skeleton};
 
-/// A custom attribute of the Skeleton: how far each joint's bone reaches along its +Y axis, metres.
+/// Custom attribute of the Skeleton: length of each joint's bone along its +Y axis, metres.
 pub(crate) const BONE_LENGTHS: &str = "anthronet:boneLengths";
 
-/// The skeleton at this path and its animations, in which weights of morph targets go by tokens.
+/// Writes the skeleton to this path, with its animations; `tokens` identify morph target weights.
 pub(super) fn write(
     layer: &mut Layer,
     path: &str,
@@ -32,7 +32,7 @@ pub(super) fn write(
     layer.uniform(path, "joints", "token[]", joints.clone())?;
     let names = skeleton.names().iter().map(String::as_str);
     layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
-    // USD has no attribute for the end of a bone either; a negative length means none.
+    // USD has no attribute for the end of a bone; a negative length means none.
     let lengths = (0..skeleton.len()).map(|joint| skeleton.bone_length(joint));
     if lengths.clone().any(|length| length.is_some()) {
         let lengths = lengths.map(|length| length.unwrap_or(-1.0)).collect();
@@ -56,7 +56,7 @@ pub(super) fn write(
 
 /// The joints as paths from the root joint, such as `Root/pelvis/spine_01`.
 ///
-/// Identifiers are unique in the whole tree and not only among siblings: programs name bones by the last part.
+/// Identifiers are unique in the whole tree, not only among siblings: programs name bones by the last element.
 fn joint_tokens(joints: &JointTree) -> Value {
     let mut names = Names::default();
     let mut paths: Vec<String> = Vec::with_capacity(joints.len());
@@ -76,7 +76,7 @@ fn in_double(transform: &Affine3A) -> DAffine3 {
     }
 }
 
-/// USD has row vectors and rows one after the other: the same sixteen numbers as columns of a matrix for column vectors.
+/// USD stores matrices for row vectors row by row: the same sixteen numbers as the columns of a matrix for column vectors.
 fn matrices(transforms: impl Iterator<Item = DAffine3>) -> Value {
     Value::Matrix4dVec(transforms.map(|t| Matrix4d(glam::DMat4::from(t).to_cols_array())).collect())
 }

@@ -28,7 +28,7 @@ fn bytes_depend_on_the_scene_alone_and_a_package_is_aligned() {
     assert_eq!(crate_file, to_usdc(&scene).unwrap());
     assert_eq!(to_usda(&scene).unwrap(), to_usda(&scene).unwrap());
     let package = to_usdz(&scene).unwrap();
-    // Zip's local header (APPNOTE 4.3.7): stored, dated at the beginning of zip's time.
+    // Zip local file header (APPNOTE 4.3.7): stored, dated at the start of zip's epoch.
     assert_eq!(package[8..14], [0, 0, 0, 0, 0x21, 0]);
     let length = |at: usize| usize::from(u16::from_le_bytes([package[at], package[at + 1]]));
     let start = 30 + length(26) + length(28);
@@ -113,7 +113,7 @@ fn extents_hold_the_skinned_vertices() {
 #[test]
 fn extents_hold_what_morph_targets_move() {
     let mut scene = bulging(moving(4));
-    // The cushion alone, blown up beyond all.
+    // Blow up the cushion far beyond the rest of the mesh.
     scene.meshes[2].morph_targets[0].positions[1] = [0.0, 3.0, 2.0];
     extents_hold(&scene);
 }
