@@ -189,10 +189,16 @@ fn roll(line: Vec3, from: Vec3, to: Vec3) -> Option<Rotation> {
 
 /// The shortest rotation from one direction to another; the identity when one of them has no length.
 fn arc(from: Vec3, to: Vec3) -> Rotation {
-    match (from.try_normalize(), to.try_normalize()) {
-        (Some(from), Some(to)) => Rotation::from_rotation_arc(from, to),
-        _ => Rotation::IDENTITY,
+    let (Some(from), Some(to)) = (from.try_normalize(), to.try_normalize()) else {
+        return Rotation::IDENTITY;
+    };
+    let cos = from.dot(to);
+    if cos < 0.0 {
+        return Rotation::from_rotation_arc(from, to);
     }
+    // `from_rotation_arc` ignores angles below 0.7 mrad, which move the end of a leg by half a millimetre.
+    let axis = from.cross(to);
+    Rotation::from_xyzw(axis.x, axis.y, axis.z, 1.0 + cos).normalize()
 }
 
 #[cfg(test)]
