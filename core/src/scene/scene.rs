@@ -240,6 +240,17 @@ impl Scene {
         Skeleton::from_bind(skeleton.tree().clone(), skeleton.bind().to_vec(), lengths)
     }
 
+    /// Removes the skeleton and the meshes' influences: still meshes in the bind pose remain. Clips and their morph tracks, which
+    /// move the skeleton, are the caller's to remove.
+    pub(crate) fn remove_skin(&mut self) {
+        self.skeleton = None;
+        for mesh in &mut self.meshes {
+            mesh.influences_per_vertex = 0;
+            mesh.joint_indices.clear();
+            mesh.joint_weights.clear();
+        }
+    }
+
     /// Adds a clip. Control characters are removed from its name, and a number is appended where another clip has it.
     pub fn add_clip(&mut self, clip: Clip) {
         let name = Titles::taken(self.clips.iter().map(Clip::name)).unique(clip.name());

@@ -39,12 +39,7 @@ const REST_TOLERANCE: f32 = 1e-6;
 pub(super) fn meshes(document: &Document) -> Result<Scene> {
     let space = Space::read(&document.layer)?;
     let (mut scene, _) = still(document, &space, document.skeleton()?.as_ref())?;
-    scene.skeleton = None;
-    for mesh in &mut scene.meshes {
-        mesh.influences_per_vertex = 0;
-        mesh.joint_indices.clear();
-        mesh.joint_weights.clear();
-    }
+    scene.remove_skin();
     Ok(scene)
 }
 

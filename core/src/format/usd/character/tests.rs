@@ -58,12 +58,7 @@ fn a_character_of_ours_comes_back() {
 #[test]
 fn a_scene_without_joints_comes_back() {
     let mut scene = arm(4);
-    scene.skeleton = None;
-    for mesh in &mut scene.meshes {
-        mesh.influences_per_vertex = 0;
-        mesh.joint_indices.clear();
-        mesh.joint_weights.clear();
-    }
+    scene.remove_skin();
     let bytes = to_usdc(&scene).unwrap();
     let back = read_scene_from_bytes(&bytes, "a.usdc").unwrap();
     assert_eq!((back.joint_count(), back.meshes.len()), (0, 2));

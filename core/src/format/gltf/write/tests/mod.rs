@@ -277,12 +277,7 @@ fn a_long_chain_of_joints_does_not_drift() {
 #[test]
 fn a_scene_without_joints_has_no_skin() {
     let mut scene = arm(4);
-    scene.skeleton = None;
-    for mesh in &mut scene.meshes {
-        mesh.influences_per_vertex = 0;
-        mesh.joint_indices.clear();
-        mesh.joint_weights.clear();
-    }
+    scene.remove_skin();
     let json = Parsed::glb(&to_glb(&scene).unwrap()).json;
     assert!(json.get("skins").is_none());
     assert_eq!(json["scenes"][0]["nodes"], serde_json::json!([0, 1]));
