@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
-use crate::files::{check_ending, endings, write_scene};
+use crate::files::{check_extension, extensions, write_scene};
 use crate::motion::{MotionArguments, add_clips, rename_joints};
 
 /// Add clips to a character that `anthronet generate` made.
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
+    /// The file to write; its extension chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &endings(Purpose::WriteScene))?;
+    check_extension("-o", &arguments.output, &extensions(Purpose::WriteScene))?;
     arguments.motion.check(&arguments.output)?;
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one clip, got none"));

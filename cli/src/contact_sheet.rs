@@ -15,7 +15,7 @@ use glam::Vec3;
 
 use crate::failure::{Failure, Result};
 use crate::figure;
-use crate::files::check_ending;
+use crate::files::check_extension;
 use crate::render::{Image, LitFigure, Picture, Tile, View, draw_text, text_width};
 use crate::terminal::bar;
 
@@ -77,7 +77,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &["png"])?;
+    check_extension("-o", &arguments.output, &["png"])?;
     let model = Model::from_environment()?;
     let typical = Sex::ALL.map(|sex| Typical::of(model.prior().of(sex)));
     let people = people(usize::from(arguments.count), arguments.seed, &typical);

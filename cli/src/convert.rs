@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::Result;
-use crate::files::{check_ending, endings, holds_motion, write_scene};
+use crate::files::{check_extension, extensions, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
 /// Convert a character file to another format, with its skin, joints, materials and clips.
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     /// The character: .glb, .gltf, .vrm, .usda, .usdc or .usdz.
     input: PathBuf,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
+    /// The file to write; its extension chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
     output: PathBuf,
 
     /// Naming scheme of the joints; by default that of the input.
@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("OUTPUT", &arguments.output, &endings(Purpose::WriteScene))?;
+    check_extension("OUTPUT", &arguments.output, &extensions(Purpose::WriteScene))?;
     let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         rename_joints(&mut scene, names)?;

@@ -1,4 +1,4 @@
-//! Reading and writing of files; formats are chosen by the ending of the path.
+//! Reading and writing of files; the file extension chooses the format.
 
 use std::fs;
 use std::path::Path;
@@ -9,29 +9,30 @@ use anthronet::scene::Scene;
 use crate::failure::{Failure, Result};
 use crate::terminal;
 
-/// Endings, without the dot, of the files that serve a purpose.
-pub(crate) fn endings(purpose: Purpose) -> Vec<&'static str> {
-    Format::serving(purpose).map(Format::ending).collect()
+/// File extensions, without the dot, that serve a purpose.
+pub(crate) fn extensions(purpose: Purpose) -> Vec<&'static str> {
+    Format::serving(purpose).map(Format::extension).collect()
 }
 
-/// Whether a file of this path's ending holds motion when it is written.
+/// Whether a file of this path's extension holds motion when it is written.
 pub(crate) fn holds_motion(path: &Path) -> bool {
     Format::of_path(path, Purpose::WriteScene).is_ok_and(|format| format.holds().clips)
 }
 
-/// The ending of a path in lower case, without its dot; empty for none.
-pub(crate) fn ending(path: &Path) -> String {
+/// The file extension of a path in lower case, without its dot; empty for none.
+pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// Refuses a path whose ending is not one of these; the message names the `option` it was given for, if any.
-pub(crate) fn check_ending(option: &str, path: &Path, known: &[&str]) -> Result<()> {
-    if known.contains(&ending(path).as_str()) {
+/// Refuses a path whose extension is not one of these; the message names the `option` it was given for, if any.
+pub(crate) fn check_extension(option: &str, path: &Path, known: &[&str]) -> Result<()> {
+    if known.contains(&extension(path).as_str()) {
         return Ok(());
     }
     let known: Vec<_> = known.iter().map(|k| format!(".{k}")).collect();
     let argument = format!("{option} {}", path.display());
-    let message = format!("{}: unknown ending, expected one of {}", argument.trim_start(), known.join(" "));
+    let message =
+        format!("{}: unknown file extension, expected one of {}", argument.trim_start(), known.join(" "));
     Err(Failure::usage(message))
 }
 
@@ -49,11 +50,11 @@ pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
     if path == Path::new("-") { terminal::print(text) } else { Ok(write_atomic(path, text.as_bytes())?) }
 }
 
-/// Writes the scene; the path's ending chooses the format.
+/// Writes the scene; the path's extension chooses the format.
 pub(crate) fn write_scene(scene: &Scene, path: &Path, compress: bool) -> Result<()> {
-    let ending = ending(path);
-    if compress && !matches!(Format::of_ending(&ending), Some(Format::Glb | Format::Gltf)) {
-        return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{ending}")));
+    let extension = extension(path);
+    if compress && !matches!(Format::of_extension(&extension), Some(Format::Glb | Format::Gltf)) {
+        return Err(Failure::usage(format!("--compress: expected with .glb or .gltf, got .{extension}")));
     }
     let options = WriteOptions { gltf: GltfOptions { compress }, ..WriteOptions::default() };
     Ok(format::write_scene(scene, path, &options)?)
@@ -64,12 +65,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings() {
-        assert!(check_ending("-o", Path::new("a/b.GLB"), &["glb"]).is_ok());
+    fn extensions() {
+        assert!(check_extension("-o", Path::new("a/b.GLB"), &["glb"]).is_ok());
         for path in ["b", "b.", "glb", "b.glb.txt"] {
-            assert!(check_ending("-o", Path::new(path), &["glb"]).is_err(), "{path}");
+            assert!(check_extension("-o", Path::new(path), &["glb"]).is_err(), "{path}");
         }
-        let message = check_ending("", Path::new("b.stl"), &["glb", "obj"]).unwrap_err().to_string();
-        assert_eq!(message, "b.stl: unknown ending, expected one of .glb .obj");
+        let message = check_extension("", Path::new("b.stl"), &["glb", "obj"]).unwrap_err().to_string();
+        assert_eq!(message, "b.stl: unknown file extension, expected one of .glb .obj");
     }
 }

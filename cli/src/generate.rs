@@ -13,7 +13,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, InvalidValue, Result};
-use crate::files::{check_ending, endings, write_scene, write_text};
+use crate::files::{check_extension, extensions, write_scene, write_text};
 use crate::motion::{MotionArguments, add_clips};
 use crate::request::{RequestArguments, read_request};
 use anthronet::format::Purpose;
@@ -60,7 +60,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf (with a .bin beside it), .vrm, .usda, .usdc,
+    /// The file to write; its extension chooses the format: .glb, .gltf (with a .bin beside it), .vrm, .usda, .usdc,
     /// .usdz or .obj.
     #[arg(short = 'o', long = "output", value_name = "FILE", help_heading = "File")]
     output: PathBuf,
@@ -91,7 +91,7 @@ fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, InvalidValue> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &endings(Purpose::WriteScene))?;
+    check_extension("-o", &arguments.output, &extensions(Purpose::WriteScene))?;
     arguments.motion.check(&arguments.output)?;
     if arguments.report.as_deref() == Some(&*arguments.output) {
         return Err(Failure::usage("--report: expected a file other than that of -o"));

@@ -10,7 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::failure::Result;
-use crate::files::{check_ending, endings};
+use crate::files::{check_extension, extensions};
 use crate::terminal::print;
 
 /// Measure a character file: all measures, mass and body mass index.
@@ -56,7 +56,7 @@ struct NamedValue {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("", &arguments.file, &endings(Purpose::ReadMeshes))?;
+    check_extension("", &arguments.file, &extensions(Purpose::ReadMeshes))?;
     let measured = Measured::of_file(&Model::from_environment()?, &arguments.file)?;
     if arguments.json {
         let json = serde_json::to_string_pretty(&measured)?;

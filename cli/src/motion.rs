@@ -16,7 +16,7 @@ use serde_json::json;
 
 use crate::choice;
 use crate::failure::{Failure, InvalidValue, Result};
-use crate::files::{self, ending, read_text};
+use crate::files::{self, extension, read_text};
 
 /// Options of motion.
 #[derive(Args, Clone, Debug, Default)]
@@ -76,13 +76,15 @@ pub(crate) struct MotionArguments {
 impl MotionArguments {
     /// Refuses contradictory options before any work is done.
     pub(crate) fn check(&self, output: &Path) -> Result<()> {
-        let ending = ending(output);
+        let extension = extension(output);
         if !self.clips.is_empty() && !files::holds_motion(output) {
             let moving: Vec<_> = Format::serving(Purpose::WriteScene).filter(|f| f.holds().clips).collect();
-            let dotted: Vec<_> = moving.iter().map(|format| format!(".{}", format.ending())).collect();
+            let dotted: Vec<_> = moving.iter().map(|format| format!(".{}", format.extension())).collect();
             let (last, others) = dotted.split_last().map_or(("", &[][..]), |(l, o)| (l.as_str(), o));
             let expected = format!("{} or {last}", others.join(" "));
-            return Err(Failure::usage(format!("--clip: a .{ending} holds no motion, expected {expected}")));
+            return Err(Failure::usage(format!(
+                "--clip: a .{extension} holds no motion, expected {expected}"
+            )));
         }
         if self.clips.is_empty() {
             let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);

@@ -9,7 +9,7 @@ use clap::Args;
 
 use crate::failure::{Failure, Result};
 use crate::figure;
-use crate::files::{check_ending, ending, endings};
+use crate::files::{check_extension, extension, extensions};
 use crate::render::{LitFigure, View, draw_views};
 use crate::request::RequestArguments;
 use crate::units::parse_size;
@@ -43,11 +43,11 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
-    check_ending("-o", &arguments.output, &["png"])?;
+    check_extension("-o", &arguments.output, &["png"])?;
     if arguments.views.len() > 16 {
         return Err(Failure::usage(format!("--views: expected at most 16, got {}", arguments.views.len())));
     }
-    let figure = match ending(&arguments.input).as_str() {
+    let figure = match extension(&arguments.input).as_str() {
         "json" => {
             let from = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };
             let request = from.to_request()?;
@@ -56,7 +56,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             figure::from_scene(&Scene::from_body(&body, &SceneOptions::default())?)?
         }
         _ => {
-            check_ending("", &arguments.input, &[&endings(Purpose::ReadMeshes)[..], &["json"]].concat())?;
+            check_extension(
+                "",
+                &arguments.input,
+                &[&extensions(Purpose::ReadMeshes)[..], &["json"]].concat(),
+            )?;
             figure::from_file(&arguments.input)?
         }
     };

@@ -41,7 +41,7 @@ fn options_that_do_not_exist_are_bad_usage() {
 }
 
 #[test]
-fn the_output_is_required_and_its_ending_known() {
+fn the_output_is_required_and_its_extension_known() {
     anthronet(&["generate", "-m", "height=1.7"], &[]).fails(2, &["--output"]);
     anthronet(&["preview", "a.glb"], &[]).fails(2, &["--output"]);
     anthronet(&["contact-sheet"], &[]).fails(2, &["--output"]);

@@ -256,7 +256,7 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
     }
     anthronet(&["generate", "--clip", "walk", "-o", &path("a.vrm")], &[]).fails(2, &[".vrm holds no motion"]);
     anthronet(&["animate", &whole, "--clip", "walk", "-o", &out], &[])
-        .fails(1, &["whole.bvh", "unknown ending"]);
+        .fails(1, &["whole.bvh", "unknown file extension"]);
     anthronet(&["convert", &path("none.glb"), &out], &[]).fails(1, &["none.glb"]);
     assert_eq!(files_in(folder.path()), ["cut.bvh", "map.json", "whole.bvh"]);
 }

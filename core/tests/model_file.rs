@@ -134,9 +134,9 @@ fn the_model_card_has_the_scores_of_the_file() {
     let card = include_str!("../../model/MODEL_CARD.md");
     for (row, score) in [
         ("mean vertex distance, z = encoder mean", "p2p_mm"),
-        ("mean vertex distance, z = 0 (shape that 36 measures leave undetermined)", "p2p_z0_mm"),
+        ("mean vertex distance, z = 0 (shape that the measures leave undetermined)", "p2p_z0_mm"),
         ("mean vertex distance of the shape space itself", "p2p_shape_space_mm"),
-        ("mean error of the 36 measures before the solve", "measures_mean_mm"),
+        ("mean error of the measures before the solve", "measures_mean_mm"),
         ("chest circumference before the solve", "chest_circumference_mm"),
         ("hip circumference before the solve", "hip_circumference_mm"),
         ("waist circumference before the solve", "waist_circumference_mm"),

@@ -605,7 +605,7 @@ pub(crate) mod ffi {
         #[Self = "Motion"]
         fn open(path: &str, options: &MotionOptions) -> Result<Box<Motion>>;
 
-        /// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a
+        /// Reads a motion file from memory. `name` is the file's: its extension says the format, and a clip without a
         /// name gets it.
         #[Self = "Motion"]
         fn from_bytes(bytes: &[u8], name: &str, options: &MotionOptions) -> Result<Box<Motion>>;
@@ -627,7 +627,7 @@ pub(crate) mod ffi {
         /// Adds a clip of the body or of one with the same rig; names are unique.
         unsafe fn add_clip<'a>(self: &'a mut Scene, clip: &Clip) -> Result<&'a mut Scene>;
 
-        /// Writes a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
+        /// Writes a file in the format of its extension: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
         /// .obj. It is written completely or not at all.
         fn save(self: &Scene, path: &str) -> Result<()>;
 

@@ -1070,7 +1070,7 @@ anthronet_status anthronet_motion_open_path(const char *path,
                                             struct anthronet_motion **out_motion,
                                             struct anthronet_error *error);
 
-// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
+// Reads a motion file from memory. `name` is the file's: its extension says the format, and a clip without a name gets
 // it.
 anthronet_status anthronet_motion_open_memory(const uint8_t *data,
                                               uint64_t length,
@@ -1135,8 +1135,8 @@ anthronet_status anthronet_skin(struct anthronet_context *context,
                                 uint32_t count,
                                 struct anthronet_error *error);
 
-// Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-// .obj. The file is written completely or not at all. `options` may be NULL.
+// Writes a body to a file in the format of its extension: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz
+// or .obj. The file is written completely or not at all. `options` may be NULL.
 anthronet_status anthronet_export_path(const struct anthronet_body *body,
                                        const struct anthronet_export_options *options,
                                        const char *path,

@@ -41,8 +41,8 @@ pub struct anthronet_export_options {
 // SAFETY: numbers and a pointer that may be NULL, the size first.
 unsafe impl Descriptor for anthronet_export_options {}
 
-/// Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-/// .obj. The file is written completely or not at all. `options` may be NULL.
+/// Writes a body to a file in the format of its extension: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz
+/// or .obj. The file is written completely or not at all. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_export_path(
     body: *const anthronet_body,

@@ -119,7 +119,7 @@ pub unsafe extern "C" fn anthronet_motion_open_path(
     })
 }
 
-/// Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
+/// Reads a motion file from memory. `name` is the file's: its extension says the format, and a clip without a name gets
 /// it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_open_memory(

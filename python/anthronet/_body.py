@@ -195,8 +195,8 @@ class Body(Owner):
         skin_tone: int = 0,
         body_only: bool = False,
     ) -> None:
-        """Writes the body to a file, completely or not at all, in the format of its ending: .glb, .gltf (and .bin beside
-        it), .vrm, .usda, .usdc, .usdz or .obj.
+        """Writes the body to a file, completely or not at all, in the format of its extension: .glb, .gltf (and .bin
+        beside it), .vrm, .usda, .usdc, .usdz or .obj.
 
         Args:
             path: where to.
@@ -209,7 +209,7 @@ class Body(Owner):
             body_only: leaves out eyes, teeth, tongue and lashes.
 
         Raises:
-            FileError, IoError: the ending is unknown, or the system does not let it be written.
+            FileError, IoError: the extension is unknown, or the system does not let it be written.
             ArgumentError, InvalidError, TypeError, ValueError: an argument does not fit.
         """
         encoded = _arguments.path(path)

@@ -49,7 +49,7 @@ class Motion(Owner):
 
         Args:
             data: bytes, or anything that has some.
-            name: the file's: its ending says the format, and a clip without a name gets it.
+            name: the file's: its extension says the format, and a clip without a name gets it.
             metres_per_unit, up, frames_per_second: as of `open_motion`.
         """
         options = _options(metres_per_unit, up, frames_per_second)
@@ -213,7 +213,7 @@ def open_motion(
         frames_per_second: the rate that frames were recorded at, and that curves are sampled at.
 
     Raises:
-        FileError: the file is not what its ending says.
+        FileError: the file is not what its extension says.
         IoError: the system does not let it be read.
         TypeError, ValueError: an argument does not fit.
     """

@@ -54,9 +54,9 @@ def exporting():
     check("the exported motion is the scene's", off < 2e-3, f"{1000 * off:.2f} mm")
 
     scene.frame_end = 5
-    for ending, start in ((".usdc", b"PXR-USDC"), (".usda", b"#usda"), (".vrm", b"glTF"), (".obj", None)):
-        path = _export(f"ending{ending}")
-        check(f"the extension of a script's path is the format: {ending}", start is None or path.read_bytes().startswith(start))
+    for extension, start in ((".usdc", b"PXR-USDC"), (".usda", b"#usda"), (".vrm", b"glTF"), (".obj", None)):
+        path = _export(f"by_extension{extension}")
+        check(f"the extension of a script's path is the format: {extension}", start is None or path.read_bytes().startswith(start))
     check("a format decides on the extension", _export("plain", format=".glb") and (home / "plain.glb").exists())
     check("without format and extension it is glTF", _export("bare") and (home / "bare.glb").exists())
     scene.frame_set(5)
@@ -69,13 +69,13 @@ def exporting():
 def _reading_back(character):
     """The files, read by Blender's own importers."""
     expected = expected_positions(character)
-    shutil.copy(home / "ending.vrm", home / "vrm.glb")
+    shutil.copy(home / "by_extension.vrm", home / "vrm.glb")
     # The USD of Blender 4.2 is older than the binary files of today's; it reads text.
-    usd = "out.usdc" if bpy.app.version >= (4, 5, 0) else "ending.usda"
+    usd = "out.usdc" if bpy.app.version >= (4, 5, 0) else "by_extension.usda"
     importers = {
         usd: bpy.ops.wm.usd_import,
         "vrm.glb": bpy.ops.import_scene.gltf,
-        "ending.obj": bpy.ops.wm.obj_import,
+        "by_extension.obj": bpy.ops.wm.obj_import,
     }
     if bpy.app.version < (4, 5, 0):
         del importers["vrm.glb"]
@@ -93,7 +93,7 @@ def _reading_back(character):
         sizes = np.ptp(there, axis=0), np.ptp(expected, axis=0)
         check(f"{name} in Blender: its size", np.allclose(*sizes, atol=2e-3), str(sizes))
         rigs = [ob for ob in made if ob.type == "ARMATURE"]
-        if name != "ending.obj":
+        if name != "by_extension.obj":
             check(f"{name} in Blender: its bones", rigs and len(rigs[0].data.bones) >= 60, str(rigs))
         if name == usd:
             action = rigs[0].animation_data.action if rigs and rigs[0].animation_data else None

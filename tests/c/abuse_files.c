@@ -33,7 +33,7 @@ static unsigned char *damaged(const unsigned char *bytes, uint64_t length, uint6
 }
 
 void test_no_files(const fixture *f) {
-    static const char *const NO_PATHS[] = {"", "/nowhere/at/all.glb", "/", ".", "no_ending", "a.png"};
+    static const char *const NO_PATHS[] = {"", "/nowhere/at/all.glb", "/", ".", "no_extension", "a.png"};
     anthronet_model *model;
     anthronet_motion *motion;
     double metres[MEASURES];

@@ -486,7 +486,7 @@ void requests_and_reports(const Model &model) {
     auto body = person(model, 1.74);
     const auto names = measure_names();
     const auto measures = body->measures();
-    check(names.size() == 36 && measures.size() == 36, "number of measures");
+    check(!names.empty() && measures.size() == names.size(), "number of measures");
     for (std::size_t i = 0; i < names.size(); ++i) {
       const bool height = names[i] == "height";
       check(measures[i].name == names[i] && measures[i].given == height, "measure " + std::string(names[i]));

@@ -400,13 +400,13 @@ SOURCES = {
 }
 
 
-@pytest.fixture(params=["not there", "not there, without an ending", "text", *SOURCES])
+@pytest.fixture(params=["not there", "not there, without an extension", "text", *SOURCES])
 def wrong_library(request, tmp_path):
     """The path of a library that is none of ours, and what is said of it."""
     path = tmp_path / "wrong.so"
     if request.param == "not there":
         return path, "no such file"
-    if request.param == "not there, without an ending":
+    if request.param == "not there, without an extension":
         return Path(np.__file__).parent.parent / "no", "no such file"
     if request.param == "text":
         path.write_text("no library", encoding="utf-8")

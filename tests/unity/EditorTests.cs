@@ -167,7 +167,7 @@ namespace Anthronet.Tests
             Expect.That(!AssetDatabase.Files.ContainsKey("Assets/Other.asset"), "an asset is left");
             Expect.That(!character.IsBaked && character.GenerateOnAwake, "baked");
             Expect.That(character.Body != null && character.GetMesh(0) != null && character.GetRenderer(0).sharedMesh == character.GetMesh(0), "not whole");
-            Expect.Throws<ArgumentException>(() => AnthroSave.SavePrefab(character, "Assets/Other.fbx"), "another ending");
+            Expect.Throws<ArgumentException>(() => AnthroSave.SavePrefab(character, "Assets/Other.fbx"), "another extension");
             Scene.Destroy(character);
         }
 

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use anthronet::measure::{Definitions, MEASURE_COUNT};
+use anthronet::measure::Definitions;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use rayon::prelude::*;
@@ -68,11 +68,11 @@ pub fn fit(
     };
 
     let before = misses(&measure(corpus, &start, JACOBIAN_BODIES, false)?);
-    let mut jacobian = Mat::zeros(MEASURE_COUNT, start.len());
+    let mut jacobian = Mat::zeros(before.nrows(), start.len());
     for (j, name) in start.keys().enumerate() {
         let nudged = start.iter().map(|(n, b)| (n.clone(), if n == name { b + NUDGE } else { *b })).collect();
         let after = misses(&measure(corpus, &nudged, JACOBIAN_BODIES, false)?);
-        for i in 0..MEASURE_COUNT {
+        for i in 0..before.nrows() {
             jacobian[(i, j)] = (after[(i, 0)] - before[(i, 0)]) / NUDGE;
         }
     }
@@ -102,7 +102,7 @@ fn better(jacobian: &Mat<f64>, misses: &Mat<f64>, so_far: &Mat<f64>) -> Result<M
 
 /// Difference of each mean from its target, in the paper's standard deviations.
 fn misses(statistics: &Statistics) -> Mat<f64> {
-    Mat::from_fn(MEASURE_COUNT, 1, |i, _| {
+    Mat::from_fn(statistics.measures.len(), 1, |i, _| {
         let row = &statistics.measures[i];
         let [mean, deviation, ..] = row.paper;
         if row.name == NOT_MATCHED { row.z - (NATURAL_HEAD_HEIGHT - mean) / deviation } else { row.z }
@@ -153,6 +153,6 @@ mod tests {
         let read: BTreeMap<String, f64> = serde_json::from_str(&fitted.to_json()).unwrap();
         assert_eq!(read, biases);
         let id = MeasureId::from_name(NOT_MATCHED).unwrap();
-        assert!((NATURAL_HEAD_HEIGHT - paper_row(id)[0]).abs() < 0.02);
+        assert!((NATURAL_HEAD_HEIGHT - paper_row(id).unwrap()[0]).abs() < 0.02);
     }
 }

@@ -86,7 +86,7 @@ namespace Anthronet
             get { return (int)summary.joint_count; }
         }
 
-        /// <summary>Writes the report of the 36 measures, in the order of `AnthroMeasures.Names`.</summary>
+        /// <summary>Writes the report of all measures, in the order of `AnthroMeasures.Names`.</summary>
         public void Measures(AnthroMeasureReport[] results)
         {
             using (var held = new Held(handle))
@@ -98,7 +98,7 @@ namespace Anthronet
             }
         }
 
-        /// <summary>The report of the 36 measures, in the order of `AnthroMeasures.Names`.</summary>
+        /// <summary>The report of all measures, in the order of `AnthroMeasures.Names`.</summary>
         public AnthroMeasureReport[] Measures()
         {
             var reports = new AnthroMeasureReport[AnthroMeasures.Count];

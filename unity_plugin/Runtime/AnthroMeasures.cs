@@ -3,7 +3,7 @@ using System.Collections.Generic;
 
 namespace Anthronet
 {
-    /// <summary>The 36 measures, by name, in the order of the native library. Available without loading the
+    /// <summary>The measures, by name, in the order of the native library. Available without loading the
     /// library.</summary>
     public static class AnthroMeasures
     {

@@ -149,8 +149,8 @@ namespace Anthronet
             };
         }
 
-        /// <summary>The same person with one measure changed; the nearest possible one where no person has all 36
-        /// measures.</summary>
+        /// <summary>The same person with one measure changed; the nearest possible one where no person has all
+        /// of them.</summary>
         static AnthroBody TargetBody(AnthroBody body, AnthroPoseDrivenShape shape)
         {
             var latent = new double[AnthroModel.Default.LatentSize];

@@ -5,7 +5,7 @@ using UnityEngine;
 namespace Anthronet
 {
     /// <summary>
-    /// Describes a person to generate: any of the 36 measures in metres, sex, seed. Serialisable by Unity. One thread at
+    /// Describes a person to generate: any of the measures in metres, sex, seed. Serialisable by Unity. One thread at
     /// a time may change it.
     /// </summary>
     [Serializable]

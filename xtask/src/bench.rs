@@ -12,7 +12,7 @@ use std::time::Instant;
 /// Number of frames of the written motion, and number of runs: the minimum counts, as other processes only add time.
 const FRAMES: usize = 300;
 const RUNS: usize = 7;
-/// Ending, whether with motion, and limit of the wall-clock time of the whole process, seconds.
+/// File extension, whether with motion, and limit of the wall-clock time of the whole process, seconds.
 const FILES: [(&str, bool, f64); 3] = [("glb", false, 0.6), ("glb", true, 1.0), ("usdc", true, 3.0)];
 
 pub(crate) fn run(rest: &[String]) -> Result<()> {
@@ -41,8 +41,8 @@ fn files() -> Result<()> {
     let clip = folder.join("frames.bvh");
     tools::write(&clip, &longer(&tools::read(&tools::root().join(requests::BVH))?)?)?;
     let mut missed = Vec::new();
-    for (ending, moves, most) in FILES {
-        let out = folder.join(format!("frames.{ending}"));
+    for (extension, moves, most) in FILES {
+        let out = folder.join(format!("frames.{extension}"));
         let clip = moves.then_some(clip.as_path());
         let what = if moves { format!("{FRAMES} frames") } else { "a person".to_owned() };
         let least = (0..RUNS).map(|_| seconds(&anthronet, clip, &out)).collect::<Result<Vec<f64>>>()?;
@@ -50,12 +50,12 @@ fn files() -> Result<()> {
         let bytes = std::fs::metadata(&out).with_context(|| out.display().to_string())?.len();
         let met = if least <= most { "met" } else { "MISSED" };
         println!(
-            "{what} on level 0 to .{ending}, whole process: bar {most:.1} s, measured {least:.3} s ({:.1} MB), {met}",
+            "{what} on level 0 to .{extension}, whole process: bar {most:.1} s, measured {least:.3} s ({:.1} MB), {met}",
             bytes as f64 / 1e6
         );
         missed.extend(
             (least > most)
-                .then(|| format!("{what} to .{ending} took {least:.3} s, at most {most} s expected")),
+                .then(|| format!("{what} to .{extension} took {least:.3} s, at most {most} s expected")),
         );
     }
     if missed.is_empty() { Ok(()) } else { Err(anyhow!(missed.join("; "))) }

@@ -111,7 +111,7 @@ pub(crate) fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
         let path = entry.with_context(cannot)?.path();
         if path.is_dir() {
             files.extend(rust_files(&path)?);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
             files.push(path);
         }
     }

@@ -10,8 +10,8 @@ use super::{Error, Fault, ParserError};
 #[non_exhaustive]
 pub enum FormatError {
     /// The file extension is not that of a format supported for the purpose.
-    #[error("unknown ending, expected one of {expected}")]
-    Ending {
+    #[error("unknown file extension, expected one of {expected}")]
+    Extension {
         /// The supported extensions, with their dots.
         expected: String,
     },
@@ -56,7 +56,7 @@ impl FormatError {
             Self::Obj(error) => Some(error.fault()),
             Self::Usd(error) => error.fault(),
             Self::Fault(fault) => Some(fault),
-            Self::Ending { .. } | Self::Mapping(_) | Self::Content(_) => None,
+            Self::Extension { .. } | Self::Mapping(_) | Self::Content(_) => None,
         }
     }
 }

@@ -97,7 +97,7 @@ pub(crate) enum Write {
 /// The description of a format, from its folder.
 pub(crate) struct Description {
     /// File extension, in lower case, without the dot.
-    pub(crate) ending: &'static str,
+    pub(crate) extension: &'static str,
     /// Display name.
     pub(crate) title: &'static str,
     pub(crate) holds: Holds,
@@ -109,8 +109,8 @@ pub(crate) struct Description {
 
 impl Format {
     /// File extension, in lower case, without the dot: `glb`.
-    pub const fn ending(self) -> &'static str {
-        self.description().ending
+    pub const fn extension(self) -> &'static str {
+        self.description().extension
     }
 
     /// Display name: `glTF 2.0, binary`.
@@ -134,8 +134,8 @@ impl Format {
     }
 
     /// The format with this file extension, without the dot, in any case.
-    pub fn of_ending(ending: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|format| format.ending().eq_ignore_ascii_case(ending))
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.extension().eq_ignore_ascii_case(extension))
     }
 
     /// The format of a path's extension, in any case, for a purpose.
@@ -151,7 +151,9 @@ impl Format {
     /// # Errors
     /// [`Error::Request`] for any other name; it lists the valid ones.
     pub fn of_one_file(name: &str) -> Result<Self> {
-        Self::of_ending(name).filter(|format| format.is_one_file()).ok_or_else(|| Self::one_file_fault(name))
+        Self::of_extension(name)
+            .filter(|format| format.is_one_file())
+            .ok_or_else(|| Self::one_file_fault(name))
     }
 
     fn is_one_file(self) -> bool {
@@ -161,7 +163,7 @@ impl Format {
     /// The error for a format that is not written as a single file.
     pub(super) fn one_file_fault(name: &str) -> Error {
         let one_file = Self::ALL.iter().copied().filter(|format| format.is_one_file());
-        let known: Vec<&str> = one_file.map(Self::ending).collect();
+        let known: Vec<&str> = one_file.map(Self::extension).collect();
         let expected = format!("expected one of {}, which are one file each", known.join(" "));
         Error::request("format", format!("{expected}, got `{name}`"))
     }
@@ -191,12 +193,13 @@ pub(super) fn able<T>(
     path: &Path,
     ability: impl Fn(&'static Description) -> Option<T>,
 ) -> Result<(Format, T)> {
-    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-    let found = Format::of_ending(ending).and_then(|format| Some((format, ability(format.description())?)));
+    let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    let found =
+        Format::of_extension(extension).and_then(|format| Some((format, ability(format.description())?)));
     found.ok_or_else(|| {
         let able = Format::ALL.iter().filter(|format| ability(format.description()).is_some());
-        let known: Vec<String> = able.map(|format| format!(".{}", format.ending())).collect();
-        Error::file(path, FormatError::Ending { expected: known.join(" ") })
+        let known: Vec<String> = able.map(|format| format!(".{}", format.extension())).collect();
+        Error::file(path, FormatError::Extension { expected: known.join(" ") })
     })
 }
 
@@ -204,16 +207,16 @@ pub(super) fn able<T>(
 mod tests {
     use super::*;
 
-    fn endings(purpose: Purpose) -> String {
-        Format::serving(purpose).map(Format::ending).collect::<Vec<_>>().join(" ")
+    fn extensions(purpose: Purpose) -> String {
+        Format::serving(purpose).map(Format::extension).collect::<Vec<_>>().join(" ")
     }
 
     #[test]
     fn each_purpose_has_its_formats() {
-        assert_eq!(endings(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz");
-        assert_eq!(endings(Purpose::ReadScene), "glb gltf vrm usda usdc usdz");
-        assert_eq!(endings(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj");
-        assert_eq!(endings(Purpose::WriteScene), "glb gltf vrm usda usdc usdz obj");
+        assert_eq!(extensions(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz");
+        assert_eq!(extensions(Purpose::ReadScene), "glb gltf vrm usda usdc usdz");
+        assert_eq!(extensions(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj");
+        assert_eq!(extensions(Purpose::WriteScene), "glb gltf vrm usda usdc usdz obj");
     }
 
     #[test]
@@ -223,19 +226,19 @@ mod tests {
             assert!(holds.clips || !format.serves(Purpose::ReadMotion), "{format:?}");
             assert!(holds.skeleton || !format.serves(Purpose::ReadScene), "{format:?}");
             assert!(holds.meshes || !format.serves(Purpose::ReadMeshes), "{format:?}");
-            assert_eq!(format.ending(), format!("{format:?}").to_lowercase());
-            assert_eq!(Format::of_ending(&format.ending().to_uppercase()), Some(format));
+            assert_eq!(format.extension(), format!("{format:?}").to_lowercase());
+            assert_eq!(Format::of_extension(&format.extension().to_uppercase()), Some(format));
             assert!(!format.title().is_empty());
         }
     }
 
     #[test]
-    fn the_ending_of_a_path_tells_the_format() {
+    fn the_extension_of_a_path_tells_the_format() {
         let of = |path: &str| Format::of_path(Path::new(path), Purpose::ReadScene);
         assert_eq!(of("a/b.c.GLB").unwrap(), Format::Glb);
         for path in ["b.bvh", "b", "glb", "b.", "b.glb.txt", ""] {
             let message = of(path).unwrap_err().to_string();
-            let expected = "unknown ending, expected one of .glb .gltf .vrm .usda .usdc .usdz";
+            let expected = "unknown file extension, expected one of .glb .gltf .vrm .usda .usdc .usdz";
             assert!(message.ends_with(expected), "{message}");
         }
         assert_eq!(Format::of_one_file("GLB").unwrap(), Format::Glb);

@@ -93,13 +93,13 @@ mod tests {
     use crate::error::Fault;
 
     #[test]
-    fn the_ending_tells_the_format_and_the_first_bytes_confirm_it() {
+    fn the_extension_tells_the_format_and_the_first_bytes_confirm_it() {
         let error = |path: &str, bytes: &[u8]| {
             read_motion_from_bytes(bytes, path, &ReadOptions::default()).unwrap_err().to_string()
         };
         let unknown = error("walk.mov", b"");
         assert!(unknown.contains("walk.mov") && unknown.contains(".bvh .npz .fbx .glb"), "{unknown}");
-        assert!(error("walk", b"").contains("unknown ending"));
+        assert!(error("walk", b"").contains("unknown file extension"));
         for (path, expected) in [
             ("a.BVH", "expected HIERARCHY"),
             ("a.npz", "expected a zip archive"),
@@ -130,13 +130,13 @@ mod tests {
     }
 
     #[test]
-    fn an_ending_is_looked_at_before_the_disk() {
+    fn an_extension_is_looked_at_before_the_disk() {
         for message in [
             read_scene("missing.obj").unwrap_err().to_string(),
             read_meshes("missing.bvh").unwrap_err().to_string(),
             read_motion("missing.vrm", &ReadOptions::default()).unwrap_err().to_string(),
         ] {
-            assert!(message.contains("unknown ending, expected one of ."), "{message}");
+            assert!(message.contains("unknown file extension, expected one of ."), "{message}");
         }
     }
 }

@@ -47,6 +47,6 @@ pub fn write_scene(scene: &Scene, path: impl AsRef<Path>, options: &WriteOptions
 pub fn write_scene_to_bytes(scene: &Scene, format: Format, options: &WriteOptions) -> Result<Vec<u8>> {
     match format.writer() {
         Some(Write::Alone(write)) => write(scene, options),
-        _ => Err(Format::one_file_fault(format.ending())),
+        _ => Err(Format::one_file_fault(format.extension())),
     }
 }

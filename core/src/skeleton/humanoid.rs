@@ -4,7 +4,7 @@
 //! - **Unity**: `HumanBodyBones` of the Unity scripting reference; with spaces they are `HumanTrait.BoneName`.
 //! - **VRM**: `humanoid.humanBones` of VRMC_vrm 1.0, whose thumbs are metacarpal, proximal, distal.
 //! - **Mixamo**: the names in files from mixamo.com, `mixamorig:` included.
-//! - **Blender**: Rigify-like, with the endings `.L` and `.R` by which Blender finds mirrored bones.
+//! - **Blender**: Rigify-like, with the suffixes `.L` and `.R` by which Blender finds mirrored bones.
 //!
 //! The root and the twist joints are not humanoid bones; each vocabulary gets names in its own style for them.
 

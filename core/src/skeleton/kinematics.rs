@@ -28,6 +28,29 @@ pub fn model_from_joints(parents: &[Option<u32>], locals: &[RigidTransform], out
     }
 }
 
+/// These joints and all above them, parents first.
+pub(crate) fn with_ancestors(parents: &[Option<u32>], joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut wanted = vec![false; parents.len()];
+    for joint in joints {
+        let chain = std::iter::successors(Some(joint), |j| parents[*j].map(|parent| parent as usize));
+        chain.for_each(|j| wanted[j] = true);
+    }
+    (0..parents.len()).filter(|j| wanted[*j]).collect()
+}
+
+/// As [`model_from_joints`] for `joints` alone, which are [`with_ancestors`]; the others are of no use in `out`.
+pub(crate) fn model_from_some_joints(
+    parents: &[Option<u32>],
+    locals: &[RigidTransform],
+    joints: &[usize],
+    out: &mut Vec<RigidTransform>,
+) {
+    out.resize(locals.len(), RigidTransform::IDENTITY);
+    for &joint in joints {
+        out[joint] = parents[joint].map_or(locals[joint], |parent| out[parent as usize].then(locals[joint]));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f32::consts::FRAC_PI_2;
@@ -54,6 +77,22 @@ mod tests {
             assert!(back.translation == root.translation && back.rotation.dot(root.rotation) > 1.0 - 1e-6);
             assert_eq!(there[1].parent_from_joint_out_of(space, Some(0)), child);
         }
+    }
+
+    #[test]
+    fn some_joints_are_where_they_are_among_all() {
+        let local = |angle| RigidTransform {
+            rotation: Rotation::from_rotation_x(angle),
+            translation: Vec3::new(1.0, angle, 3.0),
+        };
+        let parents = [None, Some(0), Some(0), Some(2), Some(1), None];
+        let locals: Vec<_> = [0.1, 0.7, -0.3, 1.9, 0.2, 0.4].map(local).to_vec();
+        let joints = with_ancestors(&parents, [3, 5]);
+        assert_eq!(joints, [0, 2, 3, 5]);
+        let (mut all, mut some) = (Vec::new(), Vec::new());
+        model_from_joints(&parents, &locals, &mut all);
+        model_from_some_joints(&parents, &locals, &joints, &mut some);
+        assert_eq!(joints.iter().map(|j| some[*j]).collect::<Vec<_>>(), [all[0], all[2], all[3], all[5]]);
     }
 
     #[test]

@@ -23,6 +23,7 @@ pub(crate) mod written;
 pub use bind_joint::BindJoint;
 pub use bones::BonePositions;
 pub use kinematics::{Pose, model_from_joints};
+pub(crate) use kinematics::{model_from_some_joints, with_ancestors};
 pub use rig_joint::{Finger, RigJoint, SidedJoint};
 pub use skeleton::Skeleton;
 pub use skin_weights::{Influences, SkinWeights};

@@ -795,7 +795,7 @@ namespace Anthronet.Native
         internal static extern int anthronet_motion_open_path(byte* path, ulong path_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
 
         /// <summary>
-        ///  Reads a motion file from memory. `name` is the file's: its ending says the format, and a clip without a name gets
+        ///  Reads a motion file from memory. `name` is the file's: its extension says the format, and a clip without a name gets
         ///  it.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_open_memory", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -864,8 +864,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_skin(anthronet_context* context, anthronet_skin_job* jobs, uint count, anthronet_error* error);
 
         /// <summary>
-        ///  Writes a body to a file in the format of its ending: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz or
-        ///  .obj. The file is written completely or not at all. `options` may be NULL.
+        ///  Writes a body to a file in the format of its extension: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz
+        ///  or .obj. The file is written completely or not at all. `options` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_export_path", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_export_path(anthronet_body* body, anthronet_export_options* options, byte* path, ulong path_length, anthronet_error* error);

@@ -93,7 +93,7 @@ namespace Anthronet.Tests
             Expect.Code(AnthroError.Io, "nowhere", () => AnthroModel.Open("/nowhere/model\u20ac"), "model");
             Expect.Code(AnthroError.Model, "", () => AnthroModel.Open(new byte[0]), "empty model");
             Expect.Code(AnthroError.Enum, "sex", () => model.Generate(new AnthroRequest { Sex = (AnthroSex)9 }), "sex");
-            Expect.Code(AnthroError.Index, "", () => { double a, b; model.MeasureRange(36, out a, out b); }, "range");
+            Expect.Code(AnthroError.Index, "", () => { double a, b; model.MeasureRange(AnthroMeasures.Count, out a, out b); }, "range");
             Expect.Throws<ArgumentNullException>(() => model.Generate(null), "no request");
             Expect.Throws<ArgumentNullException>(() => AnthroModel.Open((string)null), "no path");
             foreach (var given in new Action[]
@@ -111,7 +111,7 @@ namespace Anthronet.Tests
             Expect.Throws<OverflowException>(() => { double a, b; model.MeasureRange(-1, out a, out b); }, "negative index");
             using (var body = Body())
             {
-                Expect.Code(AnthroError.Size, "36", () => body.Measures(new AnthroMeasureReport[2]), "few reports");
+                Expect.Code(AnthroError.Size, AnthroMeasures.Count.ToString(), () => body.Measures(new AnthroMeasureReport[2]), "few reports");
                 Expect.Code(AnthroError.Size, "", () => body.Joints(new AnthroJoint[1]), "few joints");
                 Expect.Code(AnthroError.Size, "", () => body.Joints(new AnthroJoint[0]), "no joints");
                 Expect.Code(AnthroError.Request, "fly", () => AnthroClip.Builtin("fly", body), "clip");

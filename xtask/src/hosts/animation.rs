@@ -119,7 +119,7 @@ fn import(godot: &Path, project: &Path) -> Result<()> {
     // The last file that the import writes.
     let imported = || -> Option<PathBuf> {
         let mut files = std::fs::read_dir(project.join(".import")).ok()?.flatten().map(|entry| entry.path());
-        files.find(|path| path.extension().is_some_and(|ending| ending == "md5"))
+        files.find(|path| path.extension().is_some_and(|extension| extension == "md5"))
     };
     let done = loop {
         let ended = editor.try_wait()?.is_some();

@@ -19,7 +19,7 @@ use crate::error::BvhError;
 type Result<T> = std::result::Result<T, BvhError>;
 
 pub(super) const BVH: Description = Description {
-    ending: "bvh",
+    extension: "bvh",
     title: "BVH",
     holds: Holds { meshes: false, skeleton: true, clips: true },
     read_motion: Some(motion::read),

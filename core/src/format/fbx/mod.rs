@@ -17,7 +17,7 @@ use crate::error::FbxError;
 type Result<T> = std::result::Result<T, FbxError>;
 
 pub(super) const FBX: Description = Description {
-    ending: "fbx",
+    extension: "fbx",
     title: "FBX",
     holds: Holds { meshes: true, skeleton: true, clips: true },
     read_motion: Some(motion::read),

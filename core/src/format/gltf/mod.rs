@@ -20,7 +20,7 @@ pub use write::{GltfFiles, GltfOptions, to_glb, to_glb_with, to_gltf, to_gltf_wi
 type Result<T> = std::result::Result<T, GltfError>;
 
 pub(super) const GLB: Description = Description {
-    ending: "glb",
+    extension: "glb",
     title: "glTF 2.0, binary",
     holds: Holds { meshes: true, skeleton: true, clips: true },
     read_motion: Some(|bytes, path, options| opened(bytes, path, |document| motion::read(document, options))),
@@ -30,7 +30,7 @@ pub(super) const GLB: Description = Description {
 };
 
 pub(super) const GLTF: Description = Description {
-    ending: "gltf",
+    extension: "gltf",
     title: "glTF 2.0, JSON",
     write: Some(Write::WithBuffer(|scene, bin_name, options| to_gltf_with(scene, bin_name, &options.gltf))),
     ..GLB

@@ -23,7 +23,7 @@ use crate::error::NpzError;
 type Result<T> = std::result::Result<T, NpzError>;
 
 pub(super) const NPZ: Description = Description {
-    ending: "npz",
+    extension: "npz",
     title: "AMASS and SMPL motion",
     holds: Holds { meshes: false, skeleton: false, clips: true },
     read_motion: Some(motion::read),

@@ -8,7 +8,7 @@ use super::kind::{Description, Holds, Write};
 pub use write::to_obj;
 
 pub(super) const OBJ: Description = Description {
-    ending: "obj",
+    extension: "obj",
     title: "Wavefront OBJ",
     holds: Holds { meshes: true, skeleton: false, clips: false },
     read_motion: None,

@@ -18,7 +18,7 @@ pub use write::{to_usda, to_usdc, to_usdz};
 type Result<T> = std::result::Result<T, UsdError>;
 
 pub(super) const USDA: Description = Description {
-    ending: "usda",
+    extension: "usda",
     title: "USD, text",
     holds: Holds { meshes: true, skeleton: true, clips: true },
     read_motion: Some(|bytes, path, options| {
@@ -30,14 +30,14 @@ pub(super) const USDA: Description = Description {
 };
 
 pub(super) const USDC: Description = Description {
-    ending: "usdc",
+    extension: "usdc",
     title: "USD, crate",
     write: Some(Write::Alone(|scene, _| to_usdc(scene))),
     ..USDA
 };
 
 pub(super) const USDZ: Description = Description {
-    ending: "usdz",
+    extension: "usdz",
     title: "USD, package",
     write: Some(Write::Alone(|scene, _| to_usdz(scene))),
     ..USDA

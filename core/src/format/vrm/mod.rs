@@ -18,7 +18,7 @@ const NAME: &str = "VRMC_vrm";
 
 /// Read as the glTF that it is, except for motion, which VRM cannot store.
 pub(super) const VRM: Description = Description {
-    ending: "vrm",
+    extension: "vrm",
     title: "VRM 1.0",
     holds: Holds { meshes: true, skeleton: true, clips: false },
     read_motion: None,

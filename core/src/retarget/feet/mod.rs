@@ -15,8 +15,9 @@ mod roll;
 mod soles;
 
 use crate::clip::Clip;
+use crate::math::RigidTransform;
 use crate::pose::Leg;
-use crate::skeleton::Pose;
+use crate::skeleton::{Pose, model_from_some_joints, with_ancestors};
 use crate::{Error, Result};
 
 pub use contacts::{Contact, Contacts, FootPoint, contacts};
@@ -134,12 +135,19 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
     Ok(out)
 }
 
-/// Visits the poses of a clip in order, in one buffer.
-fn for_each_pose(clip: &Clip, mut visit: impl FnMut(usize, &Pose)) {
-    let mut pose = Pose::default();
+/// Visits the frames of a clip in order: pose and `model_from_joint`, both of the legs and the joints above them alone.
+fn for_each_pose(clip: &Clip, legs: &[Leg], mut visit: impl FnMut(usize, &Pose, &[RigidTransform])) {
+    let parents = clip.skeleton().parents();
+    let joints = with_ancestors(parents, legs.iter().map(|leg| leg.ball));
+    let (mut pose, mut model) = (clip.skeleton().rest_pose().clone(), Vec::new());
     for frame in 0..clip.frame_count() {
-        clip.pose_into(frame, &mut pose);
-        visit(frame, &pose);
+        let rotations = clip.rotations(frame);
+        joints.iter().for_each(|&joint| pose.locals[joint].rotation = rotations[joint]);
+        for track in clip.translations() {
+            pose.locals[track.joint as usize].translation = track.values[frame];
+        }
+        model_from_some_joints(parents, &pose.locals, &joints, &mut model);
+        visit(frame, &pose, &model);
     }
 }
 

@@ -17,7 +17,7 @@ use crate::pose::Leg;
 use crate::pose::SwingTwist;
 use crate::pose::ik::Reach;
 use crate::pose::limits::JointLimits;
-use crate::skeleton::{Pose, RigJoint, Skeleton, model_from_joints};
+use crate::skeleton::{Pose, RigJoint, Skeleton, model_from_some_joints, with_ancestors};
 
 /// Softness of inverse kinematics, see [`Reach::softness`]; the pelvis is lowered so that feet on the floor stay out of it.
 const SOFTNESS: f32 = 0.001;
@@ -89,8 +89,14 @@ fn planted(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetRe
     // legs keep their bend.
     let floor = found.floor - common_rise(clip, &legs, &found, &corrected(found.floor));
     let mut feet = corrected(floor);
-    let planter =
-        Planter { legs, rest, limits: JointLimits::of_rig(rest).widened(LIMIT_MARGIN), floor, options };
+    let planter = Planter {
+        joints: with_ancestors(rest.parents(), legs.iter().map(|leg| leg.ball)),
+        legs,
+        rest,
+        limits: JointLimits::of_rig(rest).widened(LIMIT_MARGIN),
+        floor,
+        options,
+    };
     let (mut planted, mut drops) = planter.run(clip, &feet, pelvis, blend)?;
     for _ in 0..SLIDE_ITERATIONS {
         for (foot, corrections) in feet.iter_mut().enumerate() {
@@ -112,9 +118,7 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
         found.feet[foot].iter().any(|contact| (contact.start..contact.end).contains(&frame))
     };
     let mut rises = Vec::new();
-    let mut model = Vec::new();
-    for_each_pose(clip, |frame, pose| {
-        model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
+    for_each_pose(clip, legs, |frame, _, model| {
         for (foot, leg) in legs.iter().enumerate().filter(|(foot, _)| standing(*foot, frame)) {
             let (ankle, ball) = (model[leg.limb.end], model[leg.ball]);
             let moved = feet[foot][frame].apply(ankle.translation, leg.points(ankle, ball).joint);
@@ -128,6 +132,8 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
 /// What planting the frames of a clip depends on.
 struct Planter<'a> {
     legs: [Leg; 2],
+    /// The legs' joints and all above them.
+    joints: Vec<usize>,
     rest: &'a Skeleton,
     limits: JointLimits,
     floor: f32,
@@ -195,11 +201,9 @@ impl Planter<'_> {
     /// How far the pelvis is lowered in each frame so that both legs reach, smooth over time; metres.
     fn pelvis_drops(&self, clip: &Clip, feet: &[Vec<Correction>; 2], blend: usize) -> Vec<f32> {
         let mut needed = vec![0.0_f32; clip.frame_count()];
-        let mut model = Vec::new();
-        for_each_pose(clip, |frame, pose| {
-            model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
+        for_each_pose(clip, &self.legs, |frame, pose, model| {
             for (leg, corrections) in self.legs.iter().zip(feet) {
-                let goal = self.goal(leg, &model, &corrections[frame]).translation;
+                let goal = self.goal(leg, model, &corrections[frame]).translation;
                 let hip = self.above_floor(model[leg.limb.upper]).translation;
                 let reach = leg.limb.length(pose) * (1.0 - SOFTNESS);
                 let level = (goal - hip).with_y(0.0).length();
@@ -226,12 +230,12 @@ impl Planter<'_> {
         drop: f32,
     ) -> [f32; 2] {
         let parents = self.rest.parents();
-        model_from_joints(parents, &pose.locals, model);
+        model_from_some_joints(parents, &pose.locals, &self.joints, model);
         let goals: [RigidTransform; 2] =
             std::array::from_fn(|f| self.goal(&self.legs[f], model, &corrections[f]));
         let parent = parents[pelvis].map_or(Rotation::IDENTITY, |p| model[p as usize].rotation);
         pose.locals[pelvis].translation -= parent.conjugate() * (Vec3::Y * (drop + self.floor));
-        model_from_joints(parents, &pose.locals, model);
+        model_from_some_joints(parents, &pose.locals, &self.joints, model);
         for ((leg, goal), correction) in self.legs.iter().zip(goals).zip(corrections) {
             let pivot = if correction.on_heel { leg.heel } else { pose.locals[leg.ball].translation };
             self.reach(leg, pose, leg.model_from_parent(model), goal, pivot);

@@ -5,6 +5,8 @@
 //! random bodies, tilted by up to 35° along and 22° across: the centre of the contact area is off by 3 mm on average, as
 //! much as bodies differ.
 
+use std::slice;
+
 use glam::Vec3;
 
 use super::contacts::{Contact, FootPoint, runs};
@@ -12,7 +14,6 @@ use super::for_each_pose;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::pose::Leg;
-use crate::skeleton::model_from_joints;
 
 /// The heel is the underside of an ellipsoid. Its lowest point in a flat foot, ahead of the ankle and to the outer side, as
 /// shares of the distance from ankle to ball along the floor; bodies differ by 0.035.
@@ -93,10 +94,10 @@ impl RoundSole {
                 at(now[0], low) - at(before[0], low)
             }
             FootPoint::Ball => {
-                let [before, now] = [before, now].map(|joints| self.ball.iter().map(|p| p.at(joints)));
-                let positions: Vec<(Vec3, Vec3)> = before.zip(now).collect();
-                let lowest = positions.iter().map(|(p, _)| p.y).fold(f32::INFINITY, f32::min);
-                let steps = positions.iter().filter(|(p, _)| p.y < lowest + TOUCHING).map(|(a, b)| *b - *a);
+                let positions: Vec<Vec3> = self.ball.iter().map(|point| point.at(before)).collect();
+                let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+                let touching = self.ball.iter().zip(&positions).filter(|(_, p)| p.y < lowest + TOUCHING);
+                let steps = touching.map(|(point, position)| point.at(now) - *position);
                 let (sum, count) = steps.fold((Vec3::ZERO, 0), |(sum, count), s| (sum + s, count + 1));
                 sum / count.max(1) as f32
             }
@@ -127,9 +128,7 @@ fn at(joint: RigidTransform, point: Vec3) -> Vec3 {
 pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Vec<Vec3>> {
     let sole = RoundSole::of(leg, &clip.skeleton().model_from_joints());
     let mut joints = Vec::with_capacity(clip.frame_count());
-    let mut model = Vec::new();
-    for_each_pose(clip, |_, pose| {
-        model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
+    for_each_pose(clip, slice::from_ref(leg), |_, _, model| {
         joints.push([model[leg.limb.end], model[leg.ball]]);
     });
     let of_contact = |contact: &Contact| {

@@ -124,12 +124,12 @@ fn every_vocabulary_is_known_by_its_names() {
         let mut names = Vec::new();
         let mut expected = Vec::new();
         for (i, name) in theirs.iter().enumerate() {
-            for (side, ending) in [left, right].into_iter().zip(Side::ALL.map(Side::joint_suffix)) {
+            for (side, suffix) in [left, right].into_iter().zip(Side::ALL.map(Side::joint_suffix)) {
                 let name = name.replace('*', side);
                 if !names.contains(&name) {
                     let central = i == 0 || i == 9;
                     let ours =
-                        ours.get(i).map(|o| if central { (*o).to_owned() } else { format!("{o}{ending}") });
+                        ours.get(i).map(|o| if central { (*o).to_owned() } else { format!("{o}{suffix}") });
                     names.push(name);
                     expected.push(ours);
                 }

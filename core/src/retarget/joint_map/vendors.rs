@@ -170,7 +170,7 @@ fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Role)> {
     let mut found: Vec<(String, Option<u32>, Role)> = Vec::new();
     for line in lines.lines().filter(|line| !line.trim().is_empty()) {
         let both = Side::ALL.map(|side| (sides[side.index()], side.joint_suffix()));
-        for (side, ending) in if line.contains('*') { &both[..] } else { &[("", "")] } {
+        for (side, suffix) in if line.contains('*') { &both[..] } else { &[("", "")] } {
             let line = line.replace('*', side);
             let place = |found: &[(String, Option<u32>, Role)], name: &str| {
                 found.iter().position(|j| j.0 == name.trim()).map(|j| j as u32)
@@ -181,7 +181,7 @@ fn joints((_, sides, lines): &List) -> Vec<(String, Option<u32>, Role)> {
             };
             for word in chain.split_whitespace() {
                 let (name, role) = match word.split_once('=') {
-                    Some((name, ours)) => (name, Role::Drives(format!("{ours}{ending}"))),
+                    Some((name, ours)) => (name, Role::Drives(format!("{ours}{suffix}"))),
                     None if word.ends_with('~') => (word.trim_end_matches('~'), Role::Shares),
                     None => (word, Role::Nothing),
                 };

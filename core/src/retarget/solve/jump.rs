@@ -25,9 +25,11 @@ pub struct Jump {
 /// frames that both clips have are compared.
 pub fn worst_jump(source: &Clip, target: &Clip, map: &JointMap) -> Jump {
     let frames = source.frame_count().min(target.frame_count());
-    let (theirs, ours) = (steps(source, frames), steps(target, frames));
+    let limbs = limbs(target.skeleton(), map);
+    let theirs = steps(source, frames, limbs.iter().flat_map(|(_, sources)| sources.iter().copied()));
+    let ours = steps(target, frames, limbs.iter().map(|(joint, _)| *joint));
     let mut worst = Jump::default();
-    for (joint, sources) in limbs(target.skeleton(), map) {
+    for (joint, sources) in limbs {
         for (frame, step) in ours.iter().enumerate() {
             let around = &theirs[frame.saturating_sub(1)..(frame + 2).min(theirs.len())];
             let allowed = around.iter().flat_map(|step| sources.iter().map(|s| step[*s])).fold(0.0, f64::max);
@@ -55,15 +57,20 @@ fn limbs(target: &Skeleton, map: &JointMap) -> Vec<(usize, Vec<usize>)> {
     joints.map(|j| (j, related(j))).filter(|(_, sources)| !sources.is_empty()).collect()
 }
 
-/// The rotation of every joint in model space from each frame to the next, degrees.
-fn steps(clip: &Clip, frames: usize) -> Vec<Vec<f64>> {
+/// The rotation of these joints in model space from each frame to the next, degrees; 0 for the others.
+fn steps(clip: &Clip, frames: usize, joints: impl Iterator<Item = usize>) -> Vec<Vec<f64>> {
+    let mut wanted = vec![false; clip.skeleton().len()];
+    joints.for_each(|joint| wanted[joint] = true);
     let (mut pose, mut before, mut after) = (Pose::default(), Vec::<RigidTransform>::new(), Vec::new());
     let mut steps = Vec::with_capacity(frames);
     for frame in 0..frames {
         std::mem::swap(&mut before, &mut after);
         clip.model_into(frame, &mut pose, &mut after);
         if frame > 0 {
-            let angles = before.iter().zip(&after).map(|(a, b)| {
+            let angles = before.iter().zip(&after).zip(&wanted).map(|((a, b), wanted)| {
+                if !wanted {
+                    return 0.0;
+                }
                 let delta = DQuat::from(a.rotation.conjugate() * b.rotation);
                 2.0 * libm::atan2(delta.xyz().length(), delta.w.abs()).to_degrees()
             });

@@ -41,7 +41,7 @@ fn a_failing_write_keeps_the_old_file_and_leaves_nothing() {
 }
 
 #[test]
-fn refuses_missing_folders_folders_and_endings_by_name() {
+fn refuses_missing_folders_folders_and_extensions_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let scene = arm(4);
     fs::create_dir(folder.path().join("dir.glb")).unwrap();

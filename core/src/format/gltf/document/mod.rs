@@ -22,8 +22,9 @@ use crate::format::limits::MAX_ELEMENTS;
 use crate::format::{Fault, disk};
 use crate::math::Rotation;
 
-/// Prefixes of required extensions that do not affect geometry.
-const HARMLESS_EXTENSIONS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
+/// Prefixes of required extensions of which everything that a scene holds is read, as it has neither images nor lights.
+const READ_EXTENSIONS: [&str; 5] =
+    [meshopt::NAME, "KHR_materials_", "KHR_texture_basisu", "KHR_texture_transform", "KHR_lights_"];
 
 /// A document and its data.
 pub(crate) struct Document {
@@ -103,9 +104,13 @@ impl Document {
         if order.len() < nodes.len() {
             let mut reached = vec![false; nodes.len()];
             order.iter().for_each(|i| reached[*i] = true);
-            let ring = reached.iter().position(|reached| !reached).unwrap_or_default();
+            let mut node = reached.iter().position(|reached| !reached).unwrap_or_default();
+            // There is no root above it, so that as many steps up as there are nodes end on a cycle.
+            for _ in 0..nodes.len() {
+                node = parents[node].unwrap_or(node);
+            }
             return Err(Fault::inconsistent("is its own ancestor").into())
-                .within(format_args!("nodes[{ring}]"));
+                .within(format_args!("nodes[{node}]"));
         }
         Ok(Tree { parents, order })
     }
@@ -338,9 +343,7 @@ fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
         let found = format!("`{}`", root.asset.version);
         return Err(Fault::unexpected("2.x", found).into()).within("asset.version");
     }
-    let unknown = |name: &&String| {
-        *name != meshopt::NAME && !HARMLESS_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix))
-    };
+    let unknown = |name: &&String| !READ_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix));
     match root.extensions_required.iter().find(unknown) {
         Some(name) => Err(Fault::unsupported(name).into()).within("extensionsRequired"),
         None => Ok((root, chunk)),

@@ -4,6 +4,7 @@
 mod copies;
 mod material;
 mod targets;
+mod uvs;
 
 use glam::{Affine3A, Vec3};
 use gltf_json::{
@@ -155,16 +156,10 @@ fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
         Some(normals) => document.vectors(normals).within("NORMAL")?,
         None => Vec::new(),
     };
-    let uvs = match attribute(primitive, Semantic::TexCoords(0)) {
-        Some(uvs) => document.numbers::<2>(uvs).within("TEXCOORD_0")?,
-        None => Vec::new(),
-    };
-    for (name, count) in [("NORMAL", normals.len()), ("TEXCOORD_0", uvs.len())] {
-        if count != 0 && count != positions.len() {
-            let expected = format!("{} of them", positions.len());
-            return Err(Fault::unexpected(expected, count).into()).within(name);
-        }
+    if !normals.is_empty() && normals.len() != positions.len() {
+        return Err(other_count(positions.len(), normals.len())).within("NORMAL");
     }
+    let uvs = uvs::read(document, primitive, positions.len())?;
     let corners = match primitive.indices {
         Some(indices) => document.indices(indices, positions.len()).within("indices")?,
         None => (0..positions.len() as u32).collect(),
@@ -187,6 +182,11 @@ fn surface(document: &Document, primitive: &Primitive) -> Result<SceneMesh> {
         material: material as u32,
         ..SceneMesh::default()
     })
+}
+
+/// The error for another number of normals or texture coordinates than of vertices.
+fn other_count(vertices: usize, found: usize) -> GltfError {
+    Fault::unexpected(format_args!("{vertices} of them"), found).into()
 }
 
 /// Applies the transform of its node to a mesh without a skin.

@@ -102,6 +102,50 @@ fn nodes_move_meshes_without_a_skin_only() {
 }
 
 #[test]
+fn texture_coordinates_are_those_of_the_base_colour() {
+    let uvs = |texture: Value, of_primitive: &[&str]| -> crate::Result<Vec<[f32; 2]>> {
+        let glb = changed(|json| {
+            json["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_texture_basisu"]);
+            let primitive = &mut json["meshes"][0]["primitives"][0];
+            let set = primitive["attributes"].as_object_mut().unwrap().remove("TEXCOORD_0").unwrap();
+            for name in of_primitive {
+                primitive["attributes"][name] = set.clone();
+            }
+            let material = primitive["material"].as_u64().unwrap() as usize;
+            json["materials"][material]["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+        });
+        Ok(read(&glb)?.meshes.swap_remove(0).uvs)
+    };
+    let moved = |texture: Value, of_primitive: &[&str]| uvs(texture, of_primitive).unwrap();
+    let transform =
+        |transform: Value| json!({"index": 0, "extensions": {"KHR_texture_transform": transform}});
+    let still = moved(Value::Null, &["TEXCOORD_0"]);
+    assert!(still.iter().any(|[u, v]| u != v && *v != 0.0), "nothing to tell u and v apart");
+    assert_eq!(moved(transform(json!({})), &["TEXCOORD_0"]), still);
+    assert_eq!(moved(json!({"index": 0, "texCoord": 1}), &["TEXCOORD_1"]), still);
+    assert!(moved(json!({"index": 0, "texCoord": 1}), &["TEXCOORD_0"]).is_empty());
+    assert_eq!(moved(transform(json!({"texCoord": 2})), &["TEXCOORD_2"]), still);
+
+    // The example of the extension: the lower left quarter of the image, rotated clockwise by a right angle.
+    let quarter = json!({"offset": [0, 1], "rotation": std::f32::consts::FRAC_PI_2, "scale": [0.5, 0.5]});
+    for ([u, v], [x, y]) in still.iter().zip(moved(transform(quarter), &["TEXCOORD_0"])) {
+        let expected = Vec3::new(0.5 * v, 1.0 - 0.5 * u, 0.0);
+        assert!(expected.distance(Vec3::new(x, y, 0.0)) < 1e-6, "({u}, {v}) to ({x}, {y})");
+    }
+    // Scaled before it is rotated.
+    let stretched = json!({"rotation": std::f32::consts::FRAC_PI_2, "scale": [3, 1]});
+    for ([u, v], [x, y]) in still.iter().zip(moved(transform(stretched), &["TEXCOORD_0"])) {
+        assert!(
+            Vec3::new(*v, -3.0 * u, 0.0).distance(Vec3::new(x, y, 0.0)) < 1e-6,
+            "({u}, {v}) to ({x}, {y})"
+        );
+    }
+
+    let message = uvs(transform(json!({"scale": [1e39, 1]})), &["TEXCOORD_0"]).unwrap_err().to_string();
+    assert!(message.contains("TEXCOORD_0: KHR_texture_transform: element "), "{message}");
+}
+
+#[test]
 fn says_what_is_wrong_and_where() {
     type Case = (&'static str, fn(&mut Value));
     let cases: &[Case] = &[
@@ -162,6 +206,12 @@ fn says_what_is_wrong_and_where() {
         }),
         ("nodes[1]: has two parents", |j| j["nodes"][4]["children"] = json!([1])),
         ("is its own ancestor", |j| j["nodes"][2]["children"] = json!([0])),
+        ("nodes[1]: is its own ancestor", |j| {
+            // Below the cycle of 1 and 2 hangs 0.
+            j["nodes"][0]["children"] = json!([]);
+            j["nodes"][1]["children"] = json!([0, 2]);
+            j["nodes"][2]["children"] = json!([1]);
+        }),
         ("nodes[4]: expected a transform with an inverse", |j| {
             j["nodes"][4] = json!({"mesh": 1, "scale": [0, 0, 0]});
         }),
