@@ -19,6 +19,10 @@ _UP_AXES = (
     ("FOUND", "Automatic", "As stored in the file, or else as the pose of the skeleton suggests"),
     ("Y", "Y", "Y points up"),
     ("Z", "Z", "Z points up"),
+    ("X", "X", "X points up"),
+    ("-Y", "-Y", "Y points down, as in the axes of cameras"),
+    ("-Z", "-Z", "Z points down"),
+    ("-X", "-X", "X points down"),
 )
 _BUILTIN_CLIPS = (
     ("IDLE", "Idle", "Standing and breathing"),

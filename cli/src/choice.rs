@@ -59,7 +59,7 @@ pub(crate) fn unit() -> impl TypedValueParser<Value = Unit> {
 }
 
 pub(crate) fn up_axis() -> impl TypedValueParser<Value = Axis> {
-    one_of(["y", "z"].map(PossibleValue::new))
+    one_of(Axis::ALL.map(|axis| PossibleValue::new(axis.name())))
 }
 
 pub(crate) fn lod() -> impl TypedValueParser<Value = Lod> {
@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(all(&joint_names()), JointNames::ALL);
         assert_eq!(all(&fingers()), FingerMode::ALL);
         assert_eq!(all(&unit()), [Unit::Metre, Unit::Centimetre, Unit::Millimetre, Unit::Inch]);
-        assert_eq!(all(&up_axis()), [Axis::Y, Axis::Z]);
+        assert_eq!(all(&up_axis()), Axis::ALL);
         assert_eq!(all(&influences()), [4, 8]);
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anthronet::format::{self, Format, GltfOptions, Purpose, WriteOptions, write_atomic};
 use anthronet::scene::Scene;
+use anthronet::text;
 
 use crate::failure::{Failure, Result};
 use crate::terminal;
@@ -36,13 +37,14 @@ pub(crate) fn check_extension(option: &str, path: &Path, known: &[&str]) -> Resu
     Err(Failure::usage(message))
 }
 
-/// Reads a text file of at most 16 MB.
+/// Reads a text file of at most 16 MB, in UTF-8 or UTF-16.
 pub(crate) fn read_text(path: &Path) -> Result<String> {
     let size = fs::metadata(path).map_err(|e| Failure::io("read", path, e))?.len();
     if size > 16 << 20 {
         return Err(Failure::failed(format!("{}: expected at most 16 MB, got {size} bytes", path.display())));
     }
-    fs::read_to_string(path).map_err(|e| Failure::io("read", path, e))
+    let bytes = fs::read(path).map_err(|e| Failure::io("read", path, e))?;
+    text::decode_str(&bytes).map_err(|fault| Failure::in_file(path, fault))
 }
 
 /// Writes text to a file, or with `-` to standard output.

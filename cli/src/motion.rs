@@ -31,13 +31,18 @@ pub(crate) struct MotionArguments {
     #[arg(long, value_name = "UNIT", value_parser = choice::unit())]
     pub(crate) clip_unit: Option<Unit>,
 
-    /// Up axis of the motion file; by default read from the file or estimated from its skeleton.
-    #[arg(long, value_name = "AXIS", value_parser = choice::up_axis())]
+    /// Axis of the motion file that points up, such as -y where Y points down; by default read from the file or found
+    /// from how the person stands.
+    #[arg(long, value_name = "AXIS", value_parser = choice::up_axis(), allow_hyphen_values = true)]
     pub(crate) clip_up: Option<Axis>,
 
     /// Frames per second of the motion file; overrides the rate in the file.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(crate) clip_fps: Option<f64>,
+
+    /// Which person of a motion file with several, from 0; by default the first.
+    #[arg(long, value_name = "N")]
+    pub(crate) clip_person: Option<usize>,
 
     /// A JSON object {"source joint": "target joint" or null} that overrides the automatic joint mapping; null leaves
     /// the source joint unmapped.
@@ -108,11 +113,12 @@ impl MotionArguments {
 
     /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with
     /// feet on the floor, joints within their limits and relaxed hands.
-    fn of_files(&self) -> [(&'static str, bool); 7] {
+    fn of_files(&self) -> [(&'static str, bool); 8] {
         [
             ("--clip-unit", self.clip_unit.is_some()),
             ("--clip-up", self.clip_up.is_some()),
             ("--clip-fps", self.clip_fps.is_some()),
+            ("--clip-person", self.clip_person.is_some()),
             ("--mapping", self.mapping.is_some()),
             ("--fingers", self.fingers.is_some()),
             ("--no-feet", self.no_feet),
@@ -205,7 +211,12 @@ fn load(
 }
 
 fn read_options(arguments: &MotionArguments) -> ReadOptions {
-    ReadOptions { unit: arguments.clip_unit, up: arguments.clip_up, frames_per_second: arguments.clip_fps }
+    ReadOptions {
+        unit: arguments.clip_unit,
+        up: arguments.clip_up,
+        frames_per_second: arguments.clip_fps,
+        person: arguments.clip_person,
+    }
 }
 
 fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {

@@ -186,6 +186,12 @@ fn every_option_of_motion_does_what_it_says() {
     let (fine, _) = with(&["--fps", "50"]);
     assert_eq!((fine.clips[0].frames_per_second(), fine.clips[0].frame_count()), (50.0, 7));
 
+    let (_, report) = with(&["--clip-up", "-y"]);
+    assert_eq!([&report["file"]["up"], &report["file"]["up_found"]], ["-Y", "asked"]);
+    let mapping = "\u{feff}{\"Tail\": \"jaw\", \"Neck\": null}".as_bytes();
+    let (_, report) = with(&["--mapping", &write(&still.folder, "map.json", mapping)]);
+    assert_eq!(report["retarget"]["joints"]["matched"].as_array().map(Vec::is_empty), Some(false));
+
     let mapping = write(&still.folder, "map.json", br#"{"Tail": "jaw", "Neck": null}"#);
     let (_, report) = with(&["--mapping", &mapping]);
     let matched = report["retarget"]["joints"]["matched"].as_array().unwrap();
@@ -238,6 +244,7 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
     generate(&["--clip", "moonwalk"], 2, &["--clip moonwalk", "idle, walk, wave"]);
     generate(&["--clip", &cut], 1, &["cut.bvh", "line "]);
     generate(&["--clip", &whole, "--mapping", &map], 1, &["whole.bvh", "`Hip`", "did you mean `Hips`"]);
+    generate(&["--clip", &whole, "--clip-up", "w"], 2, &["--clip-up", "w", "-y"]);
     generate(&["--clip", "walk", "--fps", "0"], 2, &["1 to 240 frames"]);
     generate(&["--motion-report", "-"], 2, &["--motion-report", "--clip"]);
     generate(&["--in-place"], 2, &["--in-place", "--clip"]);
@@ -249,6 +256,7 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
         &["--clip-unit", "m"],
         &["--clip-up", "z"],
         &["--clip-fps", "50"],
+        &["--clip-person", "1"],
     ] {
         generate(option, 2, &[option[0], "together with --clip"]);
         let built_in = [&["--clip", "walk", "--clip", "idle"], option].concat();

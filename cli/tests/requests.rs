@@ -30,6 +30,19 @@ fn a_bad_request_file_is_a_failure_that_names_file_and_field() {
 }
 
 #[test]
+fn a_request_is_read_in_any_encoding() {
+    let folder = folder();
+    let text = "\u{feff}{\"sex\": \"male\", \"measures\": {\"height\": 1.83}}";
+    let utf16 = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [text.as_bytes().to_vec(), utf16] {
+        let file = write(&folder, "r.json", &bytes);
+        let out = folder.path().join("a.glb").to_string_lossy().into_owned();
+        let run = anthronet(&["generate", "--lod", "3", "--request", &file, "-o", &out], &[]).succeeds();
+        assert!(run.out.contains("1.830 m"), "{run:#?}");
+    }
+}
+
+#[test]
 fn contradictions_are_named() {
     generate(&["-m", "height=1.6", "-m", "waist_circumference=1.62"])
         .fails(2, &["waist_circumference", "height"]);

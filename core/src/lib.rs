@@ -74,6 +74,7 @@ pub mod skin;
 pub mod space;
 #[cfg(test)]
 mod testing;
+pub mod text;
 
 pub use body::Body;
 pub use error::{Error, Infeasible, Result};

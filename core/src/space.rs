@@ -134,44 +134,74 @@ impl Serialize for Unit {
 }
 
 /// The up axis of a right-handed file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
+    /// +X up.
+    X,
     /// +Y up, as in this library.
     Y,
     /// +Z up, as in Blender and AMASS.
     Z,
+    /// −X up: +X points down.
+    NegativeX,
+    /// −Y up: +Y points down, as in the axes of a camera, whose +Z points away from it.
+    NegativeY,
+    /// −Z up: +Z points down.
+    NegativeZ,
 }
 
 impl Axis {
-    /// The rotation from the file's axes to ours: the identity for +Y up, −90° about X for +Z up.
+    /// Every axis; those that point along +X, +Y and +Z come first.
+    pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::NegativeX, Self::NegativeY, Self::NegativeZ];
+
+    /// The rotation from the file's axes to ours: the smallest that takes this axis to +Y; a half turn about X for +Y down.
     ///
     /// Multiplied on the left of the root's transform it turns the whole skeleton; the joints' own frames stay as they
     /// are.
     pub fn ours_from_file(self) -> Rotation {
         match self {
+            Self::X => Rotation::from_xyzw(0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2),
             Self::Y => Rotation::IDENTITY,
             Self::Z => Y_UP_FROM_Z_UP,
+            Self::NegativeX => Rotation::from_xyzw(0.0, 0.0, -FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+            Self::NegativeY => Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0),
+            Self::NegativeZ => Y_UP_FROM_Z_UP.conjugate(),
         }
     }
 
     /// Converts a vector from the file's axes to ours, exactly.
     pub fn vector_to_ours(self, v: Vec3) -> Vec3 {
-        self.space().to_ours(v)
-    }
-
-    /// The right-handed space with this axis up.
-    pub fn space(self) -> Space {
         match self {
-            Self::Y => Space::Gltf,
-            Self::Z => Space::Blender,
+            Self::X => Vec3::new(-v.y, v.x, v.z),
+            Self::Y => v,
+            Self::Z => Vec3::new(v.x, v.z, -v.y),
+            Self::NegativeX => Vec3::new(v.y, -v.x, v.z),
+            Self::NegativeY => Vec3::new(v.x, -v.y, -v.z),
+            Self::NegativeZ => Vec3::new(v.x, -v.z, v.y),
         }
     }
 
-    /// Index of the axis in x, y, z: 1 or 2.
-    pub fn index(self) -> usize {
+    /// The direction up, in the file's axes.
+    pub fn direction(self) -> Vec3 {
         match self {
-            Self::Y => 1,
-            Self::Z => 2,
+            Self::X => Vec3::X,
+            Self::Y => Vec3::Y,
+            Self::Z => Vec3::Z,
+            Self::NegativeX => Vec3::NEG_X,
+            Self::NegativeY => Vec3::NEG_Y,
+            Self::NegativeZ => Vec3::NEG_Z,
+        }
+    }
+
+    /// Its name: `y`, or `-y` where +Y points down.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::NegativeX => "-x",
+            Self::NegativeY => "-y",
+            Self::NegativeZ => "-z",
         }
     }
 }
@@ -186,23 +216,26 @@ fn mirrored(q: Rotation) -> Rotation {
 
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Y => "Y",
-            Self::Z => "Z",
-        })
+        f.write_str(&self.name().to_uppercase())
+    }
+}
+
+impl Serialize for Axis {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
 impl FromStr for Axis {
     type Err = Error;
 
-    /// `y` or `z`, in either case.
+    /// `x`, `y` or `z`, in either case and with a sign or none: `-y` where +Y points down.
     fn from_str(text: &str) -> Result<Self> {
-        match text {
-            "y" | "Y" => Ok(Self::Y),
-            "z" | "Z" => Ok(Self::Z),
-            _ => Err(Error::request("up", format!("expected y or z, got `{text}`"))),
-        }
+        let name = text.strip_prefix('+').unwrap_or(text);
+        Self::ALL.into_iter().find(|axis| axis.name().eq_ignore_ascii_case(name)).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::request("up", format!("expected one of {known}, got `{text}`"))
+        })
     }
 }
 
@@ -379,11 +412,17 @@ mod tests {
     }
 
     #[test]
-    fn z_up_becomes_y_up() {
-        for v in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(1.0, 2.0, 3.0)] {
-            assert!((Axis::Z.ours_from_file() * v).distance(Axis::Z.vector_to_ours(v)) < 1e-6);
+    fn every_axis_becomes_y_up() {
+        for axis in Axis::ALL {
+            assert_eq!(axis.vector_to_ours(axis.direction()), Vec3::Y, "{axis}");
+            for v in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(1.0, 2.0, 3.0)] {
+                assert!((axis.ours_from_file() * v).distance(axis.vector_to_ours(v)) < 1e-6, "{axis}");
+            }
+            assert_eq!(axis.to_string().parse::<Axis>().unwrap(), axis);
         }
         assert_eq!(Axis::Z.vector_to_ours(Vec3::Z), Vec3::Y);
+        // Y down and Z away, as of a camera, in front of which a person faces it.
+        assert_eq!(Axis::NegativeY.vector_to_ours(Vec3::NEG_Z), Vec3::Z);
         assert_eq!(Axis::Y.vector_to_ours(Vec3::Z), Vec3::Z);
     }
 
@@ -399,7 +438,8 @@ mod tests {
                 "{wrong}"
             );
         }
-        assert_eq!(["y", "Z"].map(|a| a.parse::<Axis>().unwrap()), [Axis::Y, Axis::Z]);
-        assert!("x".parse::<Axis>().is_err());
+        let axes = ["y", "Z", "-x", "+Y"].map(|a| a.parse::<Axis>().unwrap());
+        assert_eq!(axes, [Axis::Y, Axis::Z, Axis::NegativeX, Axis::Y]);
+        assert!(["w", "", "--y", "-"].iter().all(|wrong| wrong.parse::<Axis>().is_err()));
     }
 }

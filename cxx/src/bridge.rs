@@ -106,6 +106,11 @@ pub(crate) mod ffi {
         Found,
         Y,
         Z,
+        X,
+        NegativeX,
+        /// +Y points down, as in the axes of cameras.
+        NegativeY,
+        NegativeZ,
     }
 
     /// Where a joint is: a rotation, then a translation.

@@ -220,6 +220,7 @@ fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
         unit: None,
         up: asked.up.meaning()?,
         frames_per_second: given(asked.frames_per_second),
+        ..ReadOptions::default()
     };
     match given(asked.metres_per_unit) {
         None => Ok(options),

@@ -54,7 +54,9 @@ meaning!(Wrap as Wrap, "wrap": Once => Wrap::Once, Loop => Wrap::Loop, RootMotio
 meaning!(Relative as bool, "relative": ToParent => false, ToModel => true);
 meaning!(Fingers as FingerMode, "fingers":
     Source => FingerMode::Source, Relaxed => FingerMode::Relaxed, Rest => FingerMode::Rest);
-meaning!(UpAxis as Option<Axis>, "up": Found => None, Y => Some(Axis::Y), Z => Some(Axis::Z));
+meaning!(UpAxis as Option<Axis>, "up":
+    Found => None, Y => Some(Axis::Y), Z => Some(Axis::Z), X => Some(Axis::X), NegativeX => Some(Axis::NegativeX),
+    NegativeY => Some(Axis::NegativeY), NegativeZ => Some(Axis::NegativeZ));
 
 /// A level of detail by its number.
 pub(crate) fn lod(level: u32) -> Result<Lod> {

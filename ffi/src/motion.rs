@@ -33,6 +33,25 @@ pub const ANTHRONET_UP_FOUND: u32 = 0;
 pub const ANTHRONET_UP_Y: u32 = 1;
 /// +Z points up in the file.
 pub const ANTHRONET_UP_Z: u32 = 2;
+/// +X points up in the file.
+pub const ANTHRONET_UP_X: u32 = 3;
+/// +X points down in the file.
+pub const ANTHRONET_UP_NEGATIVE_X: u32 = 4;
+/// +Y points down in the file, as in the axes of cameras.
+pub const ANTHRONET_UP_NEGATIVE_Y: u32 = 5;
+/// +Z points down in the file.
+pub const ANTHRONET_UP_NEGATIVE_Z: u32 = 6;
+
+/// What the constants above stand for, in their order.
+const UPS: [Option<Axis>; 7] = [
+    None,
+    Some(Axis::Y),
+    Some(Axis::Z),
+    Some(Axis::X),
+    Some(Axis::NegativeX),
+    Some(Axis::NegativeY),
+    Some(Axis::NegativeZ),
+];
 
 /// How a motion file is read; these values override those in the file. Zeros leave everything to the file.
 #[repr(C)]
@@ -88,8 +107,9 @@ fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
     let asked = described(pointer, "options")?;
     let options = ReadOptions {
         unit: None,
-        up: choice(&[None, Some(Axis::Y), Some(Axis::Z)], asked.up, "up")?,
+        up: choice(&UPS, asked.up, "up")?,
         frames_per_second: given(asked.frames_per_second),
+        ..ReadOptions::default()
     };
     match given(asked.metres_per_unit) {
         None => Ok(options),

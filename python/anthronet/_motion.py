@@ -21,7 +21,15 @@ _FINGERS = {
     "relaxed": _native.FINGERS_RELAXED,
     "rest": _native.FINGERS_REST,
 }
-_UPS = {None: _native.UP_FOUND, "y": _native.UP_Y, "z": _native.UP_Z}
+_UPS = {
+    None: _native.UP_FOUND,
+    "x": _native.UP_X,
+    "y": _native.UP_Y,
+    "z": _native.UP_Z,
+    "-x": _native.UP_NEGATIVE_X,
+    "-y": _native.UP_NEGATIVE_Y,
+    "-z": _native.UP_NEGATIVE_Z,
+}
 
 
 class Motion(Owner):
@@ -209,7 +217,8 @@ def open_motion(
     Args:
         path: of the file.
         metres_per_unit: such as 0.01 for centimetres; None for what the file says, or its skeleton's size.
-        up: `"y"` or `"z"`; None for what the file says, or its skeleton's stance.
+        up: `"x"`, `"y"` or `"z"`, or with a minus where that axis points down, as `"-y"` does in the axes of cameras; None for
+            what the file says, or its skeleton's stance.
         frames_per_second: the rate that frames were recorded at, and that curves are sampled at.
 
     Raises:

@@ -36,6 +36,16 @@ pub enum Fault {
         /// The number, or the value that contains it.
         found: String,
     },
+    /// A number beyond anything that can be meant.
+    #[error("{what}: {found} is too large, expected {most}")]
+    TooLarge {
+        /// The quantity.
+        what: String,
+        /// The number.
+        found: String,
+        /// What it is expected to be.
+        most: String,
+    },
     /// More of something than the reader's limit.
     #[error("expected at most {most}, got {found}")]
     TooMany {
@@ -80,6 +90,10 @@ impl Fault {
 
     pub(crate) fn not_finite(what: impl Display, found: impl Display) -> Self {
         Self::NotFinite { what: what.to_string(), found: found.to_string() }
+    }
+
+    pub(crate) fn too_large(what: impl Display, found: impl Display, most: impl Display) -> Self {
+        Self::TooLarge { what: what.to_string(), found: found.to_string(), most: most.to_string() }
     }
 
     pub(crate) fn too_many(most: impl Display, found: impl Display) -> Self {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::disk;
-use super::kind::able;
+use super::kind::{Format, able};
 use super::motion::{Motion, ReadOptions, units_and_axes};
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -82,7 +82,11 @@ pub fn read_motion(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Moti
 pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
     let path = path.as_ref();
     options.check()?;
-    let (_, read) = able(path, |format| format.read_motion)?;
+    let (format, read) = able(path, |format| format.read_motion)?;
+    if let Some(person) = options.person.filter(|person| *person > 0 && format != Format::Npz) {
+        let message = format!("a .{} has one person: expected 0, got {person}", format.ending());
+        return Err(Error::request("person", message));
+    }
     let raw = read(bytes, path, options)?;
     units_and_axes::resolve(raw, options).map_err(|error| Error::file(path, Box::new(error)))
 }
@@ -110,6 +114,9 @@ mod tests {
             assert!(error.contains(expected), "{error}");
         }
         assert!(matches!(read_motion("missing.bvh", &ReadOptions::default()), Err(Error::Io { .. })));
+        let person = ReadOptions { person: Some(1), ..Default::default() };
+        let error = read_motion_from_bytes(b"", "a.bvh", &person).unwrap_err().to_string();
+        assert_eq!(error, "person: a .bvh has one person: expected 0, got 1");
         let rate = ReadOptions { frames_per_second: Some(f64::NAN), ..Default::default() };
         assert!(matches!(read_motion_from_bytes(b"", "a.bvh", &rate), Err(Error::Request { .. })));
     }

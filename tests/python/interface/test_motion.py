@@ -175,7 +175,7 @@ def test_motion_refusals(woman, file, motion):
     raises(anthronet.FileError, lambda: anthronet.Motion.from_bytes(b"x", "a.bvh"))
     assert isinstance(raised_by(lambda: anthronet.Motion.from_bytes(b"x", "a.txt")), anthronet.Error)
     assert isinstance(raised_by(lambda: motion.retarget(woman, mapping={"no joint": "x"})), anthronet.Error)
-    raises(ValueError, lambda: anthronet.open_motion(file, up="x"), "up", "'x'")
+    raises(ValueError, lambda: anthronet.open_motion(file, up="w"), "up", "'w'")
     for name in ("metres_per_unit", "frames_per_second"):
         for value in (0, -1, math.nan):
             raises(ValueError, lambda: anthronet.open_motion(file, **{name: value}), name, "positive")

@@ -5,6 +5,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("random", &[]),
     ("side", &[]),
+    ("text", &[]),
     ("math", &[]),
     ("space", &["math"]),
     ("mesh", &[]),
@@ -26,7 +27,7 @@ const TABLE: &[(&str, &[&str])] = &[
 ];
 
 /// Rooms that know nothing of bodies: every room may use them.
-const OPEN: &[&str] = &["error", "random", "side"];
+const OPEN: &[&str] = &["error", "random", "side", "text"];
 
 /// The room that tests share: it may use every room and every room may use it, so it is not in the table. The compiler
 /// refuses uses outside of tests, as the room does not exist there.

@@ -156,6 +156,7 @@ impl Request {
     /// [`Error::Request`] naming the field, or line and column where the text is not such JSON. Values are checked by
     /// [`Request::check`] only.
     pub fn from_json(text: &str) -> Result<Self> {
+        let text = crate::text::without_mark(text);
         // A derived deserializer also accepts an array of the fields in order.
         if !text.trim_start().starts_with('{') {
             let message =

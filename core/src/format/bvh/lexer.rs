@@ -5,6 +5,9 @@ use std::fmt::Display;
 use crate::error::{BvhError, Fault};
 use crate::format::bvh::Result;
 
+/// No number of a motion is as large; `f32` holds all smaller ones.
+const HUGE: f64 = 1e30;
+
 /// Iterates over the words of a text.
 pub(super) struct Lexer<'a> {
     rest: &'a [u8],
@@ -13,7 +16,7 @@ pub(super) struct Lexer<'a> {
 
 impl<'a> Lexer<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Self { rest: text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text), line: 1 }
+        Self { rest: text, line: 1 }
     }
 
     /// An error at the current line.
@@ -78,7 +81,11 @@ impl<'a> Lexer<'a> {
     pub(super) fn parse(&self, word: &[u8], what: &str) -> Result<f64> {
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
         match number {
-            Some(number) if number.is_finite() && number.abs() < 1e30 => Ok(number),
+            Some(number) if number.abs() < HUGE => Ok(number),
+            // Digits that are beyond any number become infinity.
+            Some(number) if number.is_finite() || word.iter().any(u8::is_ascii_digit) => {
+                self.fail(Fault::too_large(what, shown(word), format_args!("less than {HUGE:e}")))
+            }
             Some(_) => self.fail(Fault::not_finite(what, shown(word))),
             None => self.unexpected(what, shown(word)),
         }

@@ -11,7 +11,7 @@ const SMALL: &str = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 1 0\n\tCHANNELS 6 Xposi
     MOTION\nFrames: 2\nFrame Time: 0.0333333\n1 2 3 10 20 30 40\n4 5 6 0 0 0 0\n";
 
 fn metres() -> ReadOptions {
-    ReadOptions { unit: Some(Unit::Metre), up: Some(Axis::Y), frames_per_second: None }
+    ReadOptions { unit: Some(Unit::Metre), up: Some(Axis::Y), ..ReadOptions::default() }
 }
 
 fn read(text: &str) -> crate::Result<Motion> {
@@ -44,12 +44,62 @@ fn layout_does_not_matter() {
     let plain = read(SMALL).unwrap();
     let variants = [
         SMALL.replace('\n', "\r\n"),
+        SMALL.replace('\n', "\r"),
         SMALL.replace('\t', "    ").replace("Hips\n{", "Hips {"),
         SMALL.replace("MOTION", "\n\nmotion\n").replace("End Site", "END SITE"),
         format!("\u{feff}{}\n \r\n", SMALL.trim_end()),
     ];
     for text in variants {
         assert_eq!(read(&text).unwrap().clips, plain.clips, "{text}");
+    }
+}
+
+#[test]
+fn text_in_utf16_is_read() {
+    let bytes: Vec<u8> = SMALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let marked = [&[0xff, 0xfe][..], &bytes].concat();
+    for bytes in [bytes, marked] {
+        let motion = read_motion_from_bytes(&bytes, Path::new("walk.bvh"), &metres()).unwrap();
+        assert_eq!(motion.clips, read(SMALL).unwrap().clips);
+    }
+}
+
+#[test]
+fn miscounted_frames_are_read_with_a_word() {
+    let plain = read(SMALL).unwrap();
+    for said in [1, 3] {
+        let motion = read(&SMALL.replace("Frames: 2", &format!("Frames: {said}"))).unwrap();
+        assert_eq!(motion.clips, plain.clips);
+        let word = format!("the file says {said} frames and has 2");
+        assert!(motion.report.warnings.iter().any(|w| w.contains(&word)), "{:?}", motion.report.warnings);
+    }
+    assert!(!plain.report.warnings.iter().any(|w| w.contains("frames and has")));
+}
+
+#[test]
+fn a_file_without_a_rate_is_read_at_the_one_that_was_asked_for() {
+    let options = ReadOptions { frames_per_second: Some(15.0), ..metres() };
+    for time in ["0", "-1", "nan", ""] {
+        let text = SMALL.replace("0.0333333", time);
+        let motion = read_motion_from_bytes(text.as_bytes(), Path::new("a.bvh"), &options).unwrap();
+        assert_eq!((motion.clips[0].frames_per_second(), motion.report.rate_found), (15.0, Found::Asked));
+    }
+}
+
+#[test]
+fn places_that_nobody_reaches_are_told() {
+    for (from, to, expected) in [
+        ("4 5 6", "4 4e27 6", "joint `Hips`, place in frame 1 of `walk`: 4.000e27 is too large"),
+        (
+            "4 5 6",
+            "4 20000 6",
+            "joint `Hips`, place in frame 1 of `walk`: 2.000e4 m is too large, expected at most 10000 m",
+        ),
+        ("0.1 -0.1 0", "0.1 -3e20 0", "joint `Left Leg`, bone at rest: 3.000e20 is too large"),
+        ("0 -0.9 0", "0 -9e20 0", "joint `Left Leg`, end of its bone: 9.000e20 is too large"),
+    ] {
+        let error = read(&SMALL.replace(from, to)).unwrap_err().to_string();
+        assert!(error.contains(expected), "expected `{expected}`, got `{error}`");
     }
 }
 
@@ -86,7 +136,7 @@ fn a_rate_that_was_asked_for_wins() {
 fn says_what_is_wrong_and_in_which_line() {
     let many = format!("HIERARCHY\n{}", "ROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n}\n".repeat(5000));
     let deep = format!("HIERARCHY\nROOT a\n{}", "{\nJOINT a\n".repeat(100_000));
-    let cases: [(&str, String); 21] = [
+    let cases: [(&str, String); 24] = [
         ("line 1: truncated: expected HIERARCHY", String::new()),
         ("line 1: expected HIERARCHY, got `MOTION`", "MOTION".into()),
         ("expected at most 4096 joints, got more", many),
@@ -106,10 +156,24 @@ fn says_what_is_wrong_and_in_which_line() {
             SMALL.replace("Frames: 2", "Frames: 900000").replace("Frame Time", "Frame\tTime"),
         ),
         (
-            "truncated: expected 3 frames, got 2",
-            SMALL.replace("Frames: 2", "Frames: 3").replace("4 5 6", "4.0000 5.0000 6.0000"),
+            "truncated: expected 6 frames, got 2",
+            SMALL
+                .replace("Frames: 2", "Frames: 6")
+                .replace("4 5 6", "4.0000 5.0000 6.0000000000000000000000000"),
         ),
-        ("expected the end of the file after 1 frames, got `4`", SMALL.replace("Frames: 2", "Frames: 1")),
+        (
+            "line 20: expected 7 channels, got 6",
+            SMALL.replace("Frames: 2", "Frames: 1").replace(" 0 0 0 0\n", " 0 0 0\n"),
+        ),
+        (
+            "line 19: a number: `1e30` is too large, expected less than 1e30",
+            SMALL.replace("1 2 3", "1 1e30 3"),
+        ),
+        ("line 20: a number: `-4e400` is too large", SMALL.replace("4 5 6", "4 -4e400 6")),
+        (
+            "line 20: an angle: -2000000° is too large, expected at most 1000000°",
+            SMALL.replace(" 0 0 0 0\n", " 0 -2e6 0 0\n"),
+        ),
         ("line 18: expected a Frame Time of 0.001 to 10 seconds, got 0", SMALL.replace("0.0333333", "0")),
         ("line 19: expected 7 channels, got 6", SMALL.replace(" 40\n", "\n")),
         ("line 20: a number: `inf` is not finite", SMALL.replace("4 5 6", "4 inf 6")),

@@ -7,6 +7,7 @@ use ufbx::{Node, Scene};
 
 use crate::error::{Fault, FbxError, ParserError, Within};
 use crate::format::fbx::Result;
+use crate::format::motion::bounds;
 
 /// Maximum memory, bytes, that `ufbx` may use for a scene, and again while reading it.
 const MAX_MEMORY: usize = 1 << 31;
@@ -14,6 +15,9 @@ const MAX_MEMORY: usize = 1 << 31;
 const MAX_NODES: usize = 1 << 16;
 /// Maximum depth of the node tree.
 const MAX_DEPTH: u32 = 1 << 12;
+/// How a binary file starts; others are text.
+pub(super) const BINARY: &[u8] = b"Kaydara FBX Binary";
+
 /// Parses a file's bytes into a scene, without geometry.
 pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
     let memory = || ufbx::AllocatorOpts { memory_limit: MAX_MEMORY, ..Default::default() };
@@ -26,7 +30,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
         file_format: ufbx::FileFormat::Fbx,
         ..Default::default()
     };
-    if !bytes.starts_with(b"Kaydara FBX Binary") {
+    if !bytes.starts_with(BINARY) {
         check_braces(bytes)?;
     }
     ufbx::load_memory(bytes, opts).map_err(|error| {
@@ -50,6 +54,23 @@ pub(super) fn finite(scene: &Scene, locals: &[ufbx::Transform]) -> Result<()> {
                 .within(format_args!("node `{}`", &*scene.nodes[node].element.name))
         }
     }
+}
+
+/// Refuses keys that are no person's: a huge angle makes a rotation like any other.
+pub(super) fn check_keys(scene: &Scene) -> Result<()> {
+    for prop in scene.anim_layers.iter().flat_map(|layer| &layer.anim_props) {
+        let check = match &*prop.prop_name {
+            "Lcl Rotation" => bounds::check_degrees,
+            "Lcl Translation" => bounds::check_length,
+            _ => continue,
+        };
+        let keys = prop.anim_value.curves.iter().flatten().flat_map(|curve| &curve.keyframes);
+        for key in keys {
+            let place = format_args!("node `{}`: {}", &*prop.element.name, &*prop.prop_name);
+            check(key.value).map_err(FbxError::from).within(place)?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses text that ends inside a node, which the parser would accept as complete.

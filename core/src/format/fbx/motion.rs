@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DVec3};
 use ufbx::{CoordinateAxis, Scene};
 
-use super::document::{self, Nodes, finite, vec3};
+use super::document::{self, BINARY, Nodes, finite, vec3};
 use crate::Error;
 use crate::error::{Fault, FbxError, Within};
 use crate::format::fbx::Result;
@@ -15,6 +15,7 @@ use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
 use crate::math::{RigidTransform, RigidTransformF64};
 use crate::skeleton::{MAX_JOINTS, Skeleton};
 use crate::space::{Axis, Unit};
+use crate::text;
 
 /// Maximum number of animations of a file.
 const MAX_TAKES: usize = 1 << 10;
@@ -25,9 +26,11 @@ pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::R
 }
 
 fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
-    check_start(bytes, &[b"Kaydara FBX Binary", b";"], "an FBX file")?;
-    let scene = document::open(bytes)?;
+    let text = if bytes.starts_with(BINARY) { bytes.into() } else { text::decode(bytes)? };
+    check_start(&text, &[BINARY, b";"], "an FBX file")?;
+    let scene = document::open(&text)?;
     let nodes = Nodes::of(&scene)?;
+    document::check_keys(&scene)?;
     let joints = joints(&scene, &nodes)?;
     let (up, turn) = axes(&scene, options)?;
     let mut warnings = Vec::new();

@@ -132,6 +132,17 @@ fn read(text: &str) -> crate::Result<Motion> {
 }
 
 #[test]
+fn text_is_read_in_any_encoding() {
+    let plain = read(SMALL).unwrap();
+    let marked = format!("\u{feff}{SMALL}");
+    let utf16: Vec<u8> = marked.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [marked.into_bytes(), SMALL.replace('\n', "\r").into_bytes(), utf16] {
+        let motion = read_motion_from_bytes(&bytes, Path::new("a.fbx"), &ReadOptions::default()).unwrap();
+        assert_eq!(motion.clips, plain.clips);
+    }
+}
+
+#[test]
 fn bones_turn_as_their_curves_say() {
     let motion = read(SMALL).unwrap();
     let clip = &motion.clips[0];

@@ -1,12 +1,17 @@
-//! Shared by the motion readers: options, result ([`raw`]), and detection of units and axes ([`units_and_axes`], from the
-//! body's [`proportions`]).
+//! Shared by the motion readers: options, result ([`raw`]), its [`bounds`], and detection of units and axes ([`units_and_axes`], from
+//! the body's [`proportions`], the person's [`figure`] and its [`stride`]).
 
+pub(crate) mod bounds;
+mod figure;
+mod floor;
 mod proportions;
 pub(crate) mod raw;
+mod stride;
 pub(crate) mod units_and_axes;
 
 use std::path::Path;
 
+pub(crate) use floor::stand_on_floor;
 use serde::Serialize;
 
 use crate::clip::Clip;
@@ -21,6 +26,8 @@ pub struct ReadOptions {
     pub unit: Option<Unit>,
     /// The axis that points up.
     pub up: Option<Axis>,
+    /// Which of several people in an archive of arrays, from 0; by default the first, and a warning says how many there are.
+    pub person: Option<usize>,
     /// Frames per second. Frame-based formats (BVH, npz) are taken to be recorded at this rate; curve-based formats (FBX, glTF)
     /// are sampled at it.
     pub frames_per_second: Option<f64>,

@@ -33,7 +33,8 @@ impl Stance {
 
     /// Whether the lowest joints are near zero, as on a floor.
     fn on_floor(self, axis: Axis) -> bool {
-        self.lowest[axis.index()].abs() < 0.2 * self.extents[axis.index()]
+        let up = axis.direction();
+        self.lowest.dot(up).abs() < 0.2 * self.extents.dot(up)
     }
 }
 
@@ -132,12 +133,15 @@ impl Proportions {
 }
 
 /// Local rest transform of each joint.
-fn rest_of(raw: &RawMotion) -> &[RigidTransform] {
+pub(super) fn rest_of(raw: &RawMotion) -> &[RigidTransform] {
     &raw.skeleton.rest_pose().locals
 }
 
 /// Evenly spaced poses of a take.
-fn poses<'a>(raw: &'a RawMotion, take: &'a Take) -> impl Iterator<Item = Vec<RigidTransform>> + 'a {
+pub(super) fn poses<'a>(
+    raw: &'a RawMotion,
+    take: &'a Take,
+) -> impl Iterator<Item = Vec<RigidTransform>> + 'a {
     let frames = take.rotations.len() / raw.skeleton.len();
     let samples = frames.min((SAMPLES / raw.takes.len().max(1)).max(1));
     (0..samples).map(move |i| {

@@ -1,8 +1,10 @@
 //! Arrays of a numpy archive, in C order, as `f64`. A few bytes of such a file can demand any amount of memory or recursion
 //! depth; therefore headers are checked before the `npyz` crate parses them, and data is read up to a limit.
 
+use std::fmt;
 use std::io::{Cursor, Read};
 
+use half::f16;
 use npyz::npz::NpzArchive;
 use npyz::{NpyFile, Order};
 
@@ -13,11 +15,15 @@ use crate::format::npz::Result;
 const MAX_BYTES: u64 = 1 << 29;
 /// Longest header of a plain array, bytes; numpy pads headers to 64 or 128.
 const MAX_HEADER: usize = 1024;
+/// Arrays that a message lists.
+const LISTED: usize = 20;
 
 /// An array in memory.
 pub(super) struct Array {
     /// Lengths of its axes.
     pub(super) shape: Vec<u64>,
+    /// Type of its numbers, as numpy calls it: `float32`.
+    pub(super) dtype: String,
     /// C order: the last axis is the fastest.
     pub(super) values: Vec<f64>,
 }
@@ -27,10 +33,11 @@ impl Array {
     pub(super) fn rows(&self) -> usize {
         self.shape.first().map_or(1, |&rows| rows as usize)
     }
+}
 
-    /// Number of values per step along the first axis.
-    pub(super) fn width(&self) -> usize {
-        self.values.len().checked_div(self.rows()).unwrap_or(0)
+impl fmt::Display for Array {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} of {}", self.shape, self.dtype)
     }
 }
 
@@ -45,41 +52,59 @@ impl<'a> Archive<'a> {
         Ok(Self { zip: zip.map_err(|e| refused("is not a zip archive, or truncated", e))? })
     }
 
-    /// The error for a missing array.
-    pub(super) fn missing(&self, wanted: &str) -> NpzError {
-        let mut names: Vec<&str> = self.zip.array_names().collect();
+    /// The names of its arrays, in order.
+    pub(super) fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.zip.array_names().map(str::to_owned).collect();
         names.sort_unstable();
-        let more = names.len().saturating_sub(20);
-        names.truncate(20);
+        names
+    }
+
+    /// The error for a missing array; it lists those that are there, with shape and type.
+    pub(super) fn missing(&mut self, wanted: &str) -> NpzError {
+        let mut names = self.names();
+        let more = names.len().saturating_sub(LISTED);
+        names.truncate(LISTED);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let has = names.join(", ");
-        Fault::missing(format_args!("array {wanted}; the file has {}{more}", has.escape_debug())).into()
+        let has: Vec<String> =
+            names.iter().map(|name| format!("{} {}", name.escape_debug(), self.outline(name))).collect();
+        let has = if has.is_empty() { "none".to_owned() } else { has.join(", ") };
+        Fault::missing(format_args!("array {wanted}; the file has {has}{more}")).into()
     }
 
-    /// The first of these arrays that exists, with its name.
-    pub(super) fn first(&mut self, names: &[&'static str]) -> Result<Option<(&'static str, Array)>> {
-        for &name in names {
-            if self.zip.array_names().any(|n| n == name) {
-                return self.array(name).map(|array| Some((name, array))).within(name);
-            }
-        }
-        Ok(None)
+    /// Shape and type of an array, in brackets, for messages.
+    fn outline(&mut self, name: &str) -> String {
+        let mut header = Vec::new();
+        let read = self.read(name, &mut header, MAX_HEADER as u64 + 12);
+        let outline = read.and_then(|()| check_header(&header)).and_then(|()| {
+            let file = NpyFile::new(header.as_slice()).map_err(|e| refused("is not an array", e))?;
+            Ok(format!("({:?} of {})", file.shape(), dtype_name(&file.dtype().descr())))
+        });
+        outline.unwrap_or_else(|_| "(unreadable)".to_owned())
     }
 
-    fn array(&mut self, name: &str) -> Result<Array> {
-        let file = self.zip.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name));
+    /// The array of this name.
+    pub(super) fn array(&mut self, name: &str) -> Result<Array> {
         let mut bytes = Vec::new();
+        let read = self.read(name, &mut bytes, MAX_BYTES + 1).and_then(|()| {
+            if bytes.len() as u64 > MAX_BYTES {
+                return Err(Fault::too_many(format_args!("{MAX_BYTES} bytes"), "more").into());
+            }
+            decode(&bytes)
+        });
+        read.within(name)
+    }
+
+    /// Unpacks up to `most` bytes of an array.
+    fn read(&mut self, name: &str, into: &mut Vec<u8>, most: u64) -> Result<()> {
+        let file = self.zip.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name));
         let file = file.map_err(|e| refused("cannot be unpacked", e))?;
-        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| refused("cannot be unpacked", e))?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(Fault::too_many(format_args!("{MAX_BYTES} bytes"), "more").into());
-        }
-        decode(&bytes)
+        file.take(most).read_to_end(into).map_err(|e| refused("cannot be unpacked", e))?;
+        Ok(())
     }
 }
 
 /// The error for bytes that a parser crate refuses.
-fn refused(what: &str, error: impl std::fmt::Display) -> ParserError {
+fn refused(what: &str, error: impl fmt::Display) -> ParserError {
     ParserError::refused(format_args!("{what}: {error}"))
 }
 
@@ -88,40 +113,99 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Array> {
     check_header(bytes)?;
     let mut data = bytes;
     let file = NpyFile::new(&mut data).map_err(|e| refused("is not an array", e))?;
-    let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
-    let count = file.len();
-    let expected = dtype.num_bytes().and_then(|size| (size as u64).checked_mul(count));
+    let (shape, order, descr) = (file.shape().to_vec(), file.order(), file.dtype().descr());
+    let (size, count) = (file.dtype().num_bytes(), file.len());
     let into = file.into_inner();
+    let dtype = dtype_name(&descr);
+    if dtype == "object" {
+        let found = format!("a shape of {shape:?} of Python objects, which only Python reads");
+        return Err(Fault::unexpected("an array of numbers", found).into());
+    }
+    let expected = size.and_then(|size| (size as u64).checked_mul(count));
     if expected != Some(into.len() as u64) {
         let found = format!("{} bytes", into.len());
         return Err(Fault::truncated(format_args!("an array of shape {shape:?}"), found).into());
     }
-    let file = || NpyFile::new(bytes);
-    let descr = dtype.descr();
-    let values = match descr.trim_matches('\'') {
-        "<f8" | ">f8" => file().and_then(NpyFile::into_vec::<f64>),
-        "<f4" | ">f4" => file().and_then(NpyFile::into_vec::<f32>).map(widened),
-        "<i8" | ">i8" => {
-            file().and_then(NpyFile::into_vec::<i64>).map(|v| v.into_iter().map(|x| x as f64).collect())
-        }
-        "<i4" | ">i4" => file().and_then(NpyFile::into_vec::<i32>).map(widened),
-        other => return Err(Fault::unexpected("floating-point or whole numbers", other).into()),
+    let Some(mut values) = numbers(descr.trim_matches('\''), into) else {
+        let found = format!("a shape of {shape:?} of {dtype}");
+        return Err(Fault::unexpected("floating-point or whole numbers", found).into());
     };
-    let mut values = values.map_err(|e| refused("is not an array", e))?;
     // Arrays of one axis or none are the same in both orders.
     if order == Order::Fortran && shape.len() > 1 {
-        let [rows, columns] = shape.as_slice() else {
-            let found = format!("a shape of {shape:?}");
-            return Err(Fault::unexpected("two axes of an array in Fortran order", found).into());
-        };
-        let (rows, columns) = (*rows as usize, *columns as usize);
-        values = (0..values.len()).map(|i| values[(i % columns) * rows + i / columns]).collect();
+        values = c_order(&values, &shape);
     }
-    Ok(Array { shape, values })
+    Ok(Array { shape, dtype, values })
 }
 
-fn widened<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
-    values.into_iter().map(Into::into).collect()
+/// Values in Fortran order, whose first axis is the fastest, in C order.
+fn c_order(values: &[f64], shape: &[u64]) -> Vec<f64> {
+    let mut steps = Vec::with_capacity(shape.len());
+    let mut step = 1;
+    for &length in shape {
+        steps.push(step);
+        step *= length as usize;
+    }
+    let mut place = vec![0usize; shape.len()];
+    let mut next = || {
+        let at: usize = place.iter().zip(&steps).map(|(i, step)| i * step).sum();
+        for (i, &length) in place.iter_mut().zip(shape).rev() {
+            *i += 1;
+            if *i < length as usize {
+                break;
+            }
+            *i = 0;
+        }
+        values[at]
+    };
+    (0..values.len()).map(|_| next()).collect()
+}
+
+/// Numbers of a numpy type; `None` for types that are none.
+fn numbers(descr: &str, bytes: &[u8]) -> Option<Vec<f64>> {
+    fn all<const N: usize>(bytes: &[u8], big: bool, number: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+        let (numbers, _) = bytes.as_chunks::<N>();
+        let little = |mut bytes: [u8; N]| {
+            if big {
+                bytes.reverse();
+            }
+            bytes
+        };
+        numbers.iter().map(|bytes| number(little(*bytes))).collect()
+    }
+    let (order, kind) = descr.split_at_checked(1)?;
+    let big = order == ">";
+    Some(match kind {
+        "f8" => all(bytes, big, f64::from_le_bytes),
+        "f4" => all(bytes, big, |b| f32::from_le_bytes(b).into()),
+        "f2" => all(bytes, big, |b| f16::from_le_bytes(b).to_f64()),
+        "i8" => all(bytes, big, |b| i64::from_le_bytes(b) as f64),
+        "i4" => all(bytes, big, |b| i32::from_le_bytes(b).into()),
+        "i2" => all(bytes, big, |b| i16::from_le_bytes(b).into()),
+        "i1" => all(bytes, big, |b| i8::from_le_bytes(b).into()),
+        "u8" => all(bytes, big, |b| u64::from_le_bytes(b) as f64),
+        "u4" => all(bytes, big, |b| u32::from_le_bytes(b).into()),
+        "u2" => all(bytes, big, |b| u16::from_le_bytes(b).into()),
+        "u1" => all(bytes, big, |b| u8::from_le_bytes(b).into()),
+        _ => return None,
+    })
+}
+
+/// What numpy calls a type: `float32` of `<f4`.
+fn dtype_name(descr: &str) -> String {
+    let plain = descr.trim_matches('\'').trim_start_matches(['<', '>', '|', '=']);
+    let named = |kind: &str| {
+        plain.get(1..).and_then(|n| n.parse::<u32>().ok()).map(|n| format!("{kind}{}", n.saturating_mul(8)))
+    };
+    let name = match plain.get(..1) {
+        Some("f") => named("float"),
+        Some("i") => named("int"),
+        Some("u") => named("uint"),
+        Some("b") => Some("bool".to_owned()),
+        Some("O") => Some("object".to_owned()),
+        Some("U" | "S") => Some("text".to_owned()),
+        _ => None,
+    };
+    name.unwrap_or_else(|| plain.escape_debug().to_string())
 }
 
 /// Refuses headers that are longer, more deeply nested or with larger numbers than those of a plain array.

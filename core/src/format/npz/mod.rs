@@ -3,7 +3,10 @@
 //!
 //! The files contain no skeleton, which is part of the body model. The rest pose used here has the public joint names and
 //! **assumed bone lengths**, round numbers for a person of 1.70 m: see `smpl`. World axes are AMASS' +Z up, unless the body
-//! is upright along Y; rest poses of the body models are +Y up, facing +Z.
+//! is upright along another axis, as in the axes of a camera; rest poses of the body models are +Y up, facing +Z.
+//!
+//! Of the results of tools that estimate poses from pictures (WHAM, TRAM, GVHMR, HMR2, ROMP, SLAHMR), saved as arrays, those in the
+//! world's axes are read where there are any: [`names`].
 //!
 //! The pelvis is placed at `trans`. The body models place it at `trans` + J₀, where J₀ is the pelvis position in the
 //! model's own rest pose: some 0.2 to 0.4 m below the model's origin, the same vector in every frame of a file. J₀ belongs
@@ -13,6 +16,8 @@
 
 mod array;
 mod motion;
+mod names;
+mod poses;
 mod smpl;
 #[cfg(test)]
 mod tests;

@@ -1,19 +1,18 @@
-//! Converts the arrays of an archive to a motion of the body model with that number of joints.
+//! Converts the arrays of an archive to a motion of the body model with these joints.
 
-use std::fmt::Display;
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::array::Archive;
+use super::names::{self, Frame, Named, Part, find};
+use super::poses::{self, Poses, person_of, wrong};
 use super::smpl::{self, BodyModel};
 use crate::Error;
-use crate::clip::MAX_FRAMES;
-use crate::error::{Fault, Located, NpzError};
 use crate::format::motion::raw::{RawMotion, Recorder};
-use crate::format::motion::{Found, ReadOptions, check_start, clip_name};
+use crate::format::motion::{Found, ReadOptions, check_start, clip_name, stand_on_floor};
 use crate::format::npz::Result;
-use crate::math::Rotation;
 use crate::space::{Axis, Unit};
 
 /// Reads an archive; the clip is named after the file.
@@ -24,51 +23,41 @@ pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::R
 fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
     check_start(bytes, &[b"PK\x03\x04", b"PK\x05\x06"], "a zip archive")?;
     let mut archive = Archive::open(bytes)?;
-    let poses = read_poses(&mut archive)?;
-    let Some(BodyModel { name: model, skeleton }) = smpl::body_model(poses.width / 3)? else {
-        let expected = "66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X)";
-        return wrong("poses", expected, poses.width);
-    };
-    let Some((key, trans)) = archive.first(&["trans", "transl", "smpl_trans"])? else {
-        return Err(archive.missing("trans"));
-    };
-    if trans.shape.len() != 2 || trans.width() != 3 || trans.rows() != poses.frames {
-        return wrong(
-            key,
-            format_args!("a shape of ({}, 3)", poses.frames),
-            format_args!("{:?}", trans.shape),
-        );
-    }
-    let mut rate_found = Found::File;
-    let rate = match options.frames_per_second {
-        Some(rate) => {
-            rate_found = Found::Asked;
-            rate
-        }
-        None => match archive.first(&["mocap_framerate", "mocap_frame_rate", "fps"])? {
-            Some((key, rate)) => match rate.values.as_slice() {
-                [rate] if (0.1..=1000.0).contains(rate) => *rate,
-                other => {
-                    let got = other.iter().take(3).collect::<Vec<_>>();
-                    return wrong(key, "one number of 0.1 to 1000", format_args!("{got:?}"));
-                }
-            },
-            None => return Err(archive.missing("mocap_framerate")),
-        },
-    };
+    let mut warnings = vec![
+        "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
+    ];
+    let mut arrays: Vec<Named> = archive.names().iter().filter_map(|name| names::named(name)).collect();
+    let asked = choose_person(&mut arrays, options.person, &mut warnings)?;
+    let mut poses = poses::read(&mut archive, &arrays, asked)?;
+    warnings.append(&mut poses.warnings);
+    let BodyModel { name: model, skeleton } = smpl::body_model(poses.joints)?;
+    let places = read_places(&mut archive, &arrays, &poses, &mut warnings)?;
+    let (rate, rate_found) = read_rate(&mut archive, options)?;
 
     let mut recorder = Recorder::new(skeleton.len());
     let rest = &skeleton.rest_pose().locals;
     let mut pose = rest.clone();
-    for (turns, at) in poses.values.chunks_exact(poses.width).zip(trans.values.chunks_exact(3)) {
-        for (local, turn) in pose.iter_mut().zip(turns.chunks_exact(3)) {
-            local.rotation = rotation(DVec3::from_slice(turn));
+    for (frame, rotations) in poses.rotations.chunks_exact(skeleton.len()).enumerate() {
+        for (local, rotation) in pose.iter_mut().zip(rotations) {
+            local.rotation = *rotation;
         }
-        pose[0].translation = DVec3::from_slice(at).as_vec3();
+        if let Some((_, places)) = &places {
+            pose[0].translation = places[frame].as_vec3();
+        }
         recorder.push(&pose);
     }
     let take = recorder.take(name.to_owned(), rate, rest);
-    Ok(RawMotion {
+    match &places {
+        Some((key, _)) => warnings.push(format!(
+            "`{key}` is taken for the place of the pelvis: the {model} body model adds a constant of its own, by which the \
+             whole clip is shifted"
+        )),
+        None => warnings.push(
+            "the file has no place of the body (`trans`): it stays in its place, and its height is found from its lowest joint"
+                .to_owned(),
+        ),
+    }
+    let mut raw = RawMotion {
         format: model,
         skeleton,
         takes: vec![take],
@@ -76,88 +65,81 @@ fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> 
         up: Some(Axis::Z),
         rest_is_upright: true,
         rate_found,
-        warnings: vec![
-            "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
-            format!(
-                "`{key}` is taken for the place of the pelvis: the {model} body model adds a constant of its own, by which the \
-                 whole clip is shifted"
-            ),
-        ],
-    })
-}
-
-/// The error for an array with unexpected content.
-fn wrong<T>(array: &str, expected: impl Display, found: impl Display) -> Result<T> {
-    Err(NpzError::from(Fault::unexpected(expected, found)).within(array.to_owned()))
-}
-
-/// The rotation of an axis-angle vector, whose length is the angle; `NaN` where it is not finite.
-fn rotation(turn: DVec3) -> Rotation {
-    let angle = turn.length();
-    let (sin, cos) = libm::sincos(angle / 2.0);
-    // sin(a/2) / a, which tends to one half at 0.
-    let scale = if angle < 1e-9 { 0.5 } else { sin / angle };
-    let axis: Vec3 = (turn * scale).as_vec3();
-    Rotation::from_xyzw(axis.x, axis.y, axis.z, cos as f32)
-}
-
-/// Frames × width values, three per joint.
-struct Poses {
-    frames: usize,
-    width: usize,
-    values: Vec<f64>,
-}
-
-/// Reads one array of all joints, or one array per part in joint order, of which those after the body are optional.
-fn read_poses(archive: &mut Archive) -> Result<Poses> {
-    if let Some((key, poses)) = archive.first(&["poses", "smpl_poses", "fullpose"])? {
-        let (frames, width) = (poses.rows(), poses.width());
-        check_frames(key, &poses.shape, frames)?;
-        return Ok(Poses { frames, width, values: poses.values });
-    }
-    let Some((key, root)) = archive.first(&["root_orient", "global_orient"])? else {
-        return Err(archive.missing("poses, or root_orient and pose_body"));
+        warnings,
     };
-    let frames = root.rows();
-    check_frames(key, &root.shape, frames)?;
-    let Some(body) = archive.first(&["pose_body", "body_pose"])? else {
-        return Err(archive.missing("pose_body"));
-    };
-    let mut parts = vec![(key, root), body];
-    let one_of: [(&[&'static str], &[&'static str]); 3] = [
-        (&["pose_jaw", "jaw_pose"], &[]),
-        (&["pose_eye"], &["leye_pose", "reye_pose"]),
-        (&["pose_hand"], &["left_hand_pose", "right_hand_pose"]),
-    ];
-    for (whole, halves) in one_of {
-        if let Some(part) = archive.first(whole)? {
-            parts.push(part);
-            continue;
-        }
-        for half in halves {
-            parts.extend(archive.first(&[half])?);
-        }
+    if places.is_none() {
+        stand_on_floor(&mut raw, options.up);
     }
-    for (key, part) in &parts {
-        if part.rows() != frames {
-            return wrong(key, format_args!("{frames} frames"), format_args!("a shape of {:?}", part.shape));
-        }
-    }
-    let width = parts.iter().map(|(_, part)| part.width()).sum();
-    let mut values = Vec::with_capacity(parts.iter().map(|(_, part)| part.values.len()).sum());
-    for frame in 0..frames {
-        for (_, part) in &parts {
-            let width = part.width();
-            values.extend_from_slice(&part.values[frame * width..(frame + 1) * width]);
-        }
-    }
-    Ok(Poses { frames, width, values })
+    Ok(raw)
 }
 
-fn check_frames(key: &str, shape: &[u64], frames: usize) -> Result<()> {
-    if shape.len() < 2 || frames == 0 || frames > MAX_FRAMES {
-        let expected = format!("1 to {MAX_FRAMES} frames by joints");
-        return wrong(key, expected, format_args!("a shape of {shape:?}"));
+/// Keeps the arrays of one person where their names say whose they are, and returns the index that is left to choose.
+fn choose_person(
+    arrays: &mut Vec<Named>,
+    asked: Option<usize>,
+    warnings: &mut Vec<String>,
+) -> Result<Option<usize>> {
+    let people: BTreeSet<u32> = arrays.iter().filter_map(|array| array.person).collect();
+    let common =
+        arrays.iter().any(|array| array.person.is_none() && matches!(array.part, Part::Whole | Part::Root));
+    if people.is_empty() || common {
+        arrays.retain(|array| array.person.is_none());
+        return Ok(asked);
     }
-    Ok(())
+    let chosen = people.iter().nth(person_of(people.len(), asked, warnings)?).copied();
+    arrays.retain(|array| array.person.is_none() || array.person == chosen);
+    Ok(None)
+}
+
+/// The array of the body's places in the axes of its root, with its name.
+fn read_places(
+    archive: &mut Archive,
+    arrays: &[Named],
+    poses: &Poses,
+    warnings: &mut Vec<String>,
+) -> Result<Option<(String, Vec<DVec3>)>> {
+    let has_root = |frame| [Part::Whole, Part::Root].iter().any(|part| find(arrays, *part, frame).is_some());
+    // Places whose axes are not said belong to a root in the world's only where it is the only one.
+    let others: &[Frame] = match poses.frame {
+        Frame::World if has_root(Frame::Unsaid) || has_root(Frame::Camera) => &[],
+        Frame::World => &[Frame::Unsaid],
+        Frame::Unsaid => &[Frame::Camera, Frame::World],
+        Frame::Camera => &[Frame::Unsaid],
+    };
+    if poses.frame == Frame::World && has_root(Frame::Unsaid) {
+        warnings.push("of two roots, the one in the world's axes is read".to_owned());
+    }
+    let named =
+        std::iter::once(&poses.frame).chain(others).find_map(|frame| find(arrays, Part::Place, *frame));
+    let Some(named) = named else { return Ok(None) };
+    let (key, array) = (&named.name, archive.array(&named.name)?);
+    let scale = if archive.names().iter().any(|name| name == "smpl_scaling") {
+        archive.array("smpl_scaling")?.values.first().copied().filter(|scale| *scale > 0.0).unwrap_or(1.0)
+    } else {
+        1.0
+    };
+    if poses.lead.width(&array) != Some(3) {
+        return wrong(key, format_args!("a shape of ({}, 3)", poses.lead.frames), &array);
+    }
+    let places = poses.lead.rows(&array, 3).map(|row| DVec3::from_slice(row) / scale).collect();
+    Ok(Some((key.clone(), places)))
+}
+
+/// Frames per second: as asked, or as the file says.
+fn read_rate(archive: &mut Archive, options: &ReadOptions) -> Result<(f64, Found)> {
+    if let Some(rate) = options.frames_per_second {
+        return Ok((rate, Found::Asked));
+    }
+    let known = ["mocap_framerate", "mocap_frame_rate", "fps", "framerate", "frame_rate"];
+    let names = archive.names();
+    let Some(key) = known.into_iter().find(|known| names.iter().any(|name| name == known)) else {
+        return Err(archive.missing("mocap_framerate"));
+    };
+    match archive.array(key)?.values.as_slice() {
+        [rate] if (0.1..=1000.0).contains(rate) => Ok((*rate, Found::File)),
+        other => {
+            let got = other.iter().take(3).collect::<Vec<_>>();
+            wrong(key, "one number of 0.1 to 1000", format_args!("{got:?}"))
+        }
+    }
 }

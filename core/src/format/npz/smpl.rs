@@ -64,28 +64,60 @@ const FINGERS: [(&str, [f32; 3], [f32; 3]); 5] = [
     ("thumb", [0.72, 1.39, 0.02], [0.04, 0.03, 0.025]),
 ];
 
-/// The body model with this number of joints: body only, SMPL, SMPL-H or SMPL-X.
-pub(super) fn body_model(joints: usize) -> Result<Option<BodyModel>> {
+/// The joints of a body model beyond the first 22.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Joints {
+    /// SMPL's hands, one joint each.
+    pub(super) palms: bool,
+    pub(super) jaw: bool,
+    pub(super) eyes: bool,
+    /// Fingers.
+    pub(super) hands: bool,
+}
+
+/// The models that are known by their number of joints: body only, SMPL, SMPL-H, SMPL-X without and with eyes.
+pub(super) const MODELS: [Joints; 5] = {
+    let none = Joints { palms: false, jaw: false, eyes: false, hands: false };
+    let hands = Joints { hands: true, ..none };
+    let jaw = Joints { jaw: true, ..hands };
+    [none, Joints { palms: true, ..none }, hands, jaw, Joints { eyes: true, ..jaw }]
+};
+
+impl Joints {
+    pub(super) fn count(self) -> usize {
+        let Self { palms, jaw, eyes, hands } = self;
+        BODY.len()
+            + 2 * usize::from(palms)
+            + usize::from(jaw)
+            + 2 * usize::from(eyes)
+            + 30 * usize::from(hands)
+    }
+}
+
+/// The body model with these joints.
+pub(super) fn body_model(joints: Joints) -> Result<BodyModel> {
     let mut found = Building::default();
     found.extend(&BODY);
+    let [jaw, eyes @ ..] = FACE;
+    if joints.palms {
+        found.extend(&PALMS);
+    }
+    if joints.jaw {
+        found.extend(&[jaw]);
+    }
+    if joints.eyes {
+        found.extend(&eyes);
+    }
+    if joints.hands {
+        found.add_hands();
+    }
     let name = match joints {
-        22 => "AMASS (body)",
-        24 => {
-            found.extend(&PALMS);
-            "SMPL"
-        }
-        52 => {
-            found.add_hands();
-            "SMPL-H"
-        }
-        55 => {
-            found.extend(&FACE);
-            found.add_hands();
-            "SMPL-X"
-        }
-        _ => return Ok(None),
+        Joints { jaw: true, .. } | Joints { eyes: true, .. } => "SMPL-X",
+        Joints { hands: true, .. } => "SMPL-H",
+        Joints { palms: true, .. } => "SMPL",
+        _ => "AMASS (body)",
     };
-    Ok(Some(BodyModel { name, skeleton: found.skeleton()? }))
+    Ok(BodyModel { name, skeleton: found.skeleton()? })
 }
 
 #[derive(Default)]

@@ -41,6 +41,7 @@ fn standing(joints: usize) -> [Named<'static>; 3] {
         22 => &[2, 66],
         24 => &[2, 72],
         52 => &[2, 156],
+        53 => &[2, 159],
         _ => &[2, 165],
     };
     [
@@ -52,7 +53,8 @@ fn standing(joints: usize) -> [Named<'static>; 3] {
 
 #[test]
 fn every_model_of_the_family_stands_on_its_feet() {
-    for (joints, format) in [(22, "AMASS (body)"), (24, "SMPL"), (52, "SMPL-H"), (55, "SMPL-X")] {
+    let models = [(22, "AMASS (body)"), (24, "SMPL"), (52, "SMPL-H"), (53, "SMPL-X"), (55, "SMPL-X")];
+    for (joints, format) in models {
         let motion = read(&archive(&standing(joints))).unwrap();
         let clip = &motion.clips[0];
         assert_eq!(
@@ -78,8 +80,9 @@ fn every_model_of_the_family_stands_on_its_feet() {
 
 #[test]
 fn rest_poses_are_of_a_person_and_mirror_images() {
-    for joints in [22, 24, 52, 55] {
-        let skeleton = super::smpl::body_model(joints).unwrap().unwrap().skeleton;
+    for model in super::smpl::MODELS {
+        let joints = model.count();
+        let skeleton = super::smpl::body_model(model).unwrap().skeleton;
         assert!(skeleton.len() == joints && skeleton.tree().has_one_root());
         for (joint, name) in skeleton.names().iter().enumerate() {
             let Some(right) = name.strip_prefix("left_") else { continue };
@@ -119,11 +122,189 @@ fn a_body_that_stands_along_y_is_taken_so() {
     assert_eq!(motion.clips[0].pose(0).locals[0].translation, Vec3::Y * 0.95);
 }
 
+/// Rows of axis-angle vectors as rows of matrices.
+fn matrices(vectors: &[f64]) -> Vec<f64> {
+    let matrix = |v: &[f64]| {
+        let turn = glam::DVec3::from_slice(v);
+        let matrix = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(turn));
+        matrix.transpose().to_cols_array()
+    };
+    vectors.chunks(3).flat_map(matrix).collect()
+}
+
+#[test]
+fn matrices_are_vectors_in_another_form() {
+    let [poses, trans, rate] = standing(24);
+    let expected = read(&archive(&[poses.clone(), trans.clone(), rate.clone()])).unwrap();
+    let of = |from: usize, to: usize| [0, 72].map(|f| matrices(&poses.2[f + from..f + to])).concat();
+    let trans = |key| (key, trans.1, trans.2.clone());
+    let tram: [Named; 3] =
+        [("pred_rotmat", &[2, 24, 3, 3], of(0, 72)), ("pred_trans", &[2, 1, 3], trans("").2), rate.clone()];
+    let hmr: [Named; 4] = [
+        ("global_orient", &[2, 1, 3, 3], of(0, 3)),
+        ("body_pose", &[2, 23, 3, 3], of(3, 72)),
+        trans("pred_cam_t"),
+        rate.clone(),
+    ];
+    for arrays in [&tram[..], &hmr[..]] {
+        let motion = read(&archive(arrays)).unwrap();
+        for frame in 0..2 {
+            let [a, b] = [&expected, &motion].map(|m| m.clips[0].pose(frame));
+            for (a, b) in a.locals.iter().zip(&b.locals) {
+                assert!(a.rotation.angle_between(b.rotation) < 1e-3 && a.translation == b.translation);
+            }
+        }
+    }
+    let mut damaged = of(0, 72);
+    damaged[0] = 2.0;
+    let error = read(&archive(&[("rotmat", &[2, 24, 3, 3], damaged), rate])).unwrap_err().to_string();
+    assert!(error.contains("rotmat: expected rotation matrices, got"), "{error}");
+}
+
+#[test]
+fn one_of_several_people_is_read() {
+    let [poses, trans, rate] = standing(24);
+    let (mut other, mut there) = (poses.2.clone(), trans.2.clone());
+    other[3 * 5] = 0.5;
+    there[0] = 3.0;
+    let person = |poses: &[f64], trans: &[f64]| {
+        read(&archive(&[
+            ("poses", &[2, 72], poses.to_vec()),
+            ("trans", &[2, 3], trans.to_vec()),
+            rate.clone(),
+        ]))
+        .unwrap()
+    };
+    let expected = [person(&poses.2, &trans.2), person(&other, &there)];
+    // Two people in two frames: people come first.
+    let both: [Named; 3] = [
+        ("poses", &[2, 2, 72], [poses.2.clone(), other.clone()].concat()),
+        ("trans", &[2, 2, 3], [trans.2.clone(), there.clone()].concat()),
+        rate.clone(),
+    ];
+    let named: [Named; 5] = [
+        ("person3/poses", &[2, 72], poses.2.clone()),
+        ("person3/trans", &[2, 3], trans.2.clone()),
+        ("person7/poses", &[2, 72], other.clone()),
+        ("person7/trans", &[2, 3], there.clone()),
+        rate.clone(),
+    ];
+    for arrays in [&both[..], &named[..]] {
+        let bytes = archive(arrays);
+        for (person, expected) in expected.iter().enumerate() {
+            let options = ReadOptions { person: Some(person), ..ReadOptions::default() };
+            let motion = read_motion_from_bytes(&bytes, Path::new("walk.npz"), &options).unwrap();
+            assert_eq!(motion.clips, expected.clips);
+            assert!(!motion.report.warnings.iter().any(|w| w.contains("people")));
+        }
+        let motion = read(&bytes).unwrap();
+        assert_eq!(motion.clips, expected[0].clips);
+        assert!(motion.report.warnings.iter().any(|w| w.contains("of 2 people the first was read")));
+        let options = ReadOptions { person: Some(2), ..ReadOptions::default() };
+        let error = read_motion_from_bytes(&bytes, Path::new("a.npz"), &options).unwrap_err().to_string();
+        assert!(error.contains("expected a person below 2, got 2"), "{error}");
+    }
+    // Three frames of two people: there are fewer people than frames.
+    let frame = |poses: &[f64], other: &[f64]| [&poses[..72], &other[..72]].concat();
+    let frames = [frame(&poses.2, &other), frame(&poses.2, &other), frame(&poses.2, &other)].concat();
+    let motion = read(&archive(&[("poses", &[3, 2, 72], frames), rate.clone()])).unwrap();
+    assert_eq!(motion.clips[0].frame_count(), 3);
+}
+
+#[test]
+fn without_a_place_the_lowest_joint_is_on_the_floor() {
+    let [mut poses, _, rate] = standing(24);
+    // The right leg is bent, too.
+    poses.2[72 + 3 * 5] = 1.0;
+    let motion = read(&archive(&[poses, rate])).unwrap();
+    let clip = &motion.clips[0];
+    for frame in 0..2 {
+        let joints = clip.pose(frame).model_from_joints(clip.skeleton().parents());
+        let lowest = joints.iter().zip(clip.skeleton().ends()).map(|(joint, end)| {
+            joint.translation.y.min((joint.translation + joint.rotation * end.unwrap_or_default()).y)
+        });
+        assert!(lowest.fold(f32::INFINITY, f32::min).abs() < 1e-5, "{frame}");
+    }
+    assert!(clip.pose(1).locals[0].translation.y < clip.pose(0).locals[0].translation.y - 0.05);
+    assert!(motion.report.warnings.iter().any(|w| w.contains("no place of the body")));
+}
+
+#[test]
+fn the_axes_of_the_world_count_and_those_of_cameras_are_found() {
+    let turned = |angle: f64| {
+        let mut poses = vec![0.0; 2 * 72];
+        (poses[0], poses[72]) = (angle, angle);
+        poses
+    };
+    let rate: Named = ("fps", &[], vec![30.0]);
+    let camera: [Named; 2] = [
+        ("pose", &[2, 72], turned(2.0 * FRAC_PI_2)),
+        ("trans", &[2, 3], vec![0.1, -0.2, 3.0, 0.1, -0.2, 3.0]),
+    ];
+    let world: [Named; 2] = [
+        ("pose_world", &[2, 72], turned(0.0)),
+        ("trans_world", &[2, 3], vec![0.0, 0.95, 0.0, 0.0, 0.95, 0.0]),
+    ];
+    let both = [&camera[..], &world, &[rate.clone()]].concat();
+    let motion = read(&archive(&both)).unwrap();
+    assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::Detected));
+    assert_eq!(motion.clips[0].pose(0).locals[0].translation, Vec3::Y * 0.95);
+
+    let alone = archive(&[&camera[..], &[rate]].concat());
+    let found = read(&alone).unwrap();
+    assert_eq!((found.report.up, found.report.up_found), (Axis::NegativeY, Found::Detected));
+    assert!(
+        found.report.warnings.iter().any(|w| w.contains("taken as -Y up")),
+        "{:?}",
+        found.report.warnings
+    );
+    let options = ReadOptions { up: Some(Axis::NegativeY), ..ReadOptions::default() };
+    let asked = read_motion_from_bytes(&alone, Path::new("walk.npz"), &options).unwrap();
+    assert_eq!(asked.clips, found.clips);
+    let pose = asked.clips[0].pose(0).model_from_joints(asked.clips[0].skeleton().parents());
+    let head = pose[asked.clips[0].skeleton().find("head").unwrap()].translation;
+    assert!(head.distance(Vec3::new(0.1, 0.2 + 0.58, -3.0)) < 1e-5, "{head}");
+    let options = ReadOptions { up: Some(Axis::Z), ..ReadOptions::default() };
+    let lying = read_motion_from_bytes(&alone, Path::new("walk.npz"), &options).unwrap();
+    assert!(
+        lying.report.warnings.iter().any(|w| w.contains("the person lies")),
+        "{:?}",
+        lying.report.warnings
+    );
+}
+
+#[test]
+fn components_of_hands_are_left_out_with_a_word() {
+    let [poses, trans, rate] = standing(22);
+    let part = |from: usize, to: usize| [0, 66].map(|f| &poses.2[f + from..f + to]).concat();
+    let bytes = archive(&[
+        ("global_orient", &[2, 3], part(0, 3)),
+        ("body_pose", &[2, 63], part(3, 66)),
+        ("left_hand_pose", &[2, 12], vec![0.1; 24]),
+        ("right_hand_pose", &[2, 12], vec![0.1; 24]),
+        trans.clone(),
+        rate.clone(),
+    ]);
+    let motion = read(&bytes).unwrap();
+    assert_eq!(motion.clips, read(&archive(&[poses, trans, rate])).unwrap().clips);
+    let word = "`left_hand_pose` has 12 numbers a frame, components of a PCA";
+    assert!(motion.report.warnings.iter().any(|w| w.contains(word)), "{:?}", motion.report.warnings);
+}
+
+#[test]
+fn turns_that_nobody_makes_are_told() {
+    let [mut poses, trans, rate] = standing(24);
+    poses.2[3] = 1e30;
+    let error = read(&archive(&[poses, trans, rate])).unwrap_err().to_string();
+    assert!(error.contains("poses: an angle:") && error.contains("is too large"), "{error}");
+}
+
 #[test]
 fn names_what_lacks_or_does_not_fit() {
     let cases: [(&str, Vec<Named>); 11] = [
         (
-            "poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got 3000000",
+            "poses: expected 66, 72, 156, 159 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), or three times as many of \
+             matrices, got a shape of [1, 3000000] of float64",
             vec![("poses", &[1, 3_000_000], vec![0.0; 3_000_000])],
         ),
         ("poses: expected 1 to 1048576 frames by joints, got a shape of [2000000, 1]", {
@@ -141,10 +322,13 @@ fn names_what_lacks_or_does_not_fit() {
             "has no array poses, or root_orient and pose_body; the file has betas",
             vec![("betas", &[1], vec![0.0])],
         ),
-        ("has no array trans; the file has poses", standing(24)[..1].to_vec()),
-        ("has no array mocap_framerate; the file has poses, trans", standing(24)[..2].to_vec()),
+        ("has no array mocap_framerate; the file has poses ([2, 72] of float64)", standing(24)[..1].to_vec()),
         (
-            "poses: expected 66, 72, 156 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), got 70",
+            "has no array mocap_framerate; the file has poses ([2, 72] of float64), trans ([2, 3] of float64)",
+            standing(24)[..2].to_vec(),
+        ),
+        (
+            "of matrices, got a shape of [1, 70] of float64, perhaps with hands as components of a PCA",
             vec![("poses", &[1, 70], vec![0.0; 70])],
         ),
         (
@@ -203,6 +387,16 @@ fn arrays_of_other_kinds() {
     assert_eq!((c.shape.as_slice(), c.values), ([2, 3].as_slice(), vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
     let fortran = decode(&npy("{'descr': '>f4', 'fortran_order': True, 'shape': (2, 3), }", &data)).unwrap();
     assert_eq!(fortran.values, [1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
+    let deep = decode(&npy("{'descr': '>f4', 'fortran_order': True, 'shape': (1, 3, 2), }", &data)).unwrap();
+    assert_eq!(deep.values, [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
+    let halves: Vec<u8> =
+        [0x3c00u16, 0xc000, 0x3555, 0x0001, 0x7c00].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let halves = decode(&npy("{'descr': '<f2', 'fortran_order': False, 'shape': (5,), }", &halves)).unwrap();
+    assert_eq!(halves.values, [1.0, -2.0, 0.333251953125, 5.960464477539063e-8, f64::INFINITY]);
+    assert_eq!(halves.to_string(), "[5] of float16");
+    let bytes =
+        decode(&npy("{'descr': '|i1', 'fortran_order': False, 'shape': (2,), }", &[1, 0xff])).unwrap();
+    assert_eq!(bytes.values, [1.0, -1.0]);
     let whole = decode(&npy("{'descr': '<i8', 'fortran_order': False, 'shape': (), }", &60i64.to_le_bytes()))
         .unwrap();
     assert_eq!((whole.rows(), whole.values), (1, vec![60.0]));
@@ -222,7 +416,7 @@ fn headers_cannot_ask_for_more_than_is_there() {
         ("expected a plain array", shape("'<f8'", "(4294967296, 4294967296, 4)")),
         ("expected a plain array", shape("'<f8'", &deep)),
         ("expected floating-point or whole numbers", shape("'<U2'", "(1,)")),
-        ("truncated", shape("'|O'", "(1,)")),
+        ("expected an array of numbers, got a shape of [1] of Python objects", shape("'|O'", "(1,)")),
         (
             "expected at most a header of 1024 bytes, and no more than are there, got 4294967295",
             b"\x93NUMPY\x02\x00\xff\xff\xff\xff{}".to_vec(),

@@ -13,6 +13,7 @@ use crate::error::{Fault, ObjError};
 use crate::format::limits::MAX_ELEMENTS;
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
+use crate::text;
 
 /// Reads an `.obj`; `path` is for messages. All meshes share one white material.
 ///
@@ -20,8 +21,9 @@ use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
 /// [`Error::File`] with the line for an invalid or non-finite number, an index out of range or too few corners, and
 /// without a line for a truncated file of our own or a file without vertices.
 pub(super) fn read(bytes: &[u8], path: &Path) -> crate::Result<Scene> {
+    let text = text::decode(bytes).map_err(|fault| Error::file(path, ObjError::Whole(fault)))?;
     let mut reader = Reader::default();
-    for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+    for (i, line) in text.split(|byte| *byte == b'\n').enumerate() {
         reader.line(line).map_err(|fault| Error::file(path, ObjError::Line { line: i + 1, fault }))?;
     }
     reader.finish().map_err(|fault| Error::file(path, ObjError::Whole(fault)))
@@ -271,6 +273,19 @@ mod tests {
             (x(a), &a.triangles.positions[..]),
             (vec![0.0, 1.0, 2.0, 5.0], &[[0, 1, 2], [0, 2, 3]][..])
         );
+    }
+
+    #[test]
+    fn text_is_read_in_any_encoding() {
+        let text = "o All\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+        let plain = read(text).unwrap();
+        let utf16: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for bytes in [format!("\u{feff}{text}").into_bytes(), text.replace('\n', "\r").into_bytes(), utf16] {
+            let scene = super::read(&bytes, Path::new("a.obj")).unwrap();
+            assert_eq!(scene.meshes[0].name, plain.meshes[0].name);
+            assert_eq!(scene.meshes[0].positions, plain.meshes[0].positions);
+            assert_eq!(scene.meshes[0].triangles.positions, plain.meshes[0].triangles.positions);
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 use super::Slot;
 use crate::error::FormatError;
 use crate::skeleton::Skeleton;
+use crate::text::without_mark;
 use crate::{Error, Result};
 
 /// From source joint to joint of the rig, or to `None` for a joint that is to drive nothing; both by name.
@@ -15,7 +16,7 @@ pub type Overrides = BTreeMap<String, Option<String>>;
 /// # Errors
 /// [`Error::File`] with line and column when it is not a JSON object of names and nulls.
 pub fn read_overrides(json: &str, path: &Path) -> Result<Overrides> {
-    serde_json::from_str(json).map_err(|error| Error::file(path, FormatError::Mapping(error)))
+    serde_json::from_str(without_mark(json)).map_err(|error| Error::file(path, FormatError::Mapping(error)))
 }
 
 /// Resolves the names of a mapping: source joints by slot, and source joints that are to drive nothing.

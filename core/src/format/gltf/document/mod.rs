@@ -21,6 +21,7 @@ use crate::format::gltf::Result;
 use crate::format::limits::MAX_ELEMENTS;
 use crate::format::{Fault, disk};
 use crate::math::Rotation;
+use crate::text;
 
 /// Prefixes of required extensions of which everything that a scene holds is read, as it has neither images nor lights.
 const READ_EXTENSIONS: [&str; 5] =
@@ -338,7 +339,7 @@ pub(crate) fn local_transform(node: &Node) -> Affine3A {
 /// The JSON of a file, its version and required extensions checked, and the binary chunk of a `.glb`.
 fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { split_glb(bytes)? } else { (bytes, None) };
-    let root: Root = gltf_json::deserialize::from_slice(json)?;
+    let root: Root = gltf_json::deserialize::from_slice(&text::decode(json)?)?;
     if !root.asset.version.starts_with("2.") {
         let found = format!("`{}`", root.asset.version);
         return Err(Fault::unexpected("2.x", found).into()).within("asset.version");

@@ -94,6 +94,24 @@ fn joints_move_as_their_channels_say() {
 }
 
 #[test]
+fn text_is_read_in_any_encoding() {
+    let text = "\u{feff}{\"asset\": {\"version\": \"2.0\"}}";
+    let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [text.as_bytes(), &utf16] {
+        let error = read_motion_from_bytes(bytes, Path::new("a.gltf"), &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("has no animation of nodes"), "{error}");
+    }
+}
+
+#[test]
+fn places_that_nobody_reaches_are_told() {
+    let mut far = small(&[0.5, 0.6, 0.7]);
+    far.0["nodes"][1]["translation"] = json!([4e27, 0, 0]);
+    let error = read(&far).unwrap_err().to_string();
+    assert!(error.contains("joint `Leg`, bone at rest: 4.000e25 is too large"), "{error}");
+}
+
+#[test]
 fn the_rate_is_that_of_the_keys() {
     let rate = |times: &[f32]| {
         let report = read(&small(times)).unwrap().report;

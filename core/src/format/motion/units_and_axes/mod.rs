@@ -5,13 +5,16 @@
 
 use std::sync::Arc;
 
+use super::bounds::{check_motion, jumps};
+use super::figure::{Figure, Stance};
 use super::proportions::Proportions;
 use super::raw::RawMotion;
+use super::stride::fit_root;
 use super::{Found, Motion, ReadOptions, ReadReport};
-use crate::Result;
 use crate::clip::Clip;
 use crate::skeleton::Skeleton;
 use crate::space::{Axis, Unit};
+use crate::{Error, Result};
 
 /// Assumed stature of a body of unknown unit, metres.
 const TYPICAL: f64 = 1.7;
@@ -23,12 +26,22 @@ const ORDINARY: std::ops::RangeInclusive<f64> = 1.2..=2.3;
 /// Converts a file's motion to clips in metres, +Y up.
 ///
 /// # Errors
-/// [`Invalid`](crate::Error::Invalid) when joints or motions are inconsistent.
+/// [`Invalid`](crate::Error::Invalid) when joints or motions are inconsistent, or beyond what a person can do.
 pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motion> {
+    let huge = |fault: crate::error::Fault| Error::invalid("motion", fault.to_string());
+    check_motion(&raw, None).map_err(huge)?;
     let body = Proportions::of(&raw);
     let height = body.stature(&raw);
     let (unit, unit_found) = unit(&mut raw, &body, height, options);
-    let (up, up_found) = up(&mut raw, &body, options);
+    let (mut up, mut up_found) = up(&mut raw, &body, options);
+    let mut rest_up = if raw.rest_is_upright { Axis::Y } else { up };
+    if let Some(figure) = &Figure::of(&convert_skeleton(&raw, unit, rest_up)?) {
+        (up, up_found) = stand(&mut raw, figure, up, up_found);
+        rest_up = rest_axis(&raw, figure, up);
+        fit_root(&mut raw, figure, up);
+    }
+    check_motion(&raw, Some(unit.metres())).map_err(huge)?;
+    raw.warnings.append(&mut jumps(&raw, unit.metres()));
     let mut warnings = std::mem::take(&mut raw.warnings);
     let stature = height * unit.metres();
     if unit_found != Found::File && height > 0.0 && !ORDINARY.contains(&stature) {
@@ -36,7 +49,7 @@ pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motio
     }
 
     convert_takes(&mut raw, unit, up);
-    let rest = Arc::new(convert_skeleton(&raw, unit, up)?);
+    let rest = Arc::new(convert_skeleton(&raw, unit, rest_up)?);
     let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
     let clip = |take: super::raw::Take| {
         Clip::new(take.name, Arc::clone(&rest), take.frames_per_second, take.rotations, take.tracks)
@@ -106,13 +119,54 @@ fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, 
     }
 }
 
+/// The axis up, corrected where a person who is seen to stand would come out lying or upside down; told where that cannot be
+/// decided: people do lie and stand on their heads.
+fn stand(raw: &mut RawMotion, figure: &Figure, up: Axis, found: Found) -> (Axis, Found) {
+    let Some(stance) = figure.stance(raw) else { return (up, found) };
+    let upright = stance.up.dot(up.direction());
+    let Some(seen) = stance.axis().filter(|seen| *seen != up) else { return (up, found) };
+    if found != Found::Asked && is_mistaken(raw, figure, &stance, up, seen) {
+        raw.warnings.push(format!(
+            "with {up} up the person would {}: taken as {seen} up, the axis along which it stands",
+            if upright < -0.5 { "be upside down" } else { "lie" }
+        ));
+        return (seen, Found::Detected);
+    }
+    if upright < -0.5 {
+        raw.warnings
+            .push(format!("with {up} up the person is upside down: head below feet, along the axis {seen}"));
+    } else if upright < 0.5 && stance.stands {
+        raw.warnings
+            .push(format!("with {up} up the person lies along the axis {seen} wherever it could stand"));
+    }
+    (up, found)
+}
+
+/// Whether the axis of a standing person is up, and not the one that the file, its format or its rest pose says.
+fn is_mistaken(raw: &RawMotion, figure: &Figure, stance: &Stance, said: Axis, seen: Axis) -> bool {
+    let reversed = said.direction() == -seen.direction();
+    let rests_so = || !raw.rest_is_upright && raw.up.is_none() && figure.rest_axis(raw) == Some(seen);
+    let elsewhere = || reversed || raw.rest_is_upright || stance.stands_on_floor(seen);
+    (stance.stands && rests_so()) || (!stance.lies_on_floor(said) && elsewhere())
+}
+
+/// The axis along which the rest pose stands. A rest pose that lies by a quarter turn is left to retargeting.
+fn rest_axis(raw: &RawMotion, figure: &Figure, up: Axis) -> Axis {
+    let usual = |axis: &Axis| matches!(axis, Axis::Y | Axis::Z);
+    match figure.rest_axis(raw) {
+        _ if raw.rest_is_upright => Axis::Y,
+        Some(rest) if !(usual(&rest) && usual(&up)) => rest,
+        _ => up,
+    }
+}
+
 /// The skeleton with lengths scaled to metres and root joints rotated to +Y up.
 fn convert_skeleton(raw: &RawMotion, unit: Unit, up: Axis) -> Result<Skeleton> {
     let metres = unit.metres() as f32;
     let mut locals = raw.skeleton.rest_pose().locals.clone();
     for (local, parent) in locals.iter_mut().zip(raw.skeleton.parents()) {
         local.translation *= metres;
-        if parent.is_none() && up != Axis::Y && !raw.rest_is_upright {
+        if parent.is_none() && up != Axis::Y {
             local.rotation = up.ours_from_file() * local.rotation;
             local.translation = up.vector_to_ours(local.translation);
         }

@@ -11,7 +11,7 @@ fn person(unit: f64, up: Axis) -> String {
     let v = |x: f64, y: f64, z: f64| {
         let [x, y, z] = match up {
             Axis::Y => [x, y, z],
-            Axis::Z => [x, -z, y],
+            _ => [x, -z, y],
         };
         format!("{} {} {}", x / unit, y / unit, z / unit)
     };
@@ -87,7 +87,7 @@ fn units_and_axes_are_found_from_the_body() {
 
 #[test]
 fn what_is_asked_for_wins() {
-    let options = ReadOptions { unit: Some(Unit::Inch), up: Some(Axis::Z), frames_per_second: None };
+    let options = ReadOptions { unit: Some(Unit::Inch), up: Some(Axis::Z), ..ReadOptions::default() };
     let motion = read(&person(1.0, Axis::Y), &options);
     assert_eq!((motion.report.unit_found, motion.report.up_found), (Found::Asked, Found::Asked));
     assert!(joint(&motion, "Hips").distance(Vec3::new(0.0, 0.0, -0.92 * 0.0254)) < 1e-6);
@@ -164,4 +164,116 @@ fn a_body_that_tells_nothing_is_taken_as_it_is() {
         (&json["unit"], &json["unit_found"], &json["up"]),
         (&"m".into(), &"assumed".into(), &"Y".into())
     );
+}
+
+/// A vector of ours in the axes of a file.
+fn to_file(axis: Axis, v: Vec3) -> Vec3 {
+    axis.ours_from_file().conjugate() * v
+}
+
+/// A person who squats with the feet on the spot, in centimetres, of whom the root's way is in `root` metres, and whose rest pose
+/// stands along +Y while the motion is `up`, moved by `shift` metres.
+fn squatter(up: Axis, root: f64, shift: Vec3) -> String {
+    let bone = |name: &str, [x, y, z]: [f64; 3], inner: String| {
+        format!(
+            "JOINT {name}\n{{\nOFFSET {} {} {}\nCHANNELS 1 Xrotation\n{inner}}}\n",
+            x * 100.0,
+            y * 100.0,
+            z * 100.0
+        )
+    };
+    let end = |x: f64, y: f64, z: f64| format!("End Site\n{{\nOFFSET {x} {y} {z}\n}}\n");
+    let mut body = String::new();
+    for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
+        let foot = bone(&format!("{side}Foot"), [0.0, -0.42, 0.0], end(0.0, -6.0, 18.0));
+        let shin = bone(&format!("{side}Leg"), [0.0, -0.42, 0.0], foot);
+        body += &bone(&format!("{side}UpLeg"), [0.1 * x, -0.02, 0.0], shin);
+    }
+    let mut chest = bone("Neck", [0.0, 0.25, 0.0], bone("Head", [0.0, 0.1, 0.0], end(0.0, 20.0, 0.0)));
+    for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
+        let hand = bone(&format!("{side}Hand"), [0.25 * x, 0.0, 0.0], end(18.0 * x, 0.0, 0.0));
+        let arm = bone(&format!("{side}ForeArm"), [0.28 * x, 0.0, 0.0], hand);
+        chest += &bone(&format!("{side}Arm"), [0.2 * x, 0.2, 0.0], arm);
+    }
+    body += &bone("Spine", [0.0, 0.2, 0.0], chest);
+    let mut frames = String::new();
+    for frame in 0..16 {
+        let bend: f64 = 40.0 * (f64::from(frame) / 15.0 * std::f64::consts::PI).sin();
+        let height = 0.1 + 0.84 * bend.to_radians().cos();
+        let place = to_file(up, Vec3::new(0.0, height as f32, 0.0) + shift) / root as f32;
+        let turn = match up {
+            Axis::X => "-90 0",
+            Axis::NegativeX => "90 0",
+            Axis::Y => "0 0",
+            Axis::Z => "0 90",
+            Axis::NegativeY => "0 180",
+            Axis::NegativeZ => "0 -90",
+        };
+        let leg = format!("{} {} {}", -bend, 2.0 * bend, -bend);
+        frames += &format!("{} {} {} {turn} {leg} {leg} 0 0 0 0 0 0 0 0 0\n", place.x, place.y, place.z);
+    }
+    let channels = "CHANNELS 5 Xposition Yposition Zposition Zrotation Xrotation";
+    format!(
+        "HIERARCHY\nROOT Hips\n{{\nOFFSET 0 0 0\n{channels}\n{body}}}\nMOTION\nFrames: 16\nFrame Time: 0.0666667\n{frames}"
+    )
+}
+
+#[test]
+fn a_person_is_set_upright_along_any_axis() {
+    let expected = read(&squatter(Axis::Y, 0.01, Vec3::ZERO), &ReadOptions::default());
+    assert!(expected.report.warnings.is_empty(), "{:?}", expected.report.warnings);
+    for up in Axis::ALL {
+        let text = squatter(up, 0.01, Vec3::ZERO);
+        let asked = ReadOptions { up: Some(up), ..ReadOptions::default() };
+        for (options, found) in [(ReadOptions::default(), Found::Detected), (asked, Found::Asked)] {
+            let motion = read(&text, &options);
+            assert_eq!((motion.report.up, motion.report.up_found), (up, found));
+            for name in ["Hips", "Head", "LeftFoot", "RightHand"] {
+                assert!(joint(&motion, name).distance(joint(&expected, name)) < 1e-4, "{name}, {up}");
+            }
+            assert_eq!(
+                motion.report.warnings.is_empty(),
+                found == Found::Asked || matches!(up, Axis::Y | Axis::Z)
+            );
+        }
+    }
+}
+
+#[test]
+fn who_lies_or_stands_on_the_head_is_told() {
+    let words = |text: &str, options: &ReadOptions| read(text, options).report.warnings.join("\n");
+    // A file that is upside down above a floor at zero could be of somebody who stands on the head.
+    let head_stand = words(&squatter(Axis::NegativeY, 0.01, Vec3::NEG_Y * 1.55), &ReadOptions::default());
+    assert!(head_stand.contains("with Y up the person is upside down: head below feet"), "{head_stand}");
+    let asked = ReadOptions { up: Some(Axis::Z), ..ReadOptions::default() };
+    let lying = words(&squatter(Axis::Y, 0.01, Vec3::ZERO), &asked);
+    assert!(lying.contains("with Z up the person lies along the axis Y"), "{lying}");
+}
+
+#[test]
+fn a_root_in_another_unit_than_the_bones_is_scaled() {
+    let expected = read(&squatter(Axis::Y, 0.01, Vec3::ZERO), &ReadOptions::default());
+    for (root, scale) in [(1.0, "100"), (0.1, "10"), (0.001, "0.1"), (0.0254, "2.54")] {
+        let motion = read(&squatter(Axis::Y, root, Vec3::ZERO), &ReadOptions::default());
+        let warnings = motion.report.warnings.join("\n");
+        assert!(
+            warnings.contains("the root's translation is in another unit") && warnings.contains(scale),
+            "{warnings}"
+        );
+        for frame in [0, 8] {
+            let [a, b] = [&expected, &motion].map(|m| m.clips[0].pose(frame).locals[0].translation);
+            assert!(a.distance(b) < 1e-4, "{a} {b}, {root}");
+        }
+    }
+    // No units' ratio.
+    let told = read(&squatter(Axis::Y, 0.05, Vec3::ZERO), &ReadOptions::default()).report.warnings.join("\n");
+    assert!(told.contains("the root moves 0.200 times as far"), "{told}");
+    // A root that stays in its place is that of a motion in place.
+    let mut lines: Vec<String> = squatter(Axis::Y, 0.01, Vec3::ZERO).lines().map(str::to_owned).collect();
+    for line in lines.iter_mut().rev().take(16) {
+        let (_, rest) = line.match_indices(' ').nth(2).map(|(at, _)| line.split_at(at)).unwrap();
+        *line = format!("0 0.9 0{rest}");
+    }
+    let still = read(&(lines.join("\n") + "\n"), &ReadOptions::default()).report.warnings;
+    assert!(still.is_empty(), "{still:?}");
 }

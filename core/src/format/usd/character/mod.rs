@@ -49,7 +49,7 @@ pub(super) fn scene(document: &Document, path: &Path) -> Result<Scene> {
     let skeleton = document.skeleton()?;
     let (mut scene, tokens) = still(document, &space, skeleton.as_ref())?;
     if let (Some(skeleton), false) = (&skeleton, document.animations.is_empty()) {
-        let options = ReadOptions { unit: Some(space.unit), up: Some(space.up), frames_per_second: None };
+        let options = ReadOptions { unit: Some(space.unit), up: Some(space.up), ..ReadOptions::default() };
         let mut raw = motion::of_skeleton(document, skeleton, &clip_name(path), &options)?;
         for (clip, take) in (0u32..).zip(&mut raw.takes) {
             add_morph_tracks(&mut scene, clip, std::mem::take(&mut take.weights), &tokens);

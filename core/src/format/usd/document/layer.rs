@@ -9,6 +9,7 @@ use openusd::{usda, usdc, usdz};
 use crate::error::{Fault, ParserError, Within};
 use crate::format::guard::guarded;
 use crate::format::usd::Result;
+use crate::text;
 
 /// Maximum number of prims of a layer.
 const MAX_PRIMS: usize = 1 << 20;
@@ -26,7 +27,8 @@ impl Layer {
         } else if bytes.starts_with(b"PK\x03\x04") {
             return Self::open_package(bytes);
         } else {
-            let text = str::from_utf8(bytes).map_err(|e| {
+            let text = text::decode(bytes)?;
+            let text = str::from_utf8(&text).map_err(|e| {
                 let found = format!("what is not UTF-8 from byte {}", e.valid_up_to());
                 Fault::unexpected("USD text, a crate or a package", found)
             })?;

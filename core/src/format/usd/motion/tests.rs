@@ -56,6 +56,18 @@ fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<RawMotion> {
 }
 
 #[test]
+fn text_is_read_in_any_encoding() {
+    let plain = read(OTHERS).unwrap();
+    let marked = format!("\u{feff}{OTHERS}");
+    let utf16: Vec<u8> = marked.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [marked.into_bytes(), utf16] {
+        let raw = read_with(&bytes, &ReadOptions::default()).unwrap();
+        assert_eq!(raw.takes[0].rotations, plain.takes[0].rotations);
+        assert_eq!(raw.skeleton, plain.skeleton);
+    }
+}
+
+#[test]
 fn files_of_others_are_read() {
     let raw = read(OTHERS).unwrap();
     assert_eq!(raw.skeleton.names(), ["hips", "the leg", "arm"]);
