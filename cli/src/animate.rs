@@ -8,6 +8,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, Result};
+use crate::file_set::FileSet;
 use crate::files::{check_extension, extensions, write_scene};
 use crate::motion::{MotionArguments, add_clips, rename_joints};
 
@@ -46,6 +47,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one clip, got none"));
     }
+    let files = FileSet::default().converts(&arguments.input, "-o", &arguments.output);
+    arguments.motion.add_files(files).check()?;
     let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         rename_joints(&mut scene, names)?;

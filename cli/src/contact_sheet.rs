@@ -15,6 +15,7 @@ use glam::Vec3;
 
 use crate::failure::{Failure, Result};
 use crate::figure;
+use crate::file_set::FileSet;
 use crate::files::check_extension;
 use crate::render::{Image, LitFigure, Picture, Tile, View, draw_text, text_width};
 use crate::terminal::bar;
@@ -78,6 +79,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("-o", &arguments.output, &["png"])?;
+    FileSet::default().model().writes("-o", Some(&arguments.output)).check()?;
     let model = Model::from_environment()?;
     let typical = Sex::ALL.map(|sex| Typical::of(model.prior().of(sex)));
     let people = people(usize::from(arguments.count), arguments.seed, &typical);

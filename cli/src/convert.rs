@@ -8,6 +8,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::Result;
+use crate::file_set::FileSet;
 use crate::files::{check_extension, extensions, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
@@ -35,6 +36,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("OUTPUT", &arguments.output, &extensions(Purpose::WriteScene))?;
+    FileSet::default().converts(&arguments.input, "OUTPUT", &arguments.output).check()?;
     let mut scene = read_scene(&arguments.input)?;
     if let Some(names) = arguments.joint_names {
         rename_joints(&mut scene, names)?;

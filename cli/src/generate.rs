@@ -13,6 +13,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::{Failure, InvalidValue, Result};
+use crate::file_set::FileSet;
 use crate::files::{check_extension, extensions, write_scene, write_text};
 use crate::motion::{MotionArguments, add_clips};
 use crate::request::{RequestArguments, read_request};
@@ -93,9 +94,7 @@ fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, InvalidValue> {
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("-o", &arguments.output, &extensions(Purpose::WriteScene))?;
     arguments.motion.check(&arguments.output)?;
-    if arguments.report.as_deref() == Some(&*arguments.output) {
-        return Err(Failure::usage("--report: expected a file other than that of -o"));
-    }
+    arguments.files().check()?;
     let request = arguments.request.to_request()?;
     let second = arguments.interpolate.as_deref().map(read_request).transpose()?;
     let model = Model::from_environment()?;
@@ -132,6 +131,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 impl Arguments {
+    fn files(&self) -> FileSet {
+        let files = FileSet::default()
+            .model()
+            .reads("--request", self.request.request.as_deref())
+            .reads("--interpolate", self.interpolate.as_deref())
+            .writes_scene("-o", &self.output)
+            .writes("--report", self.report.as_deref());
+        self.motion.add_files(files)
+    }
+
     /// The body of a request, or of an interpolation between two.
     fn body(&self, model: &Model, request: &Request, second: Option<&Request>) -> Result<Body> {
         let (Some(second), Some(file), Some(t)) = (second, &self.interpolate, self.at) else {

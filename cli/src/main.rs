@@ -1,7 +1,9 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
 //! One file per command; the others hold what commands share: `request` reads a request from the options, `motion` adds
-//! clips to a scene, `figure` and `render` make pictures, `files` and `terminal` read and write, `units` reads lengths.
+//! clips to a scene, `figure` and `render` make pictures, `file_set` keeps files apart, `files` and `terminal` read and
+//! write, `length` and `units` read
+//! lengths and picture sizes.
 //! Exit codes: 0 done, 1 failed, 2 bad usage. Files appear whole or not at all.
 
 mod animate;
@@ -11,9 +13,11 @@ mod convert;
 mod evaluate;
 mod failure;
 mod figure;
+mod file_set;
 mod files;
 mod generate;
 mod info;
+mod length;
 mod measure;
 mod motion;
 mod preview;

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use crate::choice;
 use crate::failure::{Failure, InvalidValue, Result};
+use crate::file_set::FileSet;
 use crate::files::{self, extension, read_text};
 
 /// Options of motion.
@@ -109,6 +110,15 @@ impl MotionArguments {
             }
         }
         Ok(())
+    }
+
+    /// Adds the files that these options name to those of the call.
+    pub(crate) fn add_files(&self, files: FileSet) -> FileSet {
+        let clips = self.clips.iter().filter(|clip| !BUILTIN.contains(&clip.as_str()));
+        clips
+            .fold(files, |files, clip| files.reads("--clip", Some(Path::new(clip))))
+            .reads("--mapping", self.mapping.as_deref())
+            .writes("--motion-report", self.motion_report.as_deref())
     }
 
     /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with

@@ -9,6 +9,7 @@ use clap::Args;
 
 use crate::failure::{Failure, Result};
 use crate::figure;
+use crate::file_set::FileSet;
 use crate::files::{check_extension, extension, extensions};
 use crate::render::{LitFigure, View, draw_views};
 use crate::request::RequestArguments;
@@ -47,6 +48,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     if arguments.views.len() > 16 {
         return Err(Failure::usage(format!("--views: expected at most 16, got {}", arguments.views.len())));
     }
+    let files = FileSet::default().model().reads("", Some(&arguments.input));
+    files.writes("-o", Some(&arguments.output)).check()?;
     let figure = match extension(&arguments.input).as_str() {
         "json" => {
             let from = RequestArguments { request: Some(arguments.input.clone()), ..Default::default() };

@@ -54,6 +54,8 @@ formats! {
     Usdz = usd::USDZ,
     /// Wavefront OBJ, meshes only.
     Obj = obj::OBJ,
+    /// USD as text or as a crate.
+    Usd = usd::USD,
 }
 
 /// What a format can store, whether or not this library reads or writes it.
@@ -213,9 +215,9 @@ mod tests {
 
     #[test]
     fn each_purpose_has_its_formats() {
-        assert_eq!(extensions(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz");
-        assert_eq!(extensions(Purpose::ReadScene), "glb gltf vrm usda usdc usdz");
-        assert_eq!(extensions(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj");
+        assert_eq!(extensions(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz usd");
+        assert_eq!(extensions(Purpose::ReadScene), "glb gltf vrm usda usdc usdz usd");
+        assert_eq!(extensions(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj usd");
         assert_eq!(extensions(Purpose::WriteScene), "glb gltf vrm usda usdc usdz obj");
     }
 
@@ -238,7 +240,7 @@ mod tests {
         assert_eq!(of("a/b.c.GLB").unwrap(), Format::Glb);
         for path in ["b.bvh", "b", "glb", "b.", "b.glb.txt", ""] {
             let message = of(path).unwrap_err().to_string();
-            let expected = "unknown file extension, expected one of .glb .gltf .vrm .usda .usdc .usdz";
+            let expected = "unknown file extension, expected one of .glb .gltf .vrm .usda .usdc .usdz .usd";
             assert!(message.ends_with(expected), "{message}");
         }
         assert_eq!(Format::of_one_file("GLB").unwrap(), Format::Glb);

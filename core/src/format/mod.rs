@@ -17,6 +17,7 @@
 //! `kind::Description` lists what the folder supports, and [`Format`] lists the descriptions: a new format is a folder
 //! and a line there.
 
+mod beside;
 mod bvh;
 mod disk;
 mod fbx;
@@ -36,6 +37,7 @@ mod write;
 pub use crate::error::{
     BvhError, Fault, FbxError, FormatError, GltfError, NpzError, ObjError, ParserError, UsdError,
 };
+pub use beside::files_beside;
 pub use disk::write_atomic;
 pub use gltf::GltfOptions;
 pub use guard::panic_becomes_error;

@@ -8,7 +8,7 @@ mod motion;
 mod weights;
 pub(crate) mod write;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use self::document::Document;
 use super::kind::{Description, Holds, Write};
@@ -40,4 +40,9 @@ pub(super) const GLTF: Description = Description {
 fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
     let document = Document::open(bytes, path)?;
     read(&document).map_err(|error| Error::file(path, error))
+}
+
+/// The files that a document refers to.
+pub(super) fn files_beside(bytes: &[u8], path: &Path) -> Vec<PathBuf> {
+    document::uris(bytes).iter().filter_map(|uri| document::uri::file(uri, path)).collect()
 }

@@ -5,7 +5,7 @@ mod document;
 mod motion;
 pub(crate) mod write;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use self::document::Document;
 use super::kind::{Description, Holds, Write};
@@ -29,6 +29,10 @@ pub(super) const USDA: Description = Description {
     write: Some(Write::Alone(|scene, _| to_usda(scene))),
 };
 
+/// Text or a crate, whichever it is; written as one or the other.
+pub(super) const USD: Description =
+    Description { ending: "usd", title: "USD, text or crate", write: None, ..USDA };
+
 pub(super) const USDC: Description = Description {
     extension: "usdc",
     title: "USD, crate",
@@ -45,5 +49,10 @@ pub(super) const USDZ: Description = Description {
 
 /// Parses a file and reads part of it.
 fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
-    Document::open(bytes).and_then(|document| read(&document)).map_err(|error| Error::file(path, error))
+    Document::open(bytes, path).and_then(|document| read(&document)).map_err(|error| Error::file(path, error))
+}
+
+/// The layers and assets that a file refers to.
+pub(super) fn files_beside(bytes: &[u8], path: &Path) -> Vec<PathBuf> {
+    document::files(bytes, path)
 }

@@ -3,7 +3,7 @@
 
 mod meshopt;
 mod offsets;
-mod uri;
+pub(crate) mod uri;
 
 use std::path::Path;
 
@@ -13,6 +13,7 @@ use gltf_json::{
     accessor::{ComponentType, Type},
     validation::{Checked, USize64},
 };
+use serde_json::Value;
 
 use self::uri::Source;
 use crate::Error;
@@ -349,6 +350,15 @@ fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
         Some(name) => Err(Fault::unsupported(name).into()).within("extensionsRequired"),
         None => Ok((root, chunk)),
     }
+}
+
+/// The URIs of buffers and images, as far as the JSON can be read.
+pub(crate) fn uris(bytes: &[u8]) -> Vec<String> {
+    let json = if bytes.starts_with(b"glTF") { split_glb(bytes).map(|(json, _)| json) } else { Ok(bytes) };
+    let json: Value = json.ok().and_then(|json| serde_json::from_slice(json).ok()).unwrap_or_default();
+    let lists = ["buffers", "images"].map(|list| json[list].as_array());
+    let uris = lists.into_iter().flatten().flatten().filter_map(|item| item["uri"].as_str());
+    uris.map(str::to_owned).collect()
 }
 
 /// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). The crate `gltf` is not used: it rejects chunks

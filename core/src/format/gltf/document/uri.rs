@@ -45,6 +45,12 @@ pub(crate) fn source(uri: &str, document: &Path) -> Result<Source> {
     Ok(Source::File(document.with_file_name("").join(relative)))
 }
 
+/// The file that a URI names, wherever it is; `None` for data in the URI itself or at another place than a disk.
+pub(crate) fn file(uri: &str, document: &Path) -> Option<PathBuf> {
+    let relative = percent_decode_str(uri).decode_utf8().ok().filter(|_| !uri.contains(':'))?;
+    Some(document.with_file_name("").join(&*relative))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! Reads characters from USD: the first animated skeleton, or else the first, with its meshes, materials and clips.
 //!
-//! One layer is read, without what it references in other files. What the writer stores beside USD's own attributes is
+//! What the writer stores beside USD's own attributes is
 //! restored: display names, joint names, extras. Characters from other programs are read in the bind pose, without scale;
 //! faces of more than four corners become triangle fans, materials that are not a UsdPreviewSurface become grey.
 
@@ -109,7 +109,11 @@ fn still(
     space: &Space,
     skeleton: Option<&Skeleton>,
 ) -> Result<(Scene, Vec<Vec<String>>)> {
-    let Document { layer, prims, meshes, .. } = document;
+    let Document { layer, prims, meshes, missing, .. } = document;
+    if let Some(missing) = missing.first() {
+        // A character has no report that could say so.
+        return Err(Fault::inconsistent(format_args!("cannot be read whole: {missing}")).into());
+    }
     let ours_from_file = space.ours_from_file();
     if meshes.is_empty() || meshes.len() > MAX_MESHES {
         let found = format!("{} in {} prims", meshes.len(), prims.len());

@@ -3,56 +3,43 @@
 use std::borrow::Cow;
 use std::fmt::Display;
 
-use openusd::sdf::{AbstractData, ChildrenKey, FieldKey, Path, SpecType, Specifier, Value};
+use openusd::sdf::{self, AbstractData, ChildrenKey, FieldKey, Path, SpecType, Specifier, Value};
 use openusd::{usda, usdc, usdz};
 
+use super::{compose, text};
 use crate::error::{Fault, ParserError, Within};
 use crate::format::guard::guarded;
 use crate::format::usd::Result;
-use crate::text;
 
 /// Maximum number of prims of a layer.
-const MAX_PRIMS: usize = 1 << 20;
-/// Maximum nesting of brackets in text: the parser recurses for each.
-const MAX_NESTING: usize = 256;
+pub(super) const MAX_PRIMS: usize = 1 << 20;
 
 /// A layer whose values are decoded on demand.
-pub(crate) struct Layer(Box<dyn AbstractData>);
+pub(crate) struct Layer(Content);
+
+/// The values of a layer.
+enum Content {
+    Parsed(Box<dyn AbstractData>),
+    Composed(Box<sdf::Layer>),
+}
 
 impl Layer {
-    /// Opens the bytes of a `.usda`, `.usdc` or `.usdz`, identified by their first bytes.
-    pub(crate) fn open(bytes: &[u8]) -> Result<Self> {
-        let data: Box<dyn AbstractData> = if bytes.starts_with(usdc::MAGIC) {
-            Box::new(guarded(|| usdc::CrateData::open(bytes.to_vec(), true))?)
-        } else if bytes.starts_with(b"PK\x03\x04") {
-            return Self::open_package(bytes);
-        } else {
-            let text = text::decode(bytes)?;
-            let text = str::from_utf8(&text).map_err(|e| {
-                let found = format!("what is not UTF-8 from byte {}", e.valid_up_to());
-                Fault::unexpected("USD text, a crate or a package", found)
-            })?;
-            if !text.trim_start().starts_with("#usda ") {
-                let start: String = text.chars().take(12).collect();
-                let found = format!("a file that starts with {start:?}");
-                return Err(Fault::unexpected("`#usda 1.0`, a crate or a package", found).into());
-            }
-            check_nesting(text)?;
-            Box::new(guarded(|| usda::parse(text))?)
-        };
-        Ok(Self(data))
+    /// Opens the bytes of a text, crate or package file, identified by their first bytes, and composes it with the layers
+    /// that it refers to in the folder of `path` or below. Returns what could not be composed, too.
+    pub(crate) fn open(bytes: &[u8], path: &std::path::Path) -> Result<(Self, Vec<String>)> {
+        let data = parse(bytes)?;
+        if !compose::has_arcs(&*data) {
+            return Ok((Self(Content::Parsed(data)), Vec::new()));
+        }
+        let composed = compose::compose(bytes, path)?;
+        Ok((Self(Content::Composed(Box::new(composed.layer))), composed.missing))
     }
 
-    fn open_package(bytes: &[u8]) -> Result<Self> {
-        let layer = guarded(|| {
-            let mut archive = usdz::Archive::from_bytes(bytes.to_vec())?;
-            let name = archive.first_layer_name().ok_or(usdz::ArchiveError::NoDefaultLayer)?;
-            archive.entry(&name)
-        })?;
-        if layer.starts_with(b"PK") {
-            return Err(Fault::unsupported("a package within a package").into());
+    fn data(&self) -> &dyn AbstractData {
+        match &self.0 {
+            Content::Parsed(data) => &**data,
+            Content::Composed(layer) => layer.data(),
         }
-        Self::open(&layer)
     }
 
     /// All active, defined prims in file order, parents first.
@@ -69,7 +56,7 @@ impl Layer {
                 let inactive = self.field(&child, FieldKey::Active.as_str())? == Some(Value::Bool(false));
                 let specifier = self.field(&child, FieldKey::Specifier.as_str())?;
                 let defined = specifier == Some(Value::Specifier(Specifier::Def));
-                if self.0.spec_type(&child) == Some(SpecType::Prim) && defined && !inactive {
+                if self.data().spec_type(&child) == Some(SpecType::Prim) && defined && !inactive {
                     open.push(child);
                 }
             }
@@ -97,7 +84,7 @@ impl Layer {
 
     /// A field of a prim, a property or the layer.
     pub(crate) fn field(&self, path: &Path, field: &str) -> Result<Option<Value>> {
-        let value = guarded(|| self.0.try_field(path, field).map(|value| value.map(Cow::into_owned)));
+        let value = guarded(|| self.data().try_field(path, field).map(|value| value.map(Cow::into_owned)));
         Ok(value?)
     }
 
@@ -191,6 +178,26 @@ impl Layer {
     }
 }
 
+/// The values of one layer: the file itself, or the first layer of a package.
+fn parse(bytes: &[u8]) -> Result<Box<dyn AbstractData>> {
+    if bytes.starts_with(usdc::MAGIC) {
+        return Ok(Box::new(guarded(|| usdc::CrateData::open(bytes.to_vec(), true))?));
+    }
+    if !bytes.starts_with(b"PK\x03\x04") {
+        let text = text::text(bytes)?;
+        return Ok(Box::new(guarded(|| usda::parse(&text))?));
+    }
+    let layer = guarded(|| {
+        let mut archive = usdz::Archive::from_bytes(bytes.to_vec())?;
+        let name = archive.first_layer_name().ok_or(usdz::ArchiveError::NoDefaultLayer)?;
+        archive.entry(&name)
+    })?;
+    if layer.starts_with(b"PK") {
+        return Err(Fault::unsupported("a package within a package").into());
+    }
+    parse(&layer)
+}
+
 /// The path of a property.
 fn property_path(prim: &Path, property: &str) -> Result<Path> {
     prim.append_property(property).map_err(|e| refused(format_args!("{prim}.{property}"), e).into())
@@ -199,43 +206,4 @@ fn property_path(prim: &Path, property: &str) -> Result<Path> {
 /// The error for a name that the parser refuses.
 fn refused(place: impl Display, error: impl Display) -> ParserError {
     ParserError::refused(format_args!("{place}: {error}"))
-}
-
-/// Refuses text with deeper nested brackets than any real layer, to protect the parser's stack.
-fn check_nesting(text: &str) -> Result<()> {
-    let (mut depth, mut line) = (0_usize, 1);
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let quote =
-            ["\"\"\"", "'''", "\"", "'", "@@@", "@"].into_iter().find(|quote| rest.starts_with(quote));
-        let skipped = match (c, quote) {
-            ('#', _) => rest.find('\n').unwrap_or(rest.len()),
-            (_, Some(quote)) => quote.len() + quoted(&rest[quote.len()..], quote),
-            _ => c.len_utf8(),
-        };
-        line += rest[..skipped].bytes().filter(|b| *b == b'\n').count();
-        rest = &rest[skipped..];
-        match c {
-            '{' | '[' | '(' => depth += 1,
-            '}' | ']' | ')' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth > MAX_NESTING {
-            return Err(Fault::too_many(format_args!("{MAX_NESTING} nested brackets"), "more").into())
-                .within(format_args!("line {line}"));
-        }
-    }
-    Ok(())
-}
-
-/// Number of bytes up to and including the closing quote.
-fn quoted(text: &str, quote: &str) -> usize {
-    let mut escaped = false;
-    for (at, c) in text.char_indices() {
-        if !escaped && text[at..].starts_with(quote) {
-            return at + quote.len();
-        }
-        escaped = !escaped && c == '\\' && quote != "@";
-    }
-    text.len()
 }

@@ -1,9 +1,13 @@
-//! A parsed file: one layer, with its prims by type.
+//! A parsed file: one layer, composed of those that it refers to, with its prims by type.
 
+mod compose;
 pub(super) mod layer;
 pub(super) mod skeleton;
+mod text;
 pub(super) mod values;
 pub(super) mod xform;
+
+use std::path::{Path as FilePath, PathBuf};
 
 use openusd::sdf::Path;
 
@@ -11,7 +15,7 @@ use self::layer::Layer;
 use self::skeleton::Skeleton;
 use crate::format::usd::Result;
 
-/// One layer; what it references in other files is not read.
+/// One layer, composed of those that it refers to in its own folder or below.
 pub(super) struct Document {
     /// Its values are decoded on demand.
     pub(super) layer: Layer,
@@ -21,12 +25,15 @@ pub(super) struct Document {
     skeletons: Vec<Path>,
     pub(super) animations: Vec<Path>,
     pub(super) meshes: Vec<Path>,
+    /// What could not be composed, one sentence each.
+    pub(super) missing: Vec<String>,
 }
 
 impl Document {
-    /// Parses the bytes of a `.usda`, `.usdc` or `.usdz`, identified by their first bytes.
-    pub(super) fn open(bytes: &[u8]) -> Result<Self> {
-        let layer = Layer::open(bytes)?;
+    /// Parses the bytes of a text, crate or package file, identified by their first bytes; `path` locates the layers that
+    /// it refers to.
+    pub(super) fn open(bytes: &[u8], path: &FilePath) -> Result<Self> {
+        let (layer, missing) = Layer::open(bytes, path)?;
         let prims = layer.prims()?;
         let (mut skeletons, mut animations, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for prim in &prims {
@@ -37,7 +44,7 @@ impl Document {
                 _ => {}
             }
         }
-        Ok(Self { layer, prims, skeletons, animations, meshes })
+        Ok(Self { layer, prims, skeletons, animations, meshes, missing })
     }
 
     /// Number of skeletons, of which one is read.
@@ -49,4 +56,9 @@ impl Document {
     pub(super) fn skeleton(&self) -> Result<Option<Skeleton>> {
         Skeleton::read(&self.layer, &self.skeletons)
     }
+}
+
+/// The layers and assets that a file is made of or refers to.
+pub(super) fn files(bytes: &[u8], path: &FilePath) -> Vec<PathBuf> {
+    compose::files(bytes, path)
 }

@@ -1,6 +1,6 @@
 //! Reads SkelAnimations of `.usda`, `.usdc` and `.usdz` (openusd.org, "UsdSkel: Schemas In-Depth").
 //!
-//! One layer is read, without what it references in other files. Transforms of the prims above the skeleton, animated or
+//! Transforms of the prims above the skeleton, animated or
 //! not, are applied to its root joints; joint scales are folded into the translations below them.
 
 mod track;
@@ -31,7 +31,8 @@ const LEAST_FRAME_RATE: f64 = 10.0;
 pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Result<RawMotion> {
     if document.animations.is_empty() {
         let prims = document.prims.len();
-        return Err(Fault::missing(format_args!("SkelAnimation among {prims} prims")).into());
+        let missing = document.missing.iter().map(|missing| format!("; {missing}")).collect::<String>();
+        return Err(Fault::missing(format_args!("SkelAnimation among {prims} prims{missing}")).into());
     }
     let skeleton = document.skeleton()?.ok_or_else(|| Fault::missing("Skeleton beside the SkelAnimation"))?;
     of_skeleton(document, &skeleton, name, options)
@@ -45,7 +46,7 @@ pub(super) fn of_skeleton(
     options: &ReadOptions,
 ) -> Result<RawMotion> {
     let (layer, Skeleton { prim, joints, above, animation: bound }) = (&document.layer, skeleton);
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = document.missing.iter().map(|m| format!("left out: {m}")).collect();
     let skeletons = document.skeleton_count();
     if skeletons > 1 {
         warnings.push(format!("{skeletons} skeletons: {prim} is read"));

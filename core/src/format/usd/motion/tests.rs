@@ -52,7 +52,7 @@ fn read(text: &str) -> Result<RawMotion> {
 }
 
 fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<RawMotion> {
-    super::read(&Document::open(bytes)?, "file", options)
+    super::read(&Document::open(bytes, std::path::Path::new("file.usd"))?, "file", options)
 }
 
 #[test]
