@@ -1,6 +1,7 @@
-//! Shared by the motion readers: options, result ([`raw`]), and detection of units and axes ([`units_and_axes`], from the
-//! body's [`proportions`]).
+//! Shared by the motion readers: options, result ([`raw`]), the pose that a skin was bound in as the rest pose ([`bind`]), and
+//! detection of units and axes ([`units_and_axes`], from the body's [`proportions`]).
 
+pub(crate) mod bind;
 mod proportions;
 pub(crate) mod raw;
 pub(crate) mod units_and_axes;
