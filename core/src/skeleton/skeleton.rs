@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Mat3A, Vec3};
 
-use super::{JointTree, Pose, model_from_joints};
+use super::{JointTree, Pose, RigJoint, model_from_joints};
 use crate::math::{RigidTransform, Rotation, unit};
 use crate::{Error, Result};
 
@@ -21,6 +21,7 @@ pub struct Skeleton {
     rest_pose: Pose,
     bind: Vec<Affine3A>,
     ends: Vec<Option<Vec3>>,
+    humanoid: Vec<(RigJoint, u32)>,
 }
 
 /// Bind matrices are not compared: they are the rest pose again, and those read from a file differ in their last bits from
@@ -60,7 +61,7 @@ impl Skeleton {
         let mut model = Vec::new();
         model_from_joints(tree.parents(), &locals, &mut model);
         let bind = model.into_iter().map(RigidTransform::to_affine).collect();
-        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
+        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends, humanoid: Vec::new() })
     }
 
     /// From the bind pose, `model_from_joint` without scale, metres, which becomes the rest pose. `bone_lengths` are the
@@ -91,7 +92,16 @@ impl Skeleton {
         let locals = model.iter().zip(tree.parents()).map(local).collect();
         let ends = bone_lengths.into_iter().map(|length| length.map(|length| Vec3::Y * length)).collect();
         let (locals, ends) = checked(&tree, locals, ends)?;
-        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends })
+        Ok(Self { tree, rest_pose: Pose { locals }, bind, ends, humanoid: Vec::new() })
+    }
+
+    /// The same skeleton with a table of the joints that are human bones, as its file states it: joint of the rig, index of the
+    /// joint. Entries without a joint are left out.
+    #[must_use]
+    pub(crate) fn with_humanoid(mut self, humanoid: Vec<(RigJoint, u32)>) -> Self {
+        self.humanoid =
+            humanoid.into_iter().filter(|(_, joint)| (*joint as usize) < self.tree.len()).collect();
+        self
     }
 
     /// The same skeleton with its joints under other names.
@@ -139,6 +149,17 @@ impl Skeleton {
     /// [`Error::Invalid`] naming the joint that is missing.
     pub fn require(&self, name: &str) -> Result<usize> {
         self.tree.require(name)
+    }
+
+    /// A joint's ancestors, from its parent upwards.
+    pub(crate) fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        let parents = self.parents();
+        std::iter::successors(parents[joint], |&p| parents[p as usize]).map(|p| p as usize)
+    }
+
+    /// The joints that the file's own table calls human bones: joint of the rig, index of the joint. Empty without a table.
+    pub fn humanoid(&self) -> &[(RigJoint, u32)] {
+        &self.humanoid
     }
 
     /// The rest pose: `parent_from_joint` of each joint, metres.

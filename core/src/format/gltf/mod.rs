@@ -3,6 +3,7 @@
 mod animation;
 mod character;
 pub(crate) mod document;
+mod humanoid;
 mod meshes;
 mod motion;
 mod weights;
@@ -10,7 +11,7 @@ pub(crate) mod write;
 
 use std::path::{Path, PathBuf};
 
-use self::document::Document;
+use self::document::{Content, Document};
 use super::kind::{Description, Holds, Write};
 use crate::Error;
 use crate::error::GltfError;
@@ -23,9 +24,11 @@ pub(super) const GLB: Description = Description {
     extension: "glb",
     title: "glTF 2.0, binary",
     holds: Holds { meshes: true, skeleton: true, clips: true },
-    read_motion: Some(|bytes, path, options| opened(bytes, path, |document| motion::read(document, options))),
-    read_scene: Some(|bytes, path| opened(bytes, path, character::scene)),
-    read_meshes: Some(|bytes, path| opened(bytes, path, meshes::scene)),
+    read_motion: Some(|bytes, path, options| {
+        opened(bytes, path, Content::Motion, |document| motion::read(document, options))
+    }),
+    read_scene: Some(|bytes, path| opened(bytes, path, Content::Everything, character::scene)),
+    read_meshes: Some(|bytes, path| opened(bytes, path, Content::Everything, meshes::scene)),
     write: Some(Write::Alone(|scene, options| to_glb_with(scene, &options.gltf))),
 };
 
@@ -37,8 +40,13 @@ pub(super) const GLTF: Description = Description {
 };
 
 /// Parses a file, whose buffers may be files beside it, and passes the document to `read`.
-fn opened<T>(bytes: &[u8], path: &Path, read: impl FnOnce(&Document) -> Result<T>) -> crate::Result<T> {
-    let document = Document::open(bytes, path)?;
+fn opened<T>(
+    bytes: &[u8],
+    path: &Path,
+    content: Content,
+    read: impl FnOnce(&Document) -> Result<T>,
+) -> crate::Result<T> {
+    let document = Document::open(bytes, path, content)?;
     read(&document).map_err(|error| Error::file(path, error))
 }
 

@@ -1,6 +1,8 @@
-//! Shared by the motion readers: options, result ([`raw`]), its [`bounds`], and detection of units and axes ([`units_and_axes`], from
-//! the body's [`proportions`], the person's [`figure`] and its [`stride`]).
+//! Shared by the motion readers: options, result ([`raw`]), its [`bounds`], the pose that a skin was bound in as the rest pose
+//! ([`bind`]), and detection of units and axes ([`units_and_axes`], from the body's [`proportions`], the person's [`figure`] and
+//! its [`stride`]).
 
+pub(crate) mod bind;
 pub(crate) mod bounds;
 mod figure;
 mod floor;

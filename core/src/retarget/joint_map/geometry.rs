@@ -31,9 +31,9 @@ struct Tree<'a> {
 /// Joints of a limb beyond this number are ignored.
 const MAX_LIMB: usize = 24;
 
-/// The source joints that were found, by slot.
-pub(super) fn find(rest: &Skeleton) -> BTreeMap<Slot, usize> {
-    let tree = Tree::new(rest);
+/// The source joints that were found, by slot. Those in `hanging`, one entry per joint, are no part of the body.
+pub(super) fn find(rest: &Skeleton, hanging: &[bool]) -> BTreeMap<Slot, usize> {
+    let tree = Tree::new(rest, hanging);
     let mut found = BTreeMap::new();
     let Some((hips, legs)) = tree.hips() else { return found };
     let limbs: Vec<_> = legs.iter().filter_map(|&leg| tree.leg(hips, leg)).collect();
@@ -67,10 +67,10 @@ struct LegChain {
 }
 
 impl<'a> Tree<'a> {
-    fn new(rest: &'a Skeleton) -> Self {
+    fn new(rest: &'a Skeleton, hanging: &[bool]) -> Self {
         let model = rest.model_from_joints();
         let mut children = vec![Vec::new(); rest.len()];
-        for (joint, parent) in rest.parents().iter().enumerate() {
+        for (joint, parent) in rest.parents().iter().enumerate().filter(|(joint, _)| !hanging[*joint]) {
             if let Some(parent) = parent {
                 children[*parent as usize].push(joint);
             }

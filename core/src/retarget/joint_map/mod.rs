@@ -3,6 +3,8 @@
 mod geometry;
 mod names;
 mod overrides;
+mod parts;
+mod programs;
 mod slot;
 #[cfg(test)]
 mod tests;
@@ -49,6 +51,8 @@ pub enum MatchedBy {
     Name,
     /// By hierarchy and rest pose.
     Geometry,
+    /// By the file's own table of human bones, as VRM has one.
+    Table,
     /// By the user's mapping.
     Mapping,
     /// By its position in the spine or the neck, which are transferred as a whole.
@@ -84,9 +88,10 @@ pub struct JointMapReport {
 }
 
 impl JointMap {
-    /// Matches the joints of a source. Names in the vocabulary with the most matches come first, then hierarchy and rest pose
-    /// for what is left; the other way round when names do not give pelvis, thighs and calves. `overrides` take precedence
-    /// over both: source joint to joint of the rig, or to `None` for a joint that is to drive nothing.
+    /// Matches the joints of a source. The file's own table of human bones comes first, if it has one, then names in the
+    /// vocabulary with the most matches, then hierarchy and rest pose for what is left; these the other way round when names do
+    /// not give pelvis, thighs and calves. `overrides` take precedence over all: source joint to joint of the rig, or to `None`
+    /// for a joint that is to drive nothing.
     ///
     /// # Errors
     /// [`Error::Invalid`] when `overrides` names a joint that does not exist (with similar names) or maps two to one, or when
@@ -101,8 +106,10 @@ impl JointMap {
         for (ours, joint) in mapped {
             builder.pairs.insert(ours, (joint, MatchedBy::Mapping));
         }
-        let (vocabulary, by_name) = names::best(source.names(), &builder.taken);
-        let by_geometry = geometry::find(source);
+        builder.add_table();
+        let (vocabulary, by_name) = names::best(source, &builder.taken);
+        let body: Vec<usize> = by_name.values().copied().chain(builder.joints()).collect();
+        let by_geometry = geometry::find(source, &parts::hanging(source, &body));
         let named = |slot: Slot| by_name.contains_key(&slot) || builder.pairs.contains_key(&slot);
         let names_first = REQUIRED.iter().all(|joint| named(Slot::Joint(*joint)));
         let mut guesses = [(by_name, MatchedBy::Name), (by_geometry, MatchedBy::Geometry)];
@@ -172,11 +179,27 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
+    /// Adds what the file's own table says of joints that are free.
+    fn add_table(&mut self) {
+        for &(ours, joint) in self.source.humanoid() {
+            let (ours, joint) = (Slot::Joint(ours), joint as usize);
+            if !self.taken[joint] && !self.pairs.contains_key(&ours) {
+                self.taken[joint] = true;
+                self.pairs.insert(ours, (joint, MatchedBy::Table));
+            }
+        }
+    }
+
     /// Adds matches whose joints are both free.
     fn add(&mut self, found: BTreeMap<Slot, usize>, by: MatchedBy) {
+        // Names beside a table may be those of another character.
+        let by_table = self.pairs.values().any(|(_, by)| *by == MatchedBy::Table);
         for (ours, joint) in found {
             // A match by geometry must not contradict the matches above it.
-            let consistent = by != MatchedBy::Geometry || self.fits(ours, joint);
+            let consistent = match by {
+                MatchedBy::Geometry => self.fits(ours, joint) && self.is_below_its_limb(ours, joint),
+                _ => !by_table || self.fits(ours, joint),
+            };
             if consistent && !self.taken[joint] && !self.pairs.contains_key(&ours) {
                 self.taken[joint] = true;
                 self.pairs.insert(ours, (joint, by));
@@ -190,14 +213,34 @@ impl Builder<'_> {
         above.side().is_none_or(|side| ours.side() != Some(side.mirrored()))
     }
 
+    /// Whether the joint is below the nearest joint of its own limb that is matched by something better than geometry.
+    fn is_below_its_limb(&self, ours: Slot, joint: usize) -> bool {
+        let Slot::Joint(RigJoint::Sided(stem, side)) = ours else { return true };
+        let limbs = [
+            [SidedJoint::Clavicle, SidedJoint::Upperarm, SidedJoint::Lowerarm, SidedJoint::Hand],
+            [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball],
+        ];
+        let stem = if stem.finger().is_some() { SidedJoint::Hand } else { stem };
+        let Some(limb) = limbs.iter().find(|limb| limb.contains(&stem)) else { return true };
+        let own = limb.iter().position(|joint| *joint == stem).unwrap_or(0);
+        let above = limb[..own].iter().rev().find_map(|near| {
+            let (at, by) = self.pairs.get(&Slot::Joint(near.on(side)))?;
+            (*by != MatchedBy::Geometry).then_some(*at)
+        });
+        above.is_none_or(|above| self.ancestors(joint).any(|j| j == above))
+    }
+
+    fn joints(&self) -> impl Iterator<Item = usize> + '_ {
+        self.pairs.values().map(|(joint, _)| *joint)
+    }
+
     fn ours_of(&self, joint: usize) -> Option<Slot> {
         self.pairs.iter().find(|(_, (j, _))| *j == joint).map(|(ours, _)| *ours)
     }
 
     /// The joint's ancestors, from its parent upwards.
     fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        let parents = self.source.parents();
-        std::iter::successors(parents[joint], |&p| parents[p as usize]).map(|p| p as usize)
+        self.source.ancestors(joint)
     }
 
     fn joint(&self, ours: RigJoint) -> Option<usize> {
@@ -214,7 +257,10 @@ impl Builder<'_> {
         let Some((top, joint)) = tops.filter_map(|ours| Some((ours, self.joint(ours)?))).next() else {
             return Default::default();
         };
-        let mut path: Vec<usize> = self.ancestors(joint).take_while(|j| Some(*j) != pelvis).collect();
+        // In some skeletons the pelvis is beside the spine, below a joint that moves both.
+        let below: Vec<usize> =
+            pelvis.into_iter().flat_map(|pelvis| self.ancestors(pelvis).chain([pelvis])).collect();
+        let mut path: Vec<usize> = self.ancestors(joint).take_while(|j| !below.contains(j)).collect();
         path.reverse();
         if NECK.contains(&top) || SPINE.contains(&top) {
             path.push(joint);

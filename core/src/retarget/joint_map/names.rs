@@ -10,25 +10,38 @@
 //! - **Biovision**: the names of the first BVH files, such as `LeftKnee`.
 //! - **SMPL**, SMPL-H, SMPL-X: names of the published models, whose `left_foot` is the ball of the foot.
 //! - **Rokoko**, **Xsens**, **3ds Max Biped**, **Daz**, **VRoid**, **Rigify**: names that these programs export.
+//! - those of `programs.rs`.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
-use super::Slot;
+use super::programs::MORE;
+use super::{Slot, parts};
 use crate::Side;
+use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::humanoid_bones;
 
 /// A vocabulary: slots with their names, the preferred name first.
 pub(super) struct Vocabulary {
     pub(super) name: &'static str,
     pub(super) rows: Vec<(Slot, Vec<String>)>,
+    /// What its names say for left and right.
+    sides: [&'static str; 2],
+}
+
+impl Vocabulary {
+    /// A name of this vocabulary without the word for its side, which is at its beginning or its end.
+    pub(super) fn without_side(&self, name: &str, side: Side) -> String {
+        let word = self.sides[side.index()];
+        name.strip_prefix(word).or_else(|| name.strip_suffix(word)).unwrap_or(name).to_owned()
+    }
 }
 
 /// Source text of a vocabulary: rows `ours=theirs|theirs…`, with `*` for the side.
-struct VocabularyText {
-    name: &'static str,
-    sides: [&'static str; 2],
-    central: &'static str,
-    sided: &'static str,
+pub(super) struct VocabularyText {
+    pub(super) name: &'static str,
+    pub(super) sides: [&'static str; 2],
+    pub(super) central: &'static str,
+    pub(super) sided: &'static str,
 }
 
 const TEXTS: [VocabularyText; 12] = [
@@ -149,8 +162,9 @@ const TEXTS: [VocabularyText; 12] = [
 /// All vocabularies, the rig's own first: of several with equally many matches the first is taken.
 pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
     let bones = humanoid_bones();
-    let column = |name, of: fn(usize) -> &'static str| Vocabulary {
+    let column = |name, sides, of: fn(usize) -> &'static str| Vocabulary {
         name,
+        sides,
         rows: bones
             .iter()
             .enumerate()
@@ -158,13 +172,13 @@ pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
             .collect(),
     };
     let mut all = vec![
-        column("native", |b| &humanoid_bones()[b].native),
-        column("Mixamo", |b| &humanoid_bones()[b].mixamo),
-        column("Unity", |b| &humanoid_bones()[b].unity),
-        column("VRM", |b| &humanoid_bones()[b].vrm),
-        column("Blender", |b| &humanoid_bones()[b].blender),
+        column("native", ["l", "r"], |b| &humanoid_bones()[b].native),
+        column("Mixamo", ["left", "right"], |b| &humanoid_bones()[b].mixamo),
+        column("Unity", ["left", "right"], |b| &humanoid_bones()[b].unity),
+        column("VRM", ["left", "right"], |b| &humanoid_bones()[b].vrm),
+        column("Blender", ["l", "r"], |b| &humanoid_bones()[b].blender),
     ];
-    all.extend(TEXTS.iter().map(VocabularyText::parse));
+    all.extend(TEXTS.iter().chain(&MORE).map(VocabularyText::parse));
     all
 });
 
@@ -182,20 +196,24 @@ impl VocabularyText {
                 rows.extend(slot.map(|slot| (slot, names)));
             }
         }
-        Vocabulary { name: self.name, rows }
+        Vocabulary { name: self.name, rows, sides: self.sides }
     }
+}
+
+/// A name without its namespace and the path before it.
+pub(super) fn local(name: &str) -> &str {
+    name.rsplit([':', '|']).next().unwrap_or(name)
 }
 
 /// A name without namespace and separators, in lower case.
 fn plain(name: &str) -> String {
-    let name = name.rsplit([':', '|']).next().unwrap_or(name);
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    local(name).chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 /// The names of a skeleton, normalised for comparison: as [`plain`], and without a prefix that most of them share, such as
 /// `Bip01 ` or `DEF-`.
 pub(super) fn comparable(names: &[String]) -> Vec<String> {
-    let local: Vec<&str> = names.iter().map(|n| n.rsplit([':', '|']).next().unwrap_or(n)).collect();
+    let local: Vec<&str> = names.iter().map(|name| local(name)).collect();
     let mut counts = BTreeMap::<&str, usize>::new();
     for name in &local {
         for (end, _) in name.match_indices(['_', ' ', '-', '.']) {
@@ -209,27 +227,33 @@ pub(super) fn comparable(names: &[String]) -> Vec<String> {
 }
 
 /// The vocabulary that matches the most joints, with its matches. Source joints in `taken` are skipped. Of two source joints
-/// with the same normalised name the first is used.
-pub(super) fn best(names: &[String], taken: &[bool]) -> (&'static str, BTreeMap<Slot, usize>) {
+/// with the same normalised name the first is used. Where names as they are do not give all limbs, they are taken apart.
+pub(super) fn best(source: &Skeleton, taken: &[bool]) -> (&'static str, BTreeMap<Slot, usize>) {
     let mut index = BTreeMap::new();
-    for (joint, name) in comparable(names).into_iter().enumerate() {
+    for (joint, name) in comparable(source.names()).into_iter().enumerate() {
         if !taken[joint] {
             index.entry(name).or_insert(joint);
         }
     }
     let mut found = ("", BTreeMap::new());
     for vocabulary in VOCABULARIES.iter() {
-        let mut used = std::collections::BTreeSet::new();
-        let mut matched = BTreeMap::new();
-        for (ours, theirs) in &vocabulary.rows {
-            let joint = theirs.iter().find_map(|name| index.get(name));
-            if let Some(&joint) = joint.filter(|j| used.insert(**j)) {
-                matched.insert(*ours, joint);
-            }
-        }
+        let matched = matched(&vocabulary.rows, &index);
         if matched.len() > found.1.len() {
             found = (vocabulary.name, matched);
         }
     }
-    found
+    if parts::is_complete(&found.1) { found } else { parts::improve(source, taken, found) }
+}
+
+/// The joints that a vocabulary's rows find in an index of names; each joint is found once.
+pub(super) fn matched<K: Ord>(rows: &[(Slot, Vec<K>)], index: &BTreeMap<K, usize>) -> BTreeMap<Slot, usize> {
+    let mut used = std::collections::BTreeSet::new();
+    let mut matched = BTreeMap::new();
+    for (ours, theirs) in rows {
+        let joint = theirs.iter().find_map(|name| index.get(name));
+        if let Some(&joint) = joint.filter(|j| used.insert(**j)) {
+            matched.insert(*ours, joint);
+        }
+    }
+    matched
 }

@@ -1,7 +1,7 @@
 //! A document as a complete [`Scene`]: skeleton, meshes and clips.
 
 mod clips;
-mod skeleton;
+pub(in crate::format::gltf) mod skeleton;
 
 use gltf_json::{
     Accessor, Index,

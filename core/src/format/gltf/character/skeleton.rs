@@ -162,7 +162,10 @@ fn bone_length(node: &Node) -> Result<Option<f32>> {
 }
 
 /// The joints of a skin: node indices and `model_from_joint` in the bind pose.
-fn skin_joints(document: &Document, skin: usize) -> Result<Vec<(usize, DAffine3)>> {
+pub(in crate::format::gltf) fn skin_joints(
+    document: &Document,
+    skin: usize,
+) -> Result<Vec<(usize, DAffine3)>> {
     let nodes = document.root.nodes.len();
     let found = document.root.skins.get(skin);
     let skin: &Skin = found.ok_or_else(|| Fault::dangling("skin", skin, document.root.skins.len()))?;

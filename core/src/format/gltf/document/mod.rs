@@ -9,7 +9,7 @@ use std::path::Path;
 
 use glam::{Affine3A, Mat4, Vec3};
 use gltf_json::{
-    Accessor, Index, Node, Root,
+    Accessor, Index, Node, Root, Value,
     accessor::{ComponentType, Type},
     validation::{Checked, USize64},
 };
@@ -28,12 +28,23 @@ use crate::text;
 const READ_EXTENSIONS: [&str; 5] =
     [meshopt::NAME, "KHR_materials_", "KHR_texture_basisu", "KHR_texture_transform", "KHR_lights_"];
 
+/// What a document is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Content {
+    /// Nodes, skins and animations; meshes and images are not looked at, so that the file may need extensions for them.
+    Motion,
+    /// All of it.
+    Everything,
+}
+
 /// A document and its data.
 pub(crate) struct Document {
     pub(crate) root: Root,
     buffers: Vec<Vec<u8>>,
     /// The decoded bytes of compressed buffer views; `None` for the others.
     decoded: Vec<Option<Vec<u8>>>,
+    /// The number of animation channels that move no node, which are left out.
+    pub(crate) idle_channels: usize,
 }
 
 /// The node hierarchy, one or more trees.
@@ -45,9 +56,9 @@ pub(crate) struct Tree {
 
 impl Document {
     /// The document of a `.glb` or `.gltf`. Buffers of a `.gltf` are looked for beside `path`.
-    pub(crate) fn open(bytes: &[u8], path: &Path) -> crate::Result<Self> {
+    pub(crate) fn open(bytes: &[u8], path: &Path, content: Content) -> crate::Result<Self> {
         let fault = |error: GltfError| Error::file(path, error);
-        let (root, chunk) = parse(bytes).map_err(fault)?;
+        let Parsed { root, chunk, idle_channels } = parse(bytes, content).map_err(fault)?;
         let mut buffers = Vec::new();
         for (i, buffer) in root.buffers.iter().enumerate() {
             if meshopt::is_placeholder(buffer) {
@@ -74,7 +85,7 @@ impl Document {
             buffers.push(data);
         }
         let decoded = meshopt::decode_views(&root, &buffers).map_err(fault)?;
-        Ok(Self { root, buffers, decoded })
+        Ok(Self { root, buffers, decoded, idle_channels })
     }
 
     /// The node hierarchy.
@@ -338,17 +349,31 @@ pub(crate) fn local_transform(node: &Node) -> Affine3A {
 }
 
 /// The JSON of a file, its version and required extensions checked, and the binary chunk of a `.glb`.
-fn parse(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
+struct Parsed<'a> {
+    root: Root,
+    chunk: Option<&'a [u8]>,
+    idle_channels: usize,
+}
+
+fn parse(bytes: &[u8], content: Content) -> Result<Parsed<'_>> {
     let (json, chunk) = if bytes.starts_with(b"glTF") { split_glb(bytes)? } else { (bytes, None) };
-    let root: Root = gltf_json::deserialize::from_slice(&text::decode(json)?)?;
+    let json = text::decode(json)?;
+    let (root, idle_channels) = match gltf_json::deserialize::from_slice::<Root>(&json) {
+        Ok(root) => (root, 0),
+        Err(error) => without_idle_channels(&json).ok_or(error)?,
+    };
     if !root.asset.version.starts_with("2.") {
         let found = format!("`{}`", root.asset.version);
         return Err(Fault::unexpected("2.x", found).into()).within("asset.version");
     }
-    let unknown = |name: &&String| !READ_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix));
+    let unknown = |name: &&String| match content {
+        // Only other codings of buffers hide what moves.
+        Content::Motion => name.contains("meshopt") && *name != meshopt::NAME,
+        Content::Everything => !READ_EXTENSIONS.iter().any(|prefix| name.starts_with(prefix)),
+    };
     match root.extensions_required.iter().find(unknown) {
         Some(name) => Err(Fault::unsupported(name).into()).within("extensionsRequired"),
-        None => Ok((root, chunk)),
+        None => Ok(Parsed { root, chunk, idle_channels }),
     }
 }
 
@@ -359,6 +384,22 @@ pub(crate) fn uris(bytes: &[u8]) -> Vec<String> {
     let lists = ["buffers", "images"].map(|list| json[list].as_array());
     let uris = lists.into_iter().flatten().flatten().filter_map(|item| item["uri"].as_str());
     uris.map(str::to_owned).collect()
+}
+
+/// A document without the animation channels that have no node, and their number: the standard allows them, the types of
+/// `gltf-json` do not. `None` if it has none or is wrong in another way.
+fn without_idle_channels(json: &[u8]) -> Option<(Root, usize)> {
+    let mut document: Value = gltf_json::deserialize::from_slice(json).ok()?;
+    let mut left_out = 0;
+    for animation in document.get_mut("animations")?.as_array_mut()? {
+        let channels = animation.get_mut("channels")?.as_array_mut()?;
+        let count = channels.len();
+        channels
+            .retain(|channel| channel.pointer("/target").is_none_or(|target| target.get("node").is_some()));
+        left_out += count - channels.len();
+    }
+    let root = gltf_json::deserialize::from_value(document).ok()?;
+    (left_out > 0).then_some((root, left_out))
 }
 
 /// The JSON and the binary chunk of a `.glb` (glTF 2.0, section 4.4). The crate `gltf` is not used: it rejects chunks

@@ -1,23 +1,28 @@
 //! Animations of glTF 2.0 files, binary or JSON (section 3.11 of the specification).
 //!
 //! Joints are the nodes listed by skins or, without a skin, the animated nodes and all their descendants; nodes between
-//! and above them are folded in. The rest pose is the nodes' own transforms, which the format calls the initial pose.
+//! and above them are folded in. The rest pose is that of the inverse bind matrices where the nodes hold another; without a skin
+//! it is the nodes' own transforms, which the format calls the initial pose.
 //! Every animation is sampled at the rate of its keys.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf_json::Node;
 use gltf_json::animation::Property;
+use gltf_json::validation::Checked;
 
 use super::animation::{self, FALLBACK_RATE, Keys, ON_FRAME, Timing, Track, unit};
+use super::character::skeleton::skin_joints;
 use super::document::{Document, Tree};
+use super::humanoid;
 use crate::error::{Fault, GltfError, Within};
 use crate::format::gltf::Result;
+use crate::format::motion::bind::rest_from_bind;
 use crate::format::motion::raw::{self, RawMotion, Recorder, Take, parent_from_joints};
 use crate::format::motion::{Found, ReadOptions};
 use crate::math::{RigidTransform, RigidTransformF64};
-use crate::skeleton::{MAX_JOINTS, Skeleton};
+use crate::skeleton::{MAX_JOINTS, RigJoint, Skeleton};
 use crate::space::{Axis, Unit};
 
 /// Limit on the nodes of a document.
@@ -31,9 +36,10 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
     }
     let tree = document.tree()?;
     let animations = tracks(document)?;
-    let rig = Rig::of(document, &tree, &animations)?;
+    let humanoid = humanoid::read(document)?;
+    let rig = Rig::of(document, &tree, &animations, &humanoid)?;
     let at_rest: Vec<Transform> = nodes.iter().map(Transform::of).collect();
-    let mut warnings = Vec::new();
+    let mut warnings = idle(document);
     let scales = |node: &usize| {
         let animated = |track: &Track| track.node == *node && track.property == Property::Scale;
         !at_rest[*node].scale.abs_diff_eq(DVec3::ONE, 1e-3) || animations.iter().flatten().any(animated)
@@ -42,7 +48,8 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
         let name = name(&nodes[node], node);
         warnings.push(format!("joint `{name}` and perhaps others are scaled: folded into translations"));
     }
-    let rest = rig.pose(&at_rest);
+    let nodes_rest = rig.pose(&at_rest);
+    let rest = rig.bound(document, &nodes_rest)?.unwrap_or(nodes_rest);
 
     let mut takes = Vec::new();
     let mut rate_found = Found::Asked;
@@ -71,7 +78,8 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
     let mut names: Vec<String> = rig.joints.iter().map(|&node| name(&nodes[node], node)).collect();
     raw::make_unique(&mut names, &mut warnings);
     let ends = vec![None; names.len()];
-    let skeleton = Skeleton::new(names, rig.parents, rest, ends).map_err(Box::new)?;
+    let humanoid = rig.humanoid(&humanoid);
+    let skeleton = Skeleton::new(names, rig.parents, rest, ends).map_err(Box::new)?.with_humanoid(humanoid);
     Ok(RawMotion {
         format: "glTF",
         skeleton,
@@ -82,6 +90,17 @@ pub(super) fn read(document: &Document, options: &ReadOptions) -> Result<RawMoti
         rate_found,
         warnings,
     })
+}
+
+/// A word on the channels that move no node.
+fn idle(document: &Document) -> Vec<String> {
+    let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
+    let pointers = channels.filter(|channel| channel.target.path == Checked::Invalid).count();
+    match document.idle_channels + pointers {
+        0 => Vec::new(),
+        1 => vec!["a channel of an animation moves no node: it is left out".to_owned()],
+        count => vec![format!("{count} channels of animations move no node: they are left out")],
+    }
 }
 
 /// The node tracks of every animation; at least one has some.
@@ -110,8 +129,13 @@ struct Rig<'a> {
 }
 
 impl<'a> Rig<'a> {
-    fn of(document: &Document, tree: &'a Tree, animations: &[Vec<Track>]) -> Result<Self> {
-        let joints = joints(document, tree, animations)?;
+    fn of(
+        document: &Document,
+        tree: &'a Tree,
+        animations: &[Vec<Track>],
+        humanoid: &[(RigJoint, usize)],
+    ) -> Result<Self> {
+        let joints = joints(document, tree, animations, humanoid)?;
         let nodes = document.root.nodes.len();
         let mut place = vec![None; nodes];
         for (joint, &node) in joints.iter().enumerate() {
@@ -130,6 +154,53 @@ impl<'a> Rig<'a> {
         }
         let order = tree.order.iter().copied().filter(|&node| needed[node]).collect();
         Ok(Self { tree, joints, parents, order })
+    }
+
+    /// The joints of a table of nodes.
+    fn humanoid(&self, nodes: &[(RigJoint, usize)]) -> Vec<(RigJoint, u32)> {
+        let place = |node: usize| self.joints.iter().position(|joint| *joint == node);
+        nodes.iter().filter_map(|(ours, node)| Some((*ours, place(*node)? as u32))).collect()
+    }
+
+    /// The pose that the skins were bound in, as `parent_from_joint`; `None` if it is the same as `rest`, or unknown.
+    fn bound(&self, document: &Document, rest: &[RigidTransform]) -> Result<Option<Vec<RigidTransform>>> {
+        let mut known: BTreeMap<usize, RigidTransformF64> = BTreeMap::new();
+        let mut skins: Vec<usize> = (0..document.root.skins.len()).collect();
+        skins.sort_by_key(|skin| std::cmp::Reverse(document.root.skins[*skin].joints.len()));
+        for skin in skins {
+            if document.root.skins[skin].inverse_bind_matrices.is_none() {
+                continue;
+            }
+            let joints = skin_joints(document, skin).within(format_args!("skins[{skin}]"))?;
+            let joints = joints.iter().map(|(node, bind)| (*node, RigidTransformF64::without_scale(bind)));
+            let joints: Vec<(usize, RigidTransformF64)> = joints.collect();
+            // Each skin is in the space of its own mesh: a shared joint leads from one to the other.
+            let into =
+                match joints.iter().find_map(|(node, bind)| Some(known.get(node)?.then(bind.inverse()))) {
+                    None if !known.is_empty() => continue,
+                    into => into,
+                };
+            for (node, bind) in joints {
+                known.entry(node).or_insert(into.map_or(bind, |into| into.then(bind)));
+            }
+        }
+        if known.is_empty() {
+            return Ok(None);
+        }
+        let world = document.world_from_nodes(self.tree);
+        let meshes =
+            document.root.nodes.iter().enumerate().filter(|(_, node)| node.skin.is_some()).map(|(i, _)| i);
+        let above = self.joints.iter().zip(&self.parents).filter(|(_, parent)| parent.is_none());
+        let spaces = meshes.chain(above.filter_map(|(joint, _)| self.tree.parents[*joint]));
+        let turn = |node: usize| {
+            RigidTransformF64::without_scale(&DAffine3::from_mat4(DMat4::from(
+                glam::Mat4::from(world[node]).as_dmat4(),
+            )))
+            .rotation
+        };
+        let turns: Vec<DQuat> = [DQuat::IDENTITY].into_iter().chain(spaces.map(turn)).collect();
+        let bind: Vec<_> = self.joints.iter().map(|node| known.get(node).copied()).collect();
+        Ok(rest_from_bind(rest, &self.parents, &bind, &turns))
     }
 
     /// `parent_from_joint` of every joint, from the local transforms of all nodes.
@@ -167,7 +238,12 @@ impl<'a> Rig<'a> {
 }
 
 /// The nodes that are joints, parents first.
-fn joints(document: &Document, tree: &Tree, animations: &[Vec<Track>]) -> Result<Vec<usize>> {
+fn joints(
+    document: &Document,
+    tree: &Tree,
+    animations: &[Vec<Track>],
+    humanoid: &[(RigJoint, usize)],
+) -> Result<Vec<usize>> {
     let nodes = document.root.nodes.len();
     let mut chosen = BTreeSet::new();
     for (i, skin) in document.root.skins.iter().enumerate() {
@@ -187,6 +263,7 @@ fn joints(document: &Document, tree: &Tree, animations: &[Vec<Track>]) -> Result
             }
         }
     }
+    chosen.extend(humanoid.iter().map(|(_, node)| *node));
     if chosen.len() > MAX_JOINTS {
         return Err(Fault::too_many(format_args!("{MAX_JOINTS} joints"), chosen.len()).into());
     }

@@ -172,7 +172,8 @@ fn convert_skeleton(raw: &RawMotion, unit: Unit, up: Axis) -> Result<Skeleton> {
         }
     }
     let ends = raw.skeleton.ends().iter().map(|end| end.map(|end| end * metres)).collect();
-    Skeleton::from_rest_pose(raw.skeleton.tree().clone(), locals, ends)
+    let skeleton = Skeleton::from_rest_pose(raw.skeleton.tree().clone(), locals, ends)?;
+    Ok(skeleton.with_humanoid(raw.skeleton.humanoid().to_vec()))
 }
 
 /// Scales all lengths to metres and rotates the root joints to +Y up.

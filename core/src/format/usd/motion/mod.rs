@@ -5,7 +5,7 @@
 
 mod track;
 
-use glam::DAffine3;
+use glam::{DAffine3, DQuat};
 use openusd::sdf::Path;
 
 use self::track::{Track, merged};
@@ -15,11 +15,12 @@ use super::document::layer::Layer;
 use super::document::skeleton::{Joints, Skeleton};
 use super::document::xform::Xforms;
 use crate::error::{Fault, UsdError, Within};
+use crate::format::motion::bind::rest_from_bind;
 use crate::format::motion::raw::{
     RawMotion, Recorder, Take, WeightTrack, frame_count, make_unique, parent_from_joints, snapped_rate,
 };
 use crate::format::motion::{Found, ReadOptions};
-use crate::math::RigidTransformF64;
+use crate::math::{RigidTransform, RigidTransformF64};
 use crate::space::{Axis, Unit};
 
 /// Maximum number of joints of an animation; those that the skeleton does not have are ignored.
@@ -55,7 +56,7 @@ pub(super) fn of_skeleton(
     let mut takes = Vec::new();
     let mut ordered: Vec<&Path> = document.animations.iter().collect();
     ordered.sort_by_key(|path| Some(*path) != bound.as_ref());
-    let rest = joints.locals(&above.at_start()?);
+    let rest = rest(layer, skeleton)?;
     for path in ordered {
         let animation = Animation::read(layer, path, joints)?;
         if animation.joints.iter().all(Option::is_none) {
@@ -64,7 +65,7 @@ pub(super) fn of_skeleton(
         }
         let title = layer.text(path, "displayName")?.or_else(|| path.name().map(String::from));
         let title = title.unwrap_or_else(|| name.to_owned());
-        takes.push(animation.take(title, joints, above, &rate, options)?);
+        takes.push(animation.take(title, (joints, &rest), above, &rate, options)?);
     }
     if takes.is_empty() {
         return Err(Fault::missing(format_args!("SkelAnimation that moves a joint of {prim}")).into());
@@ -88,6 +89,17 @@ pub(super) fn of_skeleton(
         rate_found: if options.frames_per_second.is_some() { Found::Asked } else { rate.found },
         warnings,
     })
+}
+
+/// `parent_from_joint` of every joint in the pose of `bindTransforms`, where that is another than that of `restTransforms`,
+/// which may be a frame of a motion.
+fn rest(layer: &Layer, Skeleton { prim, joints, above, .. }: &Skeleton) -> Result<Vec<RigidTransform>> {
+    let above = above.at_start()?;
+    let nodes = joints.locals(&above);
+    let bind = joints.bind_pose(layer, prim, &DAffine3::IDENTITY)?;
+    let bind: Vec<_> = bind.iter().map(|joint| Some(RigidTransformF64::without_scale(joint))).collect();
+    let turns = [RigidTransformF64::without_scale(&above).rotation, DQuat::IDENTITY];
+    Ok(rest_from_bind(&nodes, &joints.parents, &bind, &turns).unwrap_or(nodes))
 }
 
 /// Time codes per second, and the source of that value.
@@ -150,7 +162,7 @@ impl Animation {
     fn take(
         &self,
         name: String,
-        joints: &Joints,
+        (joints, rest): (&Joints, &[RigidTransform]),
         above: &Xforms,
         rate: &TimeCodes,
         options: &ReadOptions,
@@ -170,7 +182,6 @@ impl Animation {
             .map_err(UsdError::from)
             .within(format_args!("`{name}`"))?;
 
-        let rest = joints.locals(&above.at_start()?);
         let mut recorder = Recorder::new(joints.parents.len());
         let mut world: Vec<DAffine3> = Vec::with_capacity(joints.parents.len());
         let time = |frame: usize| start + frame as f64 / frames_per_second * rate.per_second;
@@ -198,7 +209,7 @@ impl Animation {
             let rigid: Vec<RigidTransformF64> = world.iter().map(RigidTransformF64::without_scale).collect();
             recorder.push(&parent_from_joints(&rigid, &joints.parents));
         }
-        let mut take = recorder.take(name, frames_per_second, &rest);
+        let mut take = recorder.take(name, frames_per_second, rest);
         let weights: Vec<Vec<[f64; 1]>> = (0..frames).map(|frame| self.weights.at(time(frame))).collect();
         let of_token = |(i, token): (usize, &String)| WeightTrack {
             token: token.clone(),
