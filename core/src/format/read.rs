@@ -84,7 +84,7 @@ pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &Re
     options.check()?;
     let (format, read) = able(path, |format| format.read_motion)?;
     if let Some(person) = options.person.filter(|person| *person > 0 && format != Format::Npz) {
-        let message = format!("a .{} has one person: expected 0, got {person}", format.ending());
+        let message = format!("a .{} has one person: expected 0, got {person}", format.extension());
         return Err(Error::request("person", message));
     }
     let raw = read(bytes, path, options)?;

@@ -31,7 +31,7 @@ pub(super) const USDA: Description = Description {
 
 /// Text or a crate, whichever it is; written as one or the other.
 pub(super) const USD: Description =
-    Description { ending: "usd", title: "USD, text or crate", write: None, ..USDA };
+    Description { extension: "usd", title: "USD, text or crate", write: None, ..USDA };
 
 pub(super) const USDC: Description = Description {
     extension: "usdc",

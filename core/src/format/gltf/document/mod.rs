@@ -13,7 +13,6 @@ use gltf_json::{
     accessor::{ComponentType, Type},
     validation::{Checked, USize64},
 };
-use serde_json::Value;
 
 use self::uri::Source;
 use crate::Error;
