@@ -228,6 +228,18 @@
 // +Z points up in the file.
 #define ANTHRONET_UP_Z 2
 
+// +X points up in the file.
+#define ANTHRONET_UP_X 3
+
+// +X points down in the file.
+#define ANTHRONET_UP_NEGATIVE_X 4
+
+// +Y points down in the file, as in the axes of cameras.
+#define ANTHRONET_UP_NEGATIVE_Y 5
+
+// +Z points down in the file.
+#define ANTHRONET_UP_NEGATIVE_Z 6
+
 // A person in the bind pose, with the report of how it was made. Immutable.
 typedef struct anthronet_body anthronet_body;
 

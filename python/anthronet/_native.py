@@ -83,6 +83,10 @@ FINGERS_REST = 2
 UP_FOUND = 0
 UP_Y = 1
 UP_Z = 2
+UP_X = 3
+UP_NEGATIVE_X = 4
+UP_NEGATIVE_Y = 5
+UP_NEGATIVE_Z = 6
 
 LogCallback = CFUNCTYPE(None, c_uint32, c_void_p, c_uint64, c_void_p)
 

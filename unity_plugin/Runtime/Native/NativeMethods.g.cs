@@ -285,6 +285,22 @@ namespace Anthronet.Native
         ///  +Z points up in the file.
         /// </summary>
         internal const uint ANTHRONET_UP_Z = 2;
+        /// <summary>
+        ///  +X points up in the file.
+        /// </summary>
+        internal const uint ANTHRONET_UP_X = 3;
+        /// <summary>
+        ///  +X points down in the file.
+        /// </summary>
+        internal const uint ANTHRONET_UP_NEGATIVE_X = 4;
+        /// <summary>
+        ///  +Y points down in the file, as in the axes of cameras.
+        /// </summary>
+        internal const uint ANTHRONET_UP_NEGATIVE_Y = 5;
+        /// <summary>
+        ///  +Z points down in the file.
+        /// </summary>
+        internal const uint ANTHRONET_UP_NEGATIVE_Z = 6;
 
 
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]

@@ -116,52 +116,58 @@ pub(super) fn person_of(people: usize, asked: Option<usize>, warnings: &mut Vec<
 /// Reads the rotations of one array of all joints, or of one array per part.
 pub(super) fn read(archive: &mut Archive, arrays: &[Named], asked: Option<usize>) -> Result<Poses> {
     for frame in [Frame::World, Frame::Unsaid, Frame::Camera] {
+        let root = find(arrays, Part::Root, frame);
         if let Some(whole) = find(arrays, Part::Whole, frame) {
-            return read_whole(archive, whole, asked);
+            let (key, array) = (&whole.name, archive.array(&whole.name)?);
+            match read_whole(key, &array, whole.frame, asked)? {
+                Some(poses) => return Ok(poses),
+                // A `pose` beside the parts is something else, such as a camera's.
+                None if root.is_some() => {}
+                None => return Err(no_model(key, &array)),
+            }
         }
-        if let Some(root) = find(arrays, Part::Root, frame) {
+        if let Some(root) = root {
             return read_parts(archive, arrays, root, asked);
         }
     }
     Err(archive.missing("poses, or root_orient and pose_body"))
 }
 
-fn read_whole(archive: &mut Archive, named: &Named, asked: Option<usize>) -> Result<Poses> {
-    let (key, array) = (&named.name, archive.array(&named.name)?);
-    if array.shape.len() < 2 {
-        check_frames(key, &array, 0)?;
-    }
+/// Reads an array of all joints; `None` where it has as many numbers as no model.
+fn read_whole(key: &str, array: &Array, frame: Frame, asked: Option<usize>) -> Result<Option<Poses>> {
     let widths: Vec<usize> =
         FORMS.iter().flat_map(|form| MODELS.map(|joints| joints.count() * form)).collect();
-    let Some(mut lead) = Lead::of(key, &array, &widths)? else {
-        check_frames(key, &array, array.shape[0])?;
-        let expected = "66, 72, 156, 159 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), or three times as many of matrices";
-        return wrong(key, expected, format_args!("a shape of {array}{}", hint(&array)));
+    let Some(mut lead) = Lead::of(key, array, &widths)? else {
+        check_frames(key, array, array.shape.first().copied().unwrap_or_default())?;
+        return Ok(None);
     };
     let mut warnings = Vec::new();
     lead.choose(asked, &mut warnings)?;
-    let width = lead.width(&array).unwrap_or_default();
+    let width = lead.width(array).unwrap_or_default();
     let mut forms = FORMS.into_iter().flat_map(|form| MODELS.map(|joints| (joints, form)));
     let Some((joints, form)) = forms.find(|(joints, form)| joints.count() * form == width) else {
-        return wrong(key, "frames by joints", format_args!("a shape of {array}"));
+        return Ok(None);
     };
     let mut rotations = Vec::with_capacity(lead.frames * joints.count());
-    for row in lead.rows(&array, width) {
+    for row in lead.rows(array, width) {
         add(row, form, &mut rotations).within(key)?;
     }
-    Ok(Poses { joints, lead, rotations, frame: named.frame, warnings })
+    Ok(Some(Poses { joints, lead, rotations, frame, warnings }))
 }
 
-/// Why an array of all joints may have another width.
-fn hint(array: &Array) -> &'static str {
-    let width = array.shape[1..].iter().product::<u64>();
-    match width {
-        69 | 207 => ", which lacks the root: an array global_orient holds it",
+/// The error for an array of all joints that has as many numbers as no model.
+fn no_model(key: &str, array: &Array) -> NpzError {
+    let expected =
+        "66, 72, 156, 159 or 165 numbers a frame (SMPL, SMPL-H, SMPL-X), or three times as many of matrices";
+    let hint = match array.shape.iter().skip(1).product::<u64>() {
+        69 | 207 => ", which lacks the pelvis",
         67..156 => {
             ", perhaps with hands as components of a PCA, which are not read: save them as axis-angle vectors"
         }
         _ => "",
-    }
+    };
+    let found = format_args!("a shape of {array}{hint}");
+    NpzError::from(Fault::unexpected(expected, found)).within(key.to_owned())
 }
 
 fn read_parts(archive: &mut Archive, arrays: &[Named], root: &Named, asked: Option<usize>) -> Result<Poses> {

@@ -245,7 +245,7 @@ fn the_axes_of_the_world_count_and_those_of_cameras_are_found() {
         ("pose_world", &[2, 72], turned(0.0)),
         ("trans_world", &[2, 3], vec![0.0, 0.95, 0.0, 0.0, 0.95, 0.0]),
     ];
-    let both = [&camera[..], &world, &[rate.clone()]].concat();
+    let both = [&camera[..], &world, std::slice::from_ref(&rate)].concat();
     let motion = read(&archive(&both)).unwrap();
     assert_eq!((motion.report.up, motion.report.up_found), (Axis::Y, Found::Detected));
     assert_eq!(motion.clips[0].pose(0).locals[0].translation, Vec3::Y * 0.95);

@@ -173,7 +173,7 @@ fn names_what_is_wrong() {
         let error = read(&OTHERS.replacen(from, to, 1)).unwrap_err().to_string();
         assert!(error.contains(expected), "{to}: {error}");
     }
-    let error = read_with(b"\xff\xfe", &ReadOptions::default()).unwrap_err().to_string();
+    let error = read_with(b"\xff\xfd", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.contains("not UTF-8 from byte 0"), "{error}");
 }
 
