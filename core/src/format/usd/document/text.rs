@@ -10,12 +10,10 @@ const MAX_NESTING: usize = 256;
 
 /// The text of a layer without a byte order mark, checked to begin as USD text does.
 pub(super) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        let found = "text in UTF-16, by its byte order mark";
-        return Err(Fault::unexpected("USD text in UTF-8", found).into());
-    }
     let text = str::from_utf8(bytes).map_err(|e| {
-        let found = format!("what is not UTF-8 from byte {}", e.valid_up_to());
+        let utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+        let why = if utf16 { ": UTF-16, by its byte order mark" } else { "" };
+        let found = format!("what is not UTF-8 from byte {}{why}", e.valid_up_to());
         Fault::unexpected("USD text, a crate or a package", found)
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
