@@ -134,7 +134,7 @@ class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, 
     filter_glob: StringProperty(
         name="File Filter",
         description="Files that are shown",
-        default="*.bvh;*.fbx;*.glb;*.gltf;*.npz;*.usda;*.usdc;*.usdz",
+        default="*.bvh;*.fbx;*.glb;*.gltf;*.npz;*.usd;*.usda;*.usdc;*.usdz",
         options={"HIDDEN"},
     )
     clip: IntProperty(name="Clip", description="Index of the clip in the file. The first one has 0", min=0)

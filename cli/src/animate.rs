@@ -22,13 +22,13 @@ use crate::motion::{MotionArguments, add_clips, rename_joints};
     anthronet animate anna.glb --clip dance.bvh --clip wave.fbx --fps 24 -o moves.usdc\n  \
     anthronet animate anna.glb --clip run.bvh --in-place --loop --motion-report - -o run.glb")]
 pub(crate) struct Arguments {
-    /// The character: a .glb, .gltf, .usda, .usdc or .usdz with AnthroNet's skeleton.
+    /// The character: a .glb, .gltf, .usd, .usda, .usdc or .usdz with AnthroNet's skeleton.
     input: PathBuf,
 
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write; its extension chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
+    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 

@@ -19,10 +19,10 @@ use crate::motion::rename_joints;
     anthronet convert anna.usdc anna.vrm\n  \
     anthronet convert anna.glb unity.glb --joint-names unity")]
 pub(crate) struct Arguments {
-    /// The character: .glb, .gltf, .vrm, .usda, .usdc or .usdz.
+    /// The character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz.
     input: PathBuf,
 
-    /// The file to write; its extension chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
+    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
     output: PathBuf,
 
     /// Naming scheme of the joints; by default that of the input.

@@ -35,7 +35,7 @@ use crate::failure::Result;
 
 /// Type tape measures, get a person: rigged, skinned, ready for Blender, Unity or the web.
 ///
-/// Lengths are metres unless a unit follows: 1.7, 170cm, 1700mm, 67in, 5ft7in. `anthronet info` lists the
+/// Lengths are metres unless a unit follows: 1.7, 170cm, 1700mm, 1m70, 67in, 5ft7in. `anthronet info` lists the
 /// measures; one without its side, such as arm_length, sets both sides. Measures that are not given are predicted from
 /// those that are.
 #[derive(Parser)]

@@ -16,11 +16,12 @@ use crate::terminal::print;
 /// Measure a character file: all measures, mass and body mass index.
 ///
 /// FILE was made by AnthroNet, at any level of detail, or has a body with the same vertex order. The body is measured in
-/// its bind pose.
+/// its bind pose. Another unit than metres or other axes than +Y up are detected, and a warning says so; a mirrored body or
+/// one whose vertices are in another order is refused.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  anthronet measure anna.glb\n  anthronet measure anna.obj --json")]
 pub(crate) struct Arguments {
-    /// The file: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
+    /// The file: .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .obj.
     file: PathBuf,
 
     /// Print JSON: {"measures": [{"name", "value"}, …], "mass_kg", "volume_m3", "bmi"}; metres, kilograms.
@@ -41,6 +42,9 @@ impl Measured {
     /// Measures the body of a file: its first mesh, at any level of detail.
     fn of_file(model: &Model, path: &Path) -> Result<Self> {
         let file = measure_file(model, path)?;
+        for warning in &file.warnings {
+            eprintln!("warning: {}: {warning}", path.display());
+        }
         let Mass { volume_m3, mass_kg, bmi } = file.mass;
         let named = MeasureId::all().zip(file.measurements);
         let measures = named.map(|(id, value)| NamedValue { name: id.name(), value }).collect();

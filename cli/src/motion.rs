@@ -23,7 +23,7 @@ use crate::files::{self, extension, read_text};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Motion")]
 pub(crate) struct MotionArguments {
-    /// A motion file (.bvh .fbx .npz .glb .gltf .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
+    /// A motion file (.bvh .fbx .npz .glb .gltf .usd .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
     /// range_of_motion. May be repeated; glTF and USD store several clips.
     #[arg(long = "clip", value_name = "FILE|NAME")]
     pub(crate) clips: Vec<String>,

@@ -27,7 +27,7 @@ const QUALITY: usize = 256;
     anthronet preview request.json -o person.png --size 2400x1000\n  \
     anthronet preview anna.glb -o head.png --views face,face-three-quarter,profile")]
 pub(crate) struct Arguments {
-    /// A .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj, or a .json request to generate first.
+    /// A .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .obj, or a .json request to generate first.
     input: PathBuf,
 
     /// The picture to write, a .png.

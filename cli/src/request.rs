@@ -20,8 +20,8 @@ pub(crate) struct RequestArguments {
     #[arg(long, value_parser = choice::sex())]
     pub(crate) sex: Option<Sex>,
 
-    /// A measure, such as height=1.7, height=170cm, waist_circumference=28in or height=5ft7in; a plain number is
-    /// metres. May be repeated. `anthronet info` lists the names.
+    /// A measure, such as height=1.7, height=170cm, waist_circumference="38 1/2 in" or height=5ft7in; a plain number
+    /// is metres, a hyphen as in 5'-7" is no sign. May be repeated. `anthronet info` lists the names.
     #[arg(short = 'm', long = "measure", value_name = "NAME=VALUE", value_parser = parse_measure)]
     pub(crate) measures: Vec<(String, f64)>,
 

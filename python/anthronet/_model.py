@@ -153,7 +153,7 @@ class Model(Owner):
         return self._measured(lib.anthronet_measure_mesh, array.ctypes.data, count, stride, number)
 
     def measure_file(self, path: Path) -> Measured:
-        """Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order.
+        """Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order.
 
         Raises:
             FileError: there is no such body in it.

@@ -212,7 +212,7 @@ def open_motion(
     up: Optional[str] = None,
     frames_per_second: Optional[float] = None,
 ) -> Motion:
-    """Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc or .usdz.
+    """Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usd, .usda, .usdc or .usdz.
 
     Args:
         path: of the file.

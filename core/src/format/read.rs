@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::{Error, Result};
 
 /// Reads a character: joints and bind pose, meshes with texture coordinates and weights, materials, extras, clips. From
-/// `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usda`, `.usdc`, `.usdz`. Metres, +Y up. The scene validates.
+/// `.glb`, `.gltf` with the buffers beside it, `.vrm`, `.usd`, `.usda`, `.usdc`, `.usdz`. Metres, +Y up. The scene validates.
 ///
 /// Ignored is what a scene cannot represent: images, cameras, lights, animation of anything but the skeleton and the morph
 /// targets. glTF faces are triangles; USD faces are kept. Files written by this library come back in the model's vertex
@@ -63,7 +63,8 @@ pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sc
 }
 
 /// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
-/// `.usda`, `.usdc`, `.usdz`. The extension chooses the format, the first bytes confirm it.
+/// `.usd`, `.usda`, `.usdc`, `.usdz`, these with the layers in their folder. The extension chooses the format, the
+/// first bytes confirm it.
 ///
 /// # Errors
 /// [`Error::File`] for an unsupported extension or invalid content, [`Error::Io`] when reading fails, [`Error::Request`]

@@ -7,6 +7,7 @@
 use glam::{DVec3, Vec3};
 
 use super::generator::Model;
+use super::placement::Placement;
 use super::shape_space::ShapeSpace;
 use crate::math::least_squares;
 use crate::measure::{Mass, MeasureId, Measurements, enclosed_volume};
@@ -29,11 +30,13 @@ pub struct MeasuredMesh {
     pub measurements: Measurements,
     /// Volume, mass and body mass index.
     pub mass: Mass,
+    /// How the vertices were read where they are not in metres, +Y up and +Z forward; one sentence each.
+    pub warnings: Vec<String>,
 }
 
 impl Model {
     /// Measures a body in its bind pose at any level of detail: `vertices` are those of the body without accessories, in
-    /// model order, metres, +Y up; where it stands does not matter.
+    /// model order, metres, +Y up, +Z forward; where it stands does not matter.
     ///
     /// LODs 0 and 1 are measured exactly, whatever their shape. For LODs 2 and 3 the nearest body of the model is measured:
     /// exact to 0.05 mm for bodies of this model, an estimate for others.
@@ -46,7 +49,26 @@ impl Model {
         let measurements = self.definitions().read_all(at);
         let volume = enclosed_volume(at, &self.character().subdivision().refined().quads);
         let mass = Mass::new(volume, measurements[MeasureId::HEIGHT.index()]);
-        Ok(MeasuredMesh { lod, measurements, mass })
+        Ok(MeasuredMesh { lod, measurements, mass, warnings: Vec::new() })
+    }
+
+    /// [`measure_mesh`](Self::measure_mesh) for vertices that come back from elsewhere: in another unit or other axes, which
+    /// the body itself tells, and [`MeasuredMesh::warnings`] then says.
+    ///
+    /// # Errors
+    /// As [`measure_mesh`](Self::measure_mesh), but for unit and axes only where they cannot be told.
+    pub(crate) fn measure_foreign_mesh(&self, vertices: &[Vec3]) -> Result<MeasuredMesh> {
+        let lod = self.level_of(vertices)?;
+        if let Some(i) = vertices.iter().position(|p| !p.is_finite()) {
+            let message = format!("vertex {i}: expected finite numbers, got {}", vertices[i]);
+            return Err(Error::invalid("body", message));
+        }
+        let placement = self.placement(lod, vertices)?;
+        if placement == Placement::OURS {
+            return self.measure_mesh(vertices);
+        }
+        let measured = self.measure_mesh(&placement.apply(vertices))?;
+        Ok(MeasuredMesh { warnings: vec![format!("read with {placement}")], ..measured })
     }
 
     /// Reconstructs the vertices of LOD 0 (metres, model order) from those of any level of detail, which are as for
@@ -54,21 +76,22 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a number of vertices that no level has, for a coordinate that is not finite or beyond a
-    /// kilometre, and for vertices that do not determine a body.
+    /// kilometre, for vertices in another order, mirrored, or in another unit or other axes, and for vertices that do not
+    /// determine a body.
     pub fn surface_of_mesh(&self, vertices: &[Vec3]) -> Result<(Lod, Vec<DVec3>)> {
         /// Largest coordinate, metres: far beyond any character, and still precise enough to be measured.
         const MAX_COORDINATE: f32 = 1_000.0;
         let character = self.character();
-        let Some(lod) = Lod::ALL.into_iter().find(|lod| character.vertex_count(*lod) == vertices.len())
-        else {
-            let known = Lod::ALL.map(|lod| character.vertex_count(lod).to_string()).join(", ");
-            let message = format!("expected {known} vertices in the model's order, got {}", vertices.len());
-            return Err(Error::invalid("body", message));
-        };
+        let lod = self.level_of(vertices)?;
         if let Some(i) =
             vertices.iter().position(|p| !(p.abs().max_element() <= MAX_COORDINATE && p.is_finite()))
         {
             let message = format!("vertex {i}: expected metres below {MAX_COORDINATE}, got {}", vertices[i]);
+            return Err(Error::invalid("body", message));
+        }
+        let placement = self.placement(lod, vertices)?;
+        if placement != Placement::OURS {
+            let message = format!("expected metres, +Y up and +Z forward, got {placement}");
             return Err(Error::invalid("body", message));
         }
         let points: Vec<DVec3> = vertices.iter().map(|p| p.as_dvec3()).collect();
@@ -81,6 +104,16 @@ impl Model {
         let cage =
             cage.ok_or_else(|| Error::invalid("body", "its vertices determine no body of this model"))?;
         Ok((lod, subdivision.refine_f64(&cage)?))
+    }
+
+    /// The level of detail that has so many vertices.
+    fn level_of(&self, vertices: &[Vec3]) -> Result<Lod> {
+        let count = |lod| self.character().vertex_count(lod);
+        Lod::ALL.into_iter().find(|lod| count(*lod) == vertices.len()).ok_or_else(|| {
+            let known = Lod::ALL.map(|lod| count(lod).to_string()).join(", ");
+            let message = format!("expected {known} vertices in the model's order, got {}", vertices.len());
+            Error::invalid("body", message)
+        })
     }
 }
 

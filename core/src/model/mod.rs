@@ -6,6 +6,7 @@ mod generator;
 mod info;
 mod measured_mesh;
 mod measured_space;
+mod placement;
 mod shape_space;
 
 pub use character::{Accessory, Character, ReducedMesh};

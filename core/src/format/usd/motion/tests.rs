@@ -185,3 +185,100 @@ fn text_that_ends_too_early_is_an_error() {
         assert!(read(&whole[..end]).is_err(), "{end}");
     }
 }
+
+/// A root layer with this metadata, and this below it.
+fn layer(metadata: &str, prims: &str) -> String {
+    let own = "defaultPrim = \"World\"\n metersPerUnit = 0.01\n timeCodesPerSecond = 48\n upAxis = \"Z\"\n";
+    format!("#usda 1.0\n(\n {own}{metadata}\n)\n{prims}")
+}
+
+/// The motion of `root.usda` beside these files.
+fn composed(root: &str, others: &[(&str, &str)]) -> crate::Result<crate::format::Motion> {
+    let folder = tempfile::tempdir().unwrap();
+    let below = folder.path().join("scene");
+    std::fs::create_dir_all(below.join("parts")).unwrap();
+    for (name, text) in others {
+        std::fs::write(below.join(name), text).unwrap();
+    }
+    std::fs::write(below.join("root.usda"), root).unwrap();
+    crate::format::read_motion(below.join("root.usda"), &ReadOptions::default())
+}
+
+#[test]
+fn layers_in_the_folder_are_composed() {
+    let whole = OTHERS.replacen("(\n", "(\n defaultPrim = \"World\"\n", 1);
+    let plain = composed(&whole, &[]).unwrap();
+    assert!(plain.report.warnings.is_empty());
+    let start = whole.find("            def SkelAnimation").unwrap();
+    let animation = &whole[start..whole.rfind("        }\n    }").unwrap()];
+    let without = whole.replace(animation, "");
+    let over = format!("over \"World\" {{ over \"Man\" {{ over \"Skel\" {{\n{animation}\n}} }} }}");
+    let variant = without.replace(
+        "        def Skeleton \"Skel\" (",
+        "        def Skeleton \"Skel\" (\n variants = { string move = \"walk\" }\n prepend variantSets = \"move\"\n",
+    );
+    let set =
+        format!("            variantSet \"move\" = {{\n\"none\" {{ }}\n\"walk\" {{\n{animation}\n}} }}\n");
+    let at = variant.rfind("        }\n    }").unwrap();
+    let variant = format!("{}{set}{}", &variant[..at], &variant[at..]);
+    let arc =
+        |arc: &str| layer("", &format!("def \"World\" (\n prepend {arc} = @./parts/whole.usda@\n) {{ }}\n"));
+    for (name, root, others) in [
+        ("reference", arc("references"), vec![("parts/whole.usda", &whole)]),
+        ("payload", arc("payload"), vec![("parts/whole.usda", &whole)]),
+        (
+            "sublayers",
+            layer("subLayers = [@parts/move.usd@, @./parts/body.usda@]", ""),
+            vec![("parts/move.usd", &layer("", &over)), ("parts/body.usda", &without)],
+        ),
+        ("variant", variant, vec![]),
+    ] {
+        let motion =
+            composed(&root, &others.iter().map(|(n, t)| (*n, t.as_str())).collect::<Vec<_>>()).unwrap();
+        assert!(motion.report.warnings.is_empty(), "{name}: {:?}", motion.report.warnings);
+        assert_eq!(motion.clips.len(), plain.clips.len(), "{name}");
+        for (clip, expected) in motion.clips.iter().zip(&plain.clips) {
+            assert_eq!(clip.name(), expected.name(), "{name}");
+            assert_eq!(clip.frame_count(), expected.frame_count(), "{name}");
+            for frame in 0..clip.frame_count() {
+                assert_eq!(clip.rotations(frame), expected.rotations(frame), "{name}");
+            }
+            assert_eq!(clip.translations(), expected.translations(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_is_not_composed_is_named() {
+    let reference =
+        |asset: &str| layer("", &format!("def \"World\" (\n prepend references = @{asset}@\n) {{ }}\n"));
+    let error = composed(&reference("./missing.usda"), &[]).unwrap_err().to_string();
+    assert!(error.contains("SkelAnimation") && error.contains("missing.usda"), "{error}");
+    // A file elsewhere is not read, not even with a path that leads there.
+    let whole = OTHERS.replacen("(\n", "(\n defaultPrim = \"World\"\n", 1);
+    let error =
+        composed(&reference("../outside.usda"), &[("../outside.usda", &whole)]).unwrap_err().to_string();
+    assert!(error.contains("outside.usda") && error.contains("outside the folder"), "{error}");
+    let more = whole.replace("def Xform \"World\"\n", "def Xform \"World\" (\n references = @set.usda@\n)\n");
+    let motion = composed(&more, &[]).unwrap();
+    assert!(motion.report.warnings[0].contains("left out") && motion.report.warnings[0].contains("set.usda"));
+    // A layer that refers to itself, and one that is damaged.
+    let error = composed(&reference("./root.usda"), &[]).unwrap_err().to_string();
+    assert!(error.contains("SkelAnimation"), "{error}");
+    let error = composed(&reference("./b.usda"), &[("b.usda", "#usda 1.0\n)")]).unwrap_err().to_string();
+    assert!(error.contains("b.usda"), "{error}");
+}
+
+#[test]
+fn both_kinds_are_read_as_usd_and_names_of_files_beside_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.usd");
+    std::fs::write(&file, format!("\u{feff}{OTHERS}")).unwrap();
+    assert_eq!(crate::format::read_motion(&file, &ReadOptions::default()).unwrap().clips.len(), 1);
+    let texture = "def \"A\" { asset skin = @./skin.png@ }\n";
+    std::fs::write(&file, layer("subLayers = [@b.usda@]", texture)).unwrap();
+    std::fs::write(folder.path().join("b.usda"), layer("", "")).unwrap();
+    let beside = crate::format::files_beside(&file);
+    let names: Vec<_> = beside.iter().filter_map(|path| path.file_name()?.to_str()).collect();
+    assert_eq!(names, ["b.usda", "skin.png"]);
+}
