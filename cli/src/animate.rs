@@ -27,7 +27,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
+    /// The file to write; its ending chooses the format: .glb, .gltf, .vrma (skeleton and clips), .usda, .usdc or
+    /// .usdz.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 

@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::choice;
 use crate::failure::Result;
-use crate::files::{check_ending, endings, holds_motion, write_scene};
+use crate::files::{check_ending, endings, holds_meshes, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
 /// Convert a character file to another format, with its skin, joints, materials and clips.
@@ -21,7 +21,8 @@ pub(crate) struct Arguments {
     /// The character: .glb, .gltf, .vrm, .usda, .usdc or .usdz.
     input: PathBuf,
 
-    /// The file to write; its ending chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
+    /// The file to write; its ending chooses the format: .glb, .gltf, .vrm, .vrma (skeleton and clips), .usda,
+    /// .usdc, .usdz or .obj.
     output: PathBuf,
 
     /// Naming scheme of the joints; by default that of the input.
@@ -45,6 +46,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             arguments.output.display()
         );
         scene.clear_clips();
+    }
+    if !holds_meshes(&arguments.output) {
+        eprintln!("warning: {}: the format holds no meshes, they are left out", arguments.output.display());
     }
     write_scene(&scene, &arguments.output, arguments.compress)
 }
