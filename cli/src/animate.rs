@@ -28,7 +28,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .usda, .usdc or .usdz.
+    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .vrma (skeleton and
+    /// clips), .usda, .usdc or .usdz.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: PathBuf,
 

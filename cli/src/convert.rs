@@ -9,7 +9,7 @@ use clap::Args;
 use crate::choice;
 use crate::failure::Result;
 use crate::file_set::FileSet;
-use crate::files::{check_extension, extensions, holds_motion, write_scene};
+use crate::files::{check_extension, extensions, holds_meshes, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
 /// Convert a character file to another format, with its skin, joints, materials and clips.
@@ -22,7 +22,8 @@ pub(crate) struct Arguments {
     /// The character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz.
     input: PathBuf,
 
-    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .vrm, .usda, .usdc, .usdz or .obj.
+    /// The file to write, also the input itself; its extension chooses the format: .glb, .gltf, .vrm, .vrma (skeleton
+    /// and clips), .usda, .usdc, .usdz or .obj.
     output: PathBuf,
 
     /// Naming scheme of the joints; by default that of the input.
@@ -47,6 +48,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             arguments.output.display()
         );
         scene.clear_clips();
+    }
+    if !holds_meshes(&arguments.output) {
+        eprintln!("warning: {}: the format holds no meshes, they are left out", arguments.output.display());
     }
     write_scene(&scene, &arguments.output, arguments.compress)
 }

@@ -20,6 +20,11 @@ pub(crate) fn holds_motion(path: &Path) -> bool {
     Format::of_path(path, Purpose::WriteScene).is_ok_and(|format| format.holds().clips)
 }
 
+/// Whether a file of this path's extension holds meshes when it is written.
+pub(crate) fn holds_meshes(path: &Path) -> bool {
+    Format::of_path(path, Purpose::WriteScene).is_ok_and(|format| format.holds().meshes)
+}
+
 /// The file extension of a path in lower case, without its dot; empty for none.
 pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()

@@ -61,8 +61,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     motion: MotionArguments,
 
-    /// The file to write; its extension chooses the format: .glb, .gltf (with a .bin beside it), .vrm, .usda, .usdc,
-    /// .usdz or .obj.
+    /// The file to write; its extension chooses the format: .glb, .gltf (with a .bin beside it), .vrm, .vrma
+    /// (skeleton and clips), .usda, .usdc, .usdz or .obj.
     #[arg(short = 'o', long = "output", value_name = "FILE", help_heading = "File")]
     output: PathBuf,
 

@@ -23,7 +23,7 @@ use crate::files::{self, extension, read_text};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Motion")]
 pub(crate) struct MotionArguments {
-    /// A motion file (.bvh .fbx .npz .glb .gltf .usd .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
+    /// A motion file (.bvh .fbx .npz .glb .gltf .vrm .vrma .usd .usda .usdc .usdz) or a built-in clip: idle, walk, wave, squat,
     /// range_of_motion. May be repeated; glTF and USD store several clips.
     #[arg(long = "clip", value_name = "FILE|NAME")]
     pub(crate) clips: Vec<String>,
@@ -213,6 +213,12 @@ fn load(
     }
     let (clips, report) = retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?)
         .map_err(|error| Failure::in_file(path, error))?;
+    if let Some(reference) = &report.reference {
+        let retarget::ReferenceFrame { clip, frame } = reference;
+        eprintln!(
+            "warning: {source}: the rest pose is no standing person: frame {frame} of `{clip}`, which stands, was taken for it"
+        );
+    }
     if !report.joints.unmatched.is_empty() {
         let joints = report.joints.unmatched.join(", ");
         eprintln!("note: {source}: unmatched joints: {joints}");

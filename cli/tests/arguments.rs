@@ -50,7 +50,7 @@ fn the_output_is_required_and_its_extension_known() {
         let path = folder.path().join(name);
         let path = path.to_string_lossy();
         anthronet(&["generate", "-o", &path], &[])
-            .fails(2, &[name, ".glb .gltf .vrm .usda .usdc .usdz .obj"]);
+            .fails(2, &[name, ".glb .gltf .vrm .vrma .usda .usdc .usdz .obj"]);
         anthronet(&["contact-sheet", "-o", &path], &[]).fails(2, &[name, ".png"]);
     }
     assert!(files_in(folder.path()).is_empty());

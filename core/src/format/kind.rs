@@ -46,6 +46,8 @@ formats! {
     Gltf = gltf::GLTF,
     /// VRM 1.0, a humanoid character as a binary glTF.
     Vrm = vrm::VRM,
+    /// VRM Animation 1.0, the motion of a humanoid as a binary glTF.
+    Vrma = vrm::VRMA,
     /// USD as text.
     Usda = usd::USDA,
     /// USD as a crate file, its binary encoding.
@@ -215,17 +217,19 @@ mod tests {
 
     #[test]
     fn each_purpose_has_its_formats() {
-        assert_eq!(extensions(Purpose::ReadMotion), "bvh npz fbx glb gltf usda usdc usdz usd");
+        assert_eq!(extensions(Purpose::ReadMotion), "bvh npz fbx glb gltf vrm vrma usda usdc usdz usd");
         assert_eq!(extensions(Purpose::ReadScene), "glb gltf vrm usda usdc usdz usd");
         assert_eq!(extensions(Purpose::ReadMeshes), "glb gltf vrm usda usdc usdz obj usd");
-        assert_eq!(extensions(Purpose::WriteScene), "glb gltf vrm usda usdc usdz obj");
+        assert_eq!(extensions(Purpose::WriteScene), "glb gltf vrm vrma usda usdc usdz obj");
     }
 
     #[test]
     fn what_a_format_is_used_for_it_has_words_for() {
         for format in Format::ALL.iter().copied() {
             let holds = format.holds();
-            assert!(holds.clips || !format.serves(Purpose::ReadMotion), "{format:?}");
+            // Other programs leave animations in `.vrm` files, which are to hold none.
+            let moves = holds.clips || format == Format::Vrm;
+            assert!(moves || !format.serves(Purpose::ReadMotion), "{format:?}");
             assert!(holds.skeleton || !format.serves(Purpose::ReadScene), "{format:?}");
             assert!(holds.meshes || !format.serves(Purpose::ReadMeshes), "{format:?}");
             assert_eq!(format.extension(), format!("{format:?}").to_lowercase());
@@ -245,9 +249,8 @@ mod tests {
         }
         assert_eq!(Format::of_one_file("GLB").unwrap(), Format::Glb);
         let message = Format::of_one_file("gltf").unwrap_err().to_string();
-        assert!(
-            message
-                .contains("expected one of glb vrm usda usdc usdz obj, which are one file each, got `gltf`")
-        );
+        assert!(message.contains(
+            "expected one of glb vrm vrma usda usdc usdz obj, which are one file each, got `gltf`"
+        ));
     }
 }

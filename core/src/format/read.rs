@@ -142,7 +142,7 @@ mod tests {
         for message in [
             read_scene("missing.obj").unwrap_err().to_string(),
             read_meshes("missing.bvh").unwrap_err().to_string(),
-            read_motion("missing.vrm", &ReadOptions::default()).unwrap_err().to_string(),
+            read_motion("missing.obj", &ReadOptions::default()).unwrap_err().to_string(),
         ] {
             assert!(message.contains("unknown file extension, expected one of ."), "{message}");
         }

@@ -19,8 +19,8 @@ pub struct WriteOptions {
     pub vrm: VrmMeta,
 }
 
-/// Writes a scene in the format of the path's extension: `.glb`, `.gltf` with a `.bin` beside it, `.vrm`, `.usda`, `.usdc`,
-/// `.usdz`, or `.obj`, which gets the meshes only.
+/// Writes a scene in the format of the path's extension: `.glb`, `.gltf` with a `.bin` beside it, `.vrm`, `.vrma`, which
+/// gets the skeleton and the clips only, `.usda`, `.usdc`, `.usdz`, or `.obj`, which gets the meshes only.
 ///
 /// # Errors
 /// [`Error::File`] for an unsupported extension, [`Error::Invalid`] for a scene that does not [validate](Scene::validate)

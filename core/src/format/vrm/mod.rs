@@ -2,27 +2,38 @@
 //! are the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
 //!
 //! Our bind pose is the T-pose facing +Z that the specification requires. Models contain no animation: a scene with clips
-//! is refused, as motion belongs in a separate `.glb`.
+//! is refused, as motion belongs in a separate `.vrma` (`VRMC_vrm_animation-1.0`): skeleton and clips with the same table of
+//! bones, without meshes. Motion of a `.vrm` is read all the same, as other programs leave animations in it.
 
 use gltf_json::{Value, extensions};
 use serde_json::{Map, json};
 
 use super::gltf;
-use super::gltf::write::{GltfOptions, document, finished, glb};
+use super::gltf::write::{GltfOptions, document, document_of_motion, finished, glb};
 use super::kind::{Description, Holds, Write};
 use crate::scene::Scene;
 use crate::skeleton::humanoid::{HumanoidBone, humanoid_bones};
 use crate::{Error, Result};
 
 const NAME: &str = "VRMC_vrm";
+const ANIMATION: &str = "VRMC_vrm_animation";
 
-/// Read as the glTF that it is, except for motion, which VRM cannot store.
+/// Read as the glTF that it is.
 pub(super) const VRM: Description = Description {
     extension: "vrm",
     title: "VRM 1.0",
     holds: Holds { meshes: true, skeleton: true, clips: false },
-    read_motion: None,
     write: Some(Write::Alone(|scene, options| to_vrm(scene, &options.vrm))),
+    ..gltf::GLB
+};
+
+pub(super) const VRMA: Description = Description {
+    ending: "vrma",
+    title: "VRM Animation 1.0",
+    holds: Holds { meshes: false, skeleton: true, clips: true },
+    read_scene: None,
+    read_meshes: None,
+    write: Some(Write::Alone(|scene, _| to_vrma(scene))),
     ..gltf::GLB
 };
 
@@ -75,6 +86,24 @@ pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
     let others = Map::from_iter([(NAME.to_owned(), extension)]);
     builder.root.extensions = Some(extensions::Root { others });
     builder.root.extensions_used.push(NAME.into());
+    glb(finished(builder, &GltfOptions::default(), None)?)
+}
+
+/// The skeleton and the clips of a scene as VRM Animation 1.0, of which players use the first clip. Joints may be named in any
+/// vocabulary of [`JointNames`](crate::skeleton::humanoid::JointNames).
+///
+/// # Errors
+/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene without a clip or without a bone that VRM
+/// requires.
+pub fn to_vrma(scene: &Scene) -> Result<Vec<u8>> {
+    if scene.clips.is_empty() {
+        return Err(Error::invalid("clip", "a .vrma holds a motion, expected at least one clip, got none"));
+    }
+    let mut builder = document_of_motion(scene)?;
+    let extension = json!({"specVersion": "1.0", "humanoid": {"humanBones": human_bones(scene)?}});
+    let others = Map::from_iter([(ANIMATION.to_owned(), extension)]);
+    builder.root.extensions = Some(extensions::Root { others });
+    builder.root.extensions_used.push(ANIMATION.into());
     glb(finished(builder, &GltfOptions::default(), None)?)
 }
 

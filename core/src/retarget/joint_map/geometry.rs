@@ -192,22 +192,30 @@ impl<'a> Tree<'a> {
     fn trunk(&self, hips: usize, legs: &[usize; 2], left: Vec3, leg: f32, found: &mut BTreeMap<Slot, usize>) {
         let centre = self.positions[hips];
         let branches: Vec<usize> = self.below(hips).into_iter().filter(|j| !legs.contains(j)).collect();
-        // The chest: the deepest joint with an arm on each side.
-        let arms = branches.iter().rev().find_map(|&chest| {
+        // The chest: the deepest joint with an arm on each side. Where several have chains there, hair and skirts are among them:
+        // arms hang from the upper trunk, below the head, and are not much longer than a leg.
+        let pairs = branches.iter().rev().filter_map(|&chest| {
             let side = |sign: f32| {
-                self.children[chest].iter().copied().filter(|c| !legs.contains(c)).find(|&child| {
-                    let path = self.longest(child);
+                let sideways = self.children[chest].iter().copied().filter(|child| {
+                    let path = self.longest(*child);
                     let end = path.last().map_or(centre, |&j| self.positions[j]);
                     let aside = sign * (end - centre).dot(left) > 0.12 * leg;
-                    aside && self.length(&path) > 0.5 * leg && path.len() >= 3
-                })
+                    !legs.contains(child) && aside && self.length(&path) > 0.5 * leg && path.len() >= 3
+                });
+                // The first of them, but rather not one that is too long.
+                sideways.min_by_key(|&child| self.is_longer_than_arms(child, leg))
             };
             Some((chest, side(1.0)?, side(-1.0)?))
         });
-        let Some((chest, left_arm, right_arm)) = arms else { return };
-        if chest == hips {
+        let pairs: Vec<_> = pairs.filter(|(chest, ..)| *chest != hips).collect();
+        let top = branches.iter().map(|&j| self.positions[j].y).fold(centre.y, f32::max);
+        let likely = |&&(chest, left, right): &&(usize, usize, usize)| {
+            let high = self.positions[chest].y > centre.y + 0.3 * (top - centre.y);
+            high && [left, right].iter().all(|&arm| !self.is_longer_than_arms(arm, leg))
+        };
+        let Some(&(chest, left_arm, right_arm)) = pairs.iter().rev().find(likely).or(pairs.first()) else {
             return;
-        }
+        };
         for (branch, side) in [(left_arm, Side::Left), (right_arm, Side::Right)] {
             self.arm(branch, side, leg, left.cross(Vec3::Y), found);
         }
@@ -236,6 +244,11 @@ impl<'a> Tree<'a> {
         if head > 0 {
             found.insert(RigJoint::Neck01.into(), path[0]);
         }
+    }
+
+    /// Whether a branch is longer than an arm with its fingers, measured by the length of thigh and calf together.
+    fn is_longer_than_arms(&self, branch: usize, leg: f32) -> bool {
+        self.length(&self.longest(branch)) > 1.5 * leg
     }
 
     fn arm(&self, branch: usize, side: Side, leg: f32, front: Vec3, found: &mut BTreeMap<Slot, usize>) {

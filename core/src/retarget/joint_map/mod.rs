@@ -5,6 +5,8 @@ mod names;
 mod overrides;
 mod parts;
 mod programs;
+#[cfg(test)]
+mod rigs;
 mod slot;
 #[cfg(test)]
 mod tests;
@@ -31,8 +33,9 @@ const REQUIRED: [RigJoint; 5] = [
     SidedJoint::Calf.on(Side::Right),
 ];
 /// The spine and the neck of the rig, upwards.
-pub(super) const SPINE: [RigJoint; 3] = [RigJoint::Spine01, RigJoint::Spine02, RigJoint::Spine03];
-pub(super) const NECK: [RigJoint; 1] = [RigJoint::Neck01];
+pub(in crate::retarget) const SPINE: [RigJoint; 3] =
+    [RigJoint::Spine01, RigJoint::Spine02, RigJoint::Spine03];
+pub(in crate::retarget) const NECK: [RigJoint; 1] = [RigJoint::Neck01];
 
 /// The joints of a source skeleton that drive those of the rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +157,20 @@ impl JointMap {
     /// Every source joint that drives something.
     pub(super) fn joints(&self) -> impl Iterator<Item = usize> + '_ {
         self.sources.values().chain(&self.spine).chain(&self.neck).copied()
+    }
+
+    /// How the source joint of this joint of the rig was found.
+    pub(super) fn matched_by(&self, ours: RigJoint) -> Option<MatchedBy> {
+        self.report.matched.iter().find(|found| found.target == ours.name()).map(|found| found.by)
+    }
+
+    /// Name of a source joint that drives a joint of the rig.
+    pub(super) fn name_of(&self, ours: RigJoint) -> Option<&str> {
+        self.report
+            .matched
+            .iter()
+            .find(|found| found.target == ours.name())
+            .map(|found| found.source.as_str())
     }
 
     /// The source's joints between pelvis and neck, upwards.

@@ -10,10 +10,12 @@
 //! - **Biovision**: the names of the first BVH files, such as `LeftKnee`.
 //! - **SMPL**, SMPL-H, SMPL-X: names of the published models, whose `left_foot` is the ball of the foot.
 //! - **Rokoko**, **Xsens**, **3ds Max Biped**, **Daz**, **VRoid**, **Rigify**: names that these programs export.
-//! - those of `programs.rs`.
+//!
+//! Those of `programs.rs` are compared where these do not give all limbs.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
+use super::parts::Key;
 use super::programs::MORE;
 use super::{Slot, parts};
 use crate::Side;
@@ -24,16 +26,8 @@ use crate::skeleton::humanoid::humanoid_bones;
 pub(super) struct Vocabulary {
     pub(super) name: &'static str,
     pub(super) rows: Vec<(Slot, Vec<String>)>,
-    /// What its names say for left and right.
-    sides: [&'static str; 2],
-}
-
-impl Vocabulary {
-    /// A name of this vocabulary without the word for its side, which is at its beginning or its end.
-    pub(super) fn without_side(&self, name: &str, side: Side) -> String {
-        let word = self.sides[side.index()];
-        name.strip_prefix(word).or_else(|| name.strip_suffix(word)).unwrap_or(name).to_owned()
-    }
+    /// The same taken apart.
+    pub(super) keys: Vec<(Slot, Vec<Key>)>,
 }
 
 /// Source text of a vocabulary: rows `ours=theirs|theirs…`, with `*` for the side.
@@ -159,44 +153,51 @@ const TEXTS: [VocabularyText; 12] = [
     },
 ];
 
-/// All vocabularies, the rig's own first: of several with equally many matches the first is taken.
+/// The vocabularies of this file, the rig's own first: of several with equally many matches the first is taken.
 pub(super) static VOCABULARIES: LazyLock<Vec<Vocabulary>> = LazyLock::new(|| {
     let bones = humanoid_bones();
-    let column = |name, sides, of: fn(usize) -> &'static str| Vocabulary {
-        name,
-        sides,
-        rows: bones
-            .iter()
-            .enumerate()
-            .map(|(b, bone)| (Slot::Joint(bone.joint), vec![plain(of(b))]))
-            .collect(),
+    let column = |name, of: fn(usize) -> &'static str| {
+        let slots = || bones.iter().enumerate().map(|(b, bone)| (Slot::Joint(bone.joint), of(b)));
+        Vocabulary {
+            name,
+            rows: slots().map(|(slot, name)| (slot, vec![plain(name)])).collect(),
+            keys: slots().map(|(slot, name)| (slot, parts::keys_of_name(name))).collect(),
+        }
     };
     let mut all = vec![
-        column("native", ["l", "r"], |b| &humanoid_bones()[b].native),
-        column("Mixamo", ["left", "right"], |b| &humanoid_bones()[b].mixamo),
-        column("Unity", ["left", "right"], |b| &humanoid_bones()[b].unity),
-        column("VRM", ["left", "right"], |b| &humanoid_bones()[b].vrm),
-        column("Blender", ["l", "r"], |b| &humanoid_bones()[b].blender),
+        column("native", |b| &humanoid_bones()[b].native),
+        column("Mixamo", |b| &humanoid_bones()[b].mixamo),
+        column("Unity", |b| &humanoid_bones()[b].unity),
+        column("VRM", |b| &humanoid_bones()[b].vrm),
+        column("Blender", |b| &humanoid_bones()[b].blender),
     ];
-    all.extend(TEXTS.iter().chain(&MORE).map(VocabularyText::parse));
+    all.extend(TEXTS.iter().map(VocabularyText::parse));
     all
 });
 
+/// Vocabularies of more programs, for names that those do not match whole.
+pub(super) static MORE_VOCABULARIES: LazyLock<Vec<Vocabulary>> =
+    LazyLock::new(|| MORE.iter().map(VocabularyText::parse).collect());
+
 impl VocabularyText {
     fn parse(&self) -> Vocabulary {
-        let mut rows = Vec::new();
-        for (ours, theirs) in self.central.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
-            let names = theirs.split('|').map(str::to_owned).collect();
-            rows.extend(Slot::from_name(ours).map(|slot| (slot, names)));
+        let (mut rows, mut keys) = (Vec::new(), Vec::new());
+        let mut add = |slot: Option<Slot>, theirs: &str, word: &str| {
+            let Some(slot) = slot else { return };
+            rows.push((slot, theirs.split('|').map(|name| name.replace('*', word)).collect()));
+            let stems = theirs.split('|').map(|name| name.replace('*', ""));
+            keys.push((slot, stems.flat_map(|stem| parts::keys_of_stem(slot.side(), &stem)).collect()));
+        };
+        let pairs = |text: &'static str| text.split_ascii_whitespace().filter_map(|row| row.split_once('='));
+        for (ours, theirs) in pairs(self.central) {
+            add(Slot::from_name(ours), theirs, "");
         }
         for (word, side) in self.sides.iter().zip(Side::ALL) {
-            for (ours, theirs) in self.sided.split_ascii_whitespace().filter_map(|row| row.split_once('=')) {
-                let names = theirs.split('|').map(|name| name.replace('*', word)).collect();
-                let slot = Slot::from_name(&[ours, side.joint_suffix()].concat());
-                rows.extend(slot.map(|slot| (slot, names)));
+            for (ours, theirs) in pairs(self.sided) {
+                add(Slot::from_name(&[ours, side.joint_suffix()].concat()), theirs, word);
             }
         }
-        Vocabulary { name: self.name, rows, sides: self.sides }
+        Vocabulary { name: self.name, rows, keys }
     }
 }
 

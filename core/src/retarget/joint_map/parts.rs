@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Slot;
-use super::names::{self, VOCABULARIES, Vocabulary, local};
+use super::names::{self, MORE_VOCABULARIES, VOCABULARIES, local};
 use crate::Side;
 use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 
@@ -49,10 +49,12 @@ const HANGING: [&str; 32] = [
 /// The least number of names that share a prefix or suffix.
 const SHARED: usize = 8;
 /// The most prefixes and the most suffixes that are tried.
-const TRIED: usize = 6;
+const TRIED: usize = 8;
+/// The most words of one of them.
+const LONGEST: usize = 7;
 
 /// A side, if the name tells one, and what the name says otherwise.
-type Key = (Option<Side>, String);
+pub(super) type Key = (Option<Side>, String);
 
 /// What is taken off one end of the names.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +172,7 @@ fn keys(words: &[String]) -> Vec<Key> {
 fn shared(names: &[Vec<String>], take: fn(&[String], usize) -> &[String]) -> Vec<Affix> {
     let mut counts = BTreeMap::<&[String], usize>::new();
     for words in names {
-        for count in 1..words.len().min(5) {
+        for count in 1..words.len().min(LONGEST + 1) {
             let affix = take(words, count);
             if affix.iter().all(|word| side_of(word).is_none()) {
                 *counts.entry(affix).or_default() += 1;
@@ -214,19 +216,17 @@ fn index<'a>(names: impl Iterator<Item = (usize, &'a [String])>) -> BTreeMap<Key
     ranked.into_iter().map(|(key, (_, joint))| (key, joint)).collect()
 }
 
-/// A vocabulary's keys, by slot.
-fn keys_of(vocabulary: &Vocabulary) -> Vec<(Slot, Vec<Key>)> {
-    let key = |slot: &Slot, name: &String| {
-        let stem = match slot.side() {
-            None => name.clone(),
-            Some(side) => vocabulary.without_side(name, side),
-        };
-        joined(&words(&stem).iter().map(String::as_str).collect::<Vec<_>>()).map(|stem| (slot.side(), stem))
-    };
-    let of_row = |(slot, names): &(Slot, Vec<String>)| {
-        (*slot, names.iter().flat_map(|name| key(slot, name)).collect())
-    };
-    vocabulary.rows.iter().map(of_row).collect()
+/// Keys of a vocabulary's name that tells its side itself.
+pub(super) fn keys_of_name(name: &str) -> Vec<Key> {
+    let mut keys = keys(&words(name));
+    keys.truncate(2);
+    keys
+}
+
+/// Keys of a vocabulary's name from which the side has been left out.
+pub(super) fn keys_of_stem(side: Option<Side>, stem: &str) -> [Key; 2] {
+    let words = words(stem);
+    joined(&words.iter().map(String::as_str).collect::<Vec<_>>()).map(|stem| (side, stem))
 }
 
 /// The joints of the main chains: slot, and the slot that must be above it.
@@ -280,7 +280,7 @@ pub(super) fn improve(
 ) -> (&'static str, BTreeMap<Slot, usize>) {
     let names: Vec<Vec<String>> = source.names().iter().map(|name| words(name)).collect();
     let free = || (0..names.len()).filter(|joint| !taken[*joint]);
-    let vocabularies: Vec<_> = VOCABULARIES.iter().map(|v| (v.name, keys_of(v))).collect();
+    let vocabularies = || VOCABULARIES.iter().chain(MORE_VOCABULARIES.iter());
     let prefixes = shared(&names, |words, count| &words[..count]);
     let suffixes = shared(&names, |words, count| &words[words.len() - count..]);
     let mut best = score(source, &found.1);
@@ -289,11 +289,11 @@ pub(super) fn improve(
         for suffix in &suffixes {
             let index = index(free().map(|joint| (joint, bare(&names[joint], prefix, suffix))));
             let mut better = false;
-            for (name, rows) in &vocabularies {
-                let matched = names::matched(rows, &index);
+            for vocabulary in vocabularies() {
+                let matched = names::matched(&vocabulary.keys, &index);
                 let reached = score(source, &matched);
                 if reached > best {
-                    (best, found, better) = (reached, (*name, matched), true);
+                    (best, found, better) = (reached, (vocabulary.name, matched), true);
                 }
             }
             if better {
@@ -301,17 +301,12 @@ pub(super) fn improve(
             }
         }
     }
-    fill(source, &vocabularies, &form, &mut found.1);
+    fill(source, &form, &mut found.1);
     found
 }
 
 /// Adds joints of the main chains under any vocabulary's word where they fit between those found.
-fn fill(
-    source: &Skeleton,
-    vocabularies: &[(&'static str, Vec<(Slot, Vec<Key>)>)],
-    index: &BTreeMap<Key, usize>,
-    found: &mut BTreeMap<Slot, usize>,
-) {
+fn fill(source: &Skeleton, index: &BTreeMap<Key, usize>, found: &mut BTreeMap<Slot, usize>) {
     let chains = chains();
     let mut used: BTreeSet<usize> = found.values().copied().collect();
     for (slot, above) in &chains {
@@ -325,7 +320,11 @@ fn fill(
                 chains.iter().filter(|(_, over)| *over == Some(*slot)).filter_map(|(s, _)| found.get(s));
             over && next.all(|under| is_below(source, *under, joint))
         };
-        let rows = vocabularies.iter().flat_map(|(_, rows)| rows).filter(|(ours, _)| ours == slot);
+        let rows = VOCABULARIES
+            .iter()
+            .chain(MORE_VOCABULARIES.iter())
+            .flat_map(|vocabulary| &vocabulary.keys)
+            .filter(|(ours, _)| ours == slot);
         let mut joints = rows.flat_map(|(_, keys)| keys).filter_map(|key| index.get(key).copied());
         if let Some(joint) = joints.find(|joint| !used.contains(joint) && fits(*joint)) {
             used.insert(joint);

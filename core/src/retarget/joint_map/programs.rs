@@ -1,4 +1,4 @@
-//! Tables of joint names of more programs, compared after those of `names.rs`.
+//! Tables of joint names of more programs, compared where those of `names.rs` do not give all limbs.
 //!
 //! **MMD** moves the trunk from two joints side by side, upper and lower body; the legs are below the latter. **Vicon** and the
 //! last table stand for many: names of anatomy, and those that people choose who build a rig by hand.

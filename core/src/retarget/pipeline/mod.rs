@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
+use super::reference_pose::{self, ReferenceFrame};
 use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error, worst_jump};
 use crate::clip::{Clip, in_place, looped, resample};
 use crate::pose::limits::{JointLimits, TwistHistory};
@@ -76,6 +77,9 @@ pub struct RetargetReport {
     pub joints: JointMapReport,
     /// Scale of root motion and heights: the ratio of leg lengths, unless given.
     pub scale: f32,
+    /// The frame that was taken for the rest pose, as that is no standing person; `None` for the file's rest pose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference: Option<ReferenceFrame>,
     /// One per clip.
     pub clips: Vec<ClipReport>,
 }
@@ -84,16 +88,17 @@ pub struct RetargetReport {
 /// [`Body::skeleton`](crate::Body::skeleton).
 ///
 /// # Errors
-/// [`Error::Invalid`] without clips; as [`JointMap::find`], [`Retargeter::new`], [`resample`] and [`plant`].
+/// [`Error::Invalid`] without clips, when neither the rest pose nor a frame is a person that stands, or when names of left and right
+/// contradict the shape of the body; as [`JointMap::find`], [`Retargeter::new`], [`resample`] and [`plant`].
 pub fn retarget(
     sources: &[Clip],
     target: &Arc<Skeleton>,
     options: &RetargetOptions,
 ) -> Result<(Vec<Clip>, RetargetReport)> {
-    let Some(first) = sources.first() else {
+    if sources.is_empty() {
         return Err(Error::invalid("motion", "expected at least one clip, got none"));
-    };
-    let mut pipeline = Pipeline::new(first.skeleton(), target, options)?;
+    }
+    let mut pipeline = Pipeline::new(&sources.iter().collect::<Vec<_>>(), target, options)?;
     let clips = sources.iter().map(|source| pipeline.run(source)).collect::<Result<_>>()?;
     Ok((clips, pipeline.report))
 }
@@ -107,12 +112,12 @@ pub fn retarget_clip(
     target: &Arc<Skeleton>,
     options: &RetargetOptions,
 ) -> Result<(Clip, RetargetReport)> {
-    let mut pipeline = Pipeline::new(source.skeleton(), target, options)?;
+    let mut pipeline = Pipeline::new(&[source], target, options)?;
     let clip = pipeline.run(source)?;
     Ok((clip, pipeline.report))
 }
 
-/// Everything that depends on the two skeletons alone, and the report.
+/// Everything that is the same for all clips, and the report.
 struct Pipeline<'a> {
     target: &'a Arc<Skeleton>,
     options: &'a RetargetOptions,
@@ -124,12 +129,20 @@ struct Pipeline<'a> {
 }
 
 impl<'a> Pipeline<'a> {
-    fn new(source: &Skeleton, target: &'a Arc<Skeleton>, options: &'a RetargetOptions) -> Result<Self> {
-        let map = JointMap::find(source, &options.mapping)?;
-        let retargeter = Retargeter::new(source, target.clone(), &map, &options.transfer)?;
+    /// For clips that share a skeleton, at least one.
+    fn new(sources: &[&Clip], target: &'a Arc<Skeleton>, options: &'a RetargetOptions) -> Result<Self> {
+        let map = reference_pose::find_map(sources, &options.mapping)?;
+        let reference = reference_pose::find(&map, sources)?;
+        let (source, target_rest) = (sources[0].skeleton(), target.clone());
+        let retargeter =
+            Retargeter::with_reference(source, reference.model, target_rest, &map, &options.transfer)?;
         let limits = JointLimits::of_rig(target);
-        let report =
-            RetargetReport { joints: map.report().clone(), scale: retargeter.scale(), clips: Vec::new() };
+        let report = RetargetReport {
+            joints: map.report().clone(),
+            scale: retargeter.scale(),
+            reference: reference.frame,
+            clips: Vec::new(),
+        };
         Ok(Self { target, options, map, retargeter, limits, report })
     }
 

@@ -174,6 +174,18 @@ impl Retargeter {
         map: &JointMap,
         options: &TransferOptions,
     ) -> Result<Self> {
+        Self::with_reference(source, source.model_from_joints(), target, map, options)
+    }
+
+    /// As [`new`](Self::new), with a pose of the source, `model_from_joint`, that is compared with the target's rest pose in
+    /// place of the source's own.
+    pub(super) fn with_reference(
+        source: &Skeleton,
+        source_rest: Vec<RigidTransform>,
+        target: Arc<Skeleton>,
+        map: &JointMap,
+        options: &TransferOptions,
+    ) -> Result<Self> {
         if let Some(scale) = options.scale.filter(|s| !(s.is_finite() && *s > 0.0)) {
             return Err(Error::invalid("retargeting", format!("expected a positive scale, got {scale}")));
         }
@@ -183,12 +195,7 @@ impl Retargeter {
                 "the joint map is of another skeleton than the source",
             ));
         }
-        let joints = Joints {
-            source,
-            target: &target,
-            source_rest: source.model_from_joints(),
-            target_rest: target.model_from_joints(),
-        };
+        let joints = Joints { source, target: &target, source_rest, target_rest: target.model_from_joints() };
         let reference = Reference::new(map, &joints);
         let pelvis = PelvisMotion::new(&reference, options.scale)
             .ok_or_else(|| Error::invalid("retargeting", "the target has no pelvis with thighs"))?;

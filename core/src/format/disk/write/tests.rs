@@ -48,9 +48,9 @@ fn refuses_missing_folders_folders_and_extensions_by_name() {
     for (name, expected) in [
         ("missing/a.glb", "cannot create: entity not found"),
         ("dir.glb", "is a folder"),
-        ("a.stl", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
-        ("a", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
-        ("glb", "expected one of .glb .gltf .vrm .usda .usdc .usdz .obj"),
+        ("a.stl", "expected one of .glb .gltf .vrm .vrma .usda .usdc .usdz .obj"),
+        ("a", "expected one of .glb .gltf .vrm .vrma .usda .usdc .usdz .obj"),
+        ("glb", "expected one of .glb .gltf .vrm .vrma .usda .usdc .usdz .obj"),
     ] {
         let message = write(&scene, folder.path().join(name)).unwrap_err().to_string();
         assert!(message.contains(name) && message.contains(expected), "{message}");

@@ -281,3 +281,87 @@ fn damage_is_an_error_or_another_motion() {
     }
     assert!(good > 0, "a changed digit leaves a motion");
 }
+
+#[test]
+fn what_motion_does_not_need_may_be_required_and_missing() {
+    let (mut json, data) = small(&[0.0, 0.1]);
+    let wanted = read(&(json.clone(), data.clone())).unwrap();
+    let required =
+        ["KHR_draco_mesh_compression", "EXT_texture_webp", "KHR_mesh_quantization", "XYZ_anything"];
+    json["extensionsRequired"] = json!(required);
+    json["meshes"] = json!([{"primitives": [{"attributes": {"POSITION": 3}}]}]);
+    json["accessors"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"componentType": 5122, "count": 3, "type": "VEC3"}));
+    let channels = json["animations"][0]["channels"].as_array_mut().unwrap();
+    channels.push(json!({"sampler": 0, "target": {"path": "translation"}}));
+    channels.push(
+        json!({"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {}}}}),
+    );
+    channels.push(json!({"sampler": 0, "target": {"node": 1, "path": "pointer"}}));
+    let motion = read(&(json.clone(), data.clone())).unwrap();
+    assert_eq!(motion.clips, wanted.clips);
+    assert_eq!(
+        motion.report.warnings.last().unwrap(),
+        "3 channels of animations move no node: they are left out"
+    );
+    json["extensionsRequired"] = json!(["KHR_meshopt_compression"]);
+    let error = read(&(json.clone(), data.clone())).unwrap_err().to_string();
+    assert!(error.contains("KHR_meshopt_compression is not supported"), "{error}");
+    json["extensionsRequired"] = json!([]);
+    json["animations"][0]["samplers"] = json!(3);
+    let error = read(&(json, data)).unwrap_err().to_string();
+    assert!(error.contains("nor valid glTF JSON"), "{error}");
+}
+
+#[test]
+fn the_bind_pose_goes_before_that_of_the_nodes() {
+    let (mut json, mut data) = small(&[0.0, 0.1]);
+    // The leg is turned in the pose that the nodes hold, and hangs straight in that of the skin.
+    let bent = Rotation::from_rotation_x(0.4).to_array();
+    json["nodes"][1]["rotation"] = json!(bent);
+    let leg = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.1, -0.95, 0.0, 1.0f32];
+    let hips = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0f32];
+    let (view, accessor) =
+        (json["bufferViews"].as_array().unwrap().len(), json["accessors"].as_array().unwrap().len());
+    let place = json!({"buffer": 0, "byteOffset": data.len(), "byteLength": 128});
+    json["bufferViews"].as_array_mut().unwrap().push(place);
+    let matrices = json!({"bufferView": view, "componentType": 5126, "count": 2, "type": "MAT4"});
+    json["accessors"].as_array_mut().unwrap().push(matrices);
+    data.extend(leg.iter().chain(&hips).flat_map(|x| x.to_le_bytes()));
+    json["buffers"][0]["byteLength"] = json!(data.len());
+    let of_nodes = read(&(json.clone(), data.clone())).unwrap();
+    json["skins"][0]["inverseBindMatrices"] = json!(accessor);
+    let of_skin = read(&(json, data)).unwrap();
+    for (motion, turn) in [(of_nodes, 0.4), (of_skin, 0.0)] {
+        let rest = motion.clips[0].skeleton();
+        let leg = rest.rest_pose().locals[rest.find("Leg").unwrap()].rotation;
+        assert!((leg.angle_between(Rotation::IDENTITY) - turn).abs() < 1e-3, "{leg:?}");
+    }
+}
+
+#[test]
+fn tables_of_human_bones_are_read() {
+    use crate::Side;
+    use crate::skeleton::{RigJoint, SidedJoint};
+
+    let table = |bones: Value| json!({"humanoid": {"humanBones": bones}});
+    let new = table(json!({"hips": {"node": 2}, "leftUpperLeg": {"node": 1}, "tail": {"node": 0}}));
+    let old =
+        table(json!([{"bone": "hips", "node": 2}, {"bone": "leftUpperLeg", "node": 1}, {"bone": "jaw"}]));
+    for (name, extension) in [("VRMC_vrm_animation", &new), ("VRMC_vrm", &new), ("VRM", &old)] {
+        let (mut json, data) = small(&[0.0, 0.1]);
+        json["extensions"] = json!({name: extension});
+        let motion = read(&(json.clone(), data.clone())).unwrap();
+        let rest = motion.clips[0].skeleton();
+        let at =
+            |joint: RigJoint| rest.humanoid().iter().find(|row| row.0 == joint).map(|row| row.1 as usize);
+        assert_eq!(at(RigJoint::Pelvis), rest.find("Hips"), "{name}");
+        assert_eq!(at(SidedJoint::Thigh.on(Side::Left)), rest.find("Leg"), "{name}");
+        assert_eq!(rest.humanoid().len(), 2, "{name}");
+        json["extensions"][name] = table(json!({"hips": {"node": 8}}));
+        let error = read(&(json, data)).unwrap_err().to_string();
+        assert!(error.contains("humanBones: hips: node 8 does not exist, there are 3"), "{error}");
+    }
+}

@@ -110,6 +110,18 @@ pub fn to_gltf_with(scene: &Scene, bin_name: &str, options: &GltfOptions) -> Res
 /// The whole document but its `buffers`.
 pub(crate) fn document(scene: &Scene) -> Result<DocumentBuilder> {
     scene.validate()?;
+    document_of(scene)
+}
+
+/// The document of the scene's skeleton and clips alone.
+pub(crate) fn document_of_motion(scene: &Scene) -> Result<DocumentBuilder> {
+    scene.validate()?;
+    let Scene { name, skeleton, clips, extras, .. } = scene.clone();
+    document_of(&Scene { name, skeleton, clips, extras, ..Scene::default() })
+}
+
+/// [`document`] of a scene that has been validated.
+fn document_of(scene: &Scene) -> Result<DocumentBuilder> {
     let mut builder = DocumentBuilder::default();
     builder.root.asset = Asset {
         generator: Some(concat!("anthronet ", env!("CARGO_PKG_VERSION")).into()),

@@ -282,3 +282,37 @@ fn both_kinds_are_read_as_usd_and_names_of_files_beside_are_known() {
     let names: Vec<_> = beside.iter().filter_map(|path| path.file_name()?.to_str()).collect();
     assert_eq!(names, ["b.usda", "skin.png"]);
 }
+
+#[test]
+fn the_bind_pose_goes_before_the_rest_transforms() {
+    let turned = |rest: &str, bind: &str| {
+        let text = format!(
+            r#"#usda 1.0
+def SkelRoot "Man"
+{{
+    def Skeleton "Skel"
+    {{
+        uniform token[] joints = ["Hips", "Hips/Leg"]
+        {bind}
+        uniform matrix4d[] restTransforms = [
+            ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 1, 0, 1)), {rest}]
+        rel skel:animationSource = </Man/Anim>
+    }}
+    def SkelAnimation "Anim"
+    {{
+        uniform token[] joints = ["Hips"]
+        quatf[] rotations.timeSamples = {{ 0: [(1, 0, 0, 0)], 1: [(0, 1, 0, 0)] }}
+    }}
+}}
+"#
+        );
+        let raw = read(&text).unwrap();
+        raw.skeleton.rest_pose().locals[1].rotation.angle_between(Rotation::IDENTITY)
+    };
+    let bent = "((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, -0.5, 0, 1))";
+    let bind = "uniform matrix4d[] bindTransforms = [
+            ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 1, 0, 1)),
+            ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0.5, 0, 1))]";
+    assert!((turned(bent, "") - std::f32::consts::FRAC_PI_2).abs() < 1e-3);
+    assert!(turned(bent, bind) < 1e-3);
+}

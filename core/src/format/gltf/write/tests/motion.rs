@@ -8,7 +8,7 @@ use serde_json::json;
 use super::super::*;
 use super::Parsed;
 use crate::clip::{Clip, TranslationTrack};
-use crate::format::vrm::{VrmMeta, to_vrm};
+use crate::format::vrm::{VrmMeta, to_vrm, to_vrma};
 use crate::math::Rotation;
 use crate::skeleton::Skeleton;
 use crate::skeleton::humanoid::{JointNames, humanoid_bones, renamed};
@@ -145,6 +145,28 @@ fn a_vrm_that_would_not_be_one_is_refused() {
     let mut moving = arm(4);
     moving.clips.push(bent(&moving));
     assert!(fails(&moving, &meta).contains("`bent`: a .vrm holds no motion"));
+}
+
+#[test]
+fn a_vrma_holds_skeleton_and_clips_and_comes_back() {
+    let mut scene = humanoid(JointNames::Mixamo);
+    let fails = |scene: &Scene| to_vrma(scene).unwrap_err().to_string();
+    assert!(fails(&scene).contains("expected at least one clip"));
+    scene.clips.push(bent(&scene));
+    let bytes = to_vrma(&scene).unwrap();
+    let json = Parsed::glb(&bytes).json;
+    let vrma = &json["extensions"]["VRMC_vrm_animation"];
+    assert_eq!(vrma["specVersion"], "1.0");
+    assert_eq!(vrma["humanoid"]["humanBones"].as_object().unwrap().len(), humanoid_bones().len());
+    assert!(json["extensionsUsed"].as_array().unwrap().contains(&json!("VRMC_vrm_animation")));
+    assert!(json["meshes"].is_null() && json["materials"].is_null());
+    let motion = crate::format::read_motion_from_bytes(&bytes, "a.vrma", &Default::default()).unwrap();
+    for (found, wanted) in motion.clips[0].rotations(1).iter().zip(scene.clips[0].rotations(1)) {
+        assert!(found.angle_between(*wanted) < 1e-3);
+    }
+    assert_eq!(motion.clips[0].skeleton().humanoid().len(), humanoid_bones().len());
+    rename(&mut scene, |name| if name.ends_with("RightUpLeg") { "leg".into() } else { name.into() });
+    assert!(fails(&scene).contains("requires the bone `rightUpperLeg`"));
 }
 
 #[test]
