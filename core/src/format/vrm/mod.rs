@@ -28,7 +28,7 @@ pub(super) const VRM: Description = Description {
 };
 
 pub(super) const VRMA: Description = Description {
-    ending: "vrma",
+    extension: "vrma",
     title: "VRM Animation 1.0",
     holds: Holds { meshes: false, skeleton: true, clips: true },
     read_scene: None,
