@@ -25,6 +25,8 @@ pub(crate) enum Network {
     /// Define the measures on the mean body again and write model/measures.json. The generator must be retrained
     /// afterwards.
     Measures,
+    /// Compute the statistics of two surveys of people and write trainer/src/survey/statistics.json.
+    Surveys(SurveysArguments),
     /// Evaluate the committed generator again and write the scores into its file.
     Scores,
 }
@@ -58,12 +60,25 @@ pub(crate) struct GeneratorArguments {
     pub(crate) sigma: Option<f64>,
 }
 
+/// Folders of surveys; each holds `female.csv` and `male.csv`.
+#[derive(Args)]
+pub(crate) struct SurveysArguments {
+    /// Folder of ANSUR II, the public release, millimetres.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) ansur2: PathBuf,
+
+    /// Folder of NHANES 2017 to March 2020, adults, centimetres, with sample weights.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) nhanes: PathBuf,
+}
+
 #[cfg(not(feature = "train"))]
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     Err(crate::failure::Failure::without_networks(match &arguments.network {
         Network::Generator(_) => "train generator",
         Network::Biases => "train biases",
         Network::Measures => "train measures",
+        Network::Surveys(_) => "train surveys",
         Network::Scores => "train scores",
     }))
 }
@@ -73,6 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     use std::path::Path;
 
     use anthronet_trainer::commands;
+    use anthronet_trainer::survey::Survey;
     match &arguments.network {
         Network::Generator(generator) => commands::train_generator(&commands::GeneratorOptions {
             resume: generator.resume,
@@ -87,6 +103,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             return crate::terminal::print(&table);
         }
         Network::Measures => commands::define_measures(Path::new("model/measures.json")),
+        Network::Surveys(surveys) => commands::compute_surveys(
+            [(Survey::Ansur2, &surveys.ansur2), (Survey::Nhanes, &surveys.nhanes)],
+            Path::new("trainer/src/survey/statistics.json"),
+        ),
         Network::Scores => commands::rescore(),
     }?;
     Ok(())

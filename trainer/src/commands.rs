@@ -1,9 +1,10 @@
 //! What `anthronet train` and `anthronet evaluate` do.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anthronet::format::write_atomic;
-use anthronet::measure::Definitions;
+use anthronet::measure::{Definitions, Sex};
 use anthronet::model::{Model, ModelParts};
 use anthronet::network::config::GeneratorConfig;
 use serde_json::json;
@@ -15,7 +16,9 @@ use crate::dataset::{Bodies, Dataset, first_of};
 use crate::evaluation::{GeneratorScores, Statistics, generator};
 use crate::generator::{ShapeStatistics, TrainingOptions, TrainingSet, train};
 use crate::pack::pack;
+use crate::people::{self, PeopleTable};
 use crate::progress::Bar;
+use crate::survey::{self, Rows, SexStatistics, Survey, SurveyStatistics};
 use crate::{Error, Result};
 
 /// The model in the source tree.
@@ -127,7 +130,7 @@ fn write_scored(corpus: &Corpus, parts: &mut ModelParts, path: &Path) -> Result<
 }
 
 /// A table of [`evaluate`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Table {
     /// Errors of the generator on the first `bodies` of `split`. Hyperparameters are chosen on the validation split, so
     /// that the held-out one stays unseen.
@@ -139,16 +142,18 @@ pub enum Table {
     },
     /// Statistics of the measures of all bodies, beside the paper's.
     Statistics,
+    /// Bodies made from some of real people's measures, beside these people: the rows of a survey in a folder.
+    People(PathBuf),
 }
 
 /// Computes a table, as text or JSON.
 ///
 /// # Errors
 /// When the source of bodies or the model is not available.
-pub fn evaluate(table: Table, as_json: bool) -> Result<String> {
+pub fn evaluate(table: &Table, as_json: bool) -> Result<String> {
     let cache = Path::new(CACHE);
     let (json, text) = match table {
-        Table::Generator { split, bodies } => {
+        &Table::Generator { split, bodies } => {
             let model = Model::from_environment()?;
             let scores = score(&model, &Corpus::open(cache)?, split, bodies.unwrap_or(BODIES))?;
             (json!(scores), scores.to_string())
@@ -158,6 +163,10 @@ pub fn evaluate(table: Table, as_json: bool) -> Result<String> {
             let splits = [&dataset.train, &dataset.validation, &dataset.held_out];
             let statistics = Statistics::of(&splits, dataset.rejected);
             (json!(statistics), statistics.to_string())
+        }
+        Table::People(folder) => {
+            let scores = score_people(folder)?;
+            (json!(scores), scores.to_string())
         }
     };
     if !as_json {
@@ -193,6 +202,40 @@ pub fn fit_biases(path: &Path) -> Result<String> {
     bar.finish();
     write_atomic(path, fitted.to_json().as_bytes())?;
     Ok(fitted.statistics.to_string())
+}
+
+/// Computes the statistics of both surveys from their folders, each with `female.csv` and `male.csv`, and writes them.
+///
+/// # Errors
+/// When a file cannot be read or written, or holds another survey.
+pub fn compute_surveys(folders: [(Survey, &Path); 2], path: &Path) -> Result<()> {
+    let mut of_surveys = BTreeMap::new();
+    for (survey, folder) in folders {
+        let [female, male] = Sex::ALL.map(|sex| SexStatistics::new(&survey.read(folder, sex)?));
+        of_surveys.insert(survey.name().to_owned(), SurveyStatistics { female: female?, male: male? });
+    }
+    let json = serde_json::to_string(&of_surveys).map_err(|e| Error::Invalid(e.to_string()))?;
+    // A line per column.
+    let json = json.replace("{\"name\"", "\n{\"name\"") + "\n";
+    write_atomic(path, json.as_bytes())?;
+    Ok(())
+}
+
+fn score_people(folder: &Path) -> Result<PeopleTable> {
+    let [female, male] = Sex::ALL.map(|sex| Rows::read(folder, sex));
+    let people = [female?, male?];
+    let survey = people[0].survey;
+    if people[1].survey != survey {
+        return Err(Error::Invalid(format!("{}: women and men are of two surveys", folder.display())));
+    }
+    let statistics = survey::committed()?;
+    let missing = || Error::Invalid(format!("no statistics of {}", survey.title()));
+    let statistics = statistics.get(survey.name()).ok_or_else(missing)?;
+    let bar = Bar::new("people", people::bodies(&people) as u64);
+    let of_sexes = Sex::ALL.map(|sex| statistics.of(sex));
+    let table = people::table(&Model::from_environment()?, &people, of_sexes, &|| bar.inc());
+    bar.finish();
+    table
 }
 
 fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {

@@ -3,8 +3,8 @@
 //! In the order of the data flow: [`assets`] reads the MakeHuman data, [`sampling`] draws bodies with slider values around
 //! the centres that [`biases`] fits, [`tpose`] straightens their arms, [`corpus`] numbers them, [`landmarks`] defines the
 //! measures on their mean, [`dataset`] measures two hundred thousand of them and expresses them in the coefficients of
-//! [`basis`], [`generator`] trains the network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it;
-//! [`commands`] combines them.
+//! [`basis`], [`generator`] trains the network, [`reduce`] and [`pack`] make the model file, [`evaluation`] scores it
+//! on such bodies and [`people`] on the real people of a [`survey`]; [`commands`] combines them.
 
 pub mod assets;
 pub mod basis;
@@ -19,9 +19,11 @@ pub mod generator;
 pub mod landmarks;
 mod losses;
 pub mod pack;
+pub mod people;
 mod progress;
 pub mod reduce;
 pub mod sampling;
+pub mod survey;
 pub mod tpose;
 pub mod training;
 

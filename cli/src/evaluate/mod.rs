@@ -18,6 +18,8 @@ enum Table {
     Generator,
     /// Mean, standard deviation, minimum and maximum of every measure over the sampled bodies.
     Statistics,
+    /// Bodies made from a part of real people's measures, beside those people: bias, spread, intervals, mass.
+    People,
     /// Motion files retargeted to bodies from short to tall: bone directions, joint limits, feet.
     Motion,
 }
@@ -36,6 +38,7 @@ enum Split {
 #[command(
     after_help = "Examples:\n  cargo anthronet-train evaluate\n  cargo anthronet-train evaluate --split validation --json\n  \
                   cargo anthronet-train evaluate --table statistics\n  \
+                  cargo anthronet-train evaluate --table people --survey DIR\n  \
                   cargo anthronet evaluate --table motion --clips DIR"
 )]
 pub(crate) struct Arguments {
@@ -54,6 +57,11 @@ pub(crate) struct Arguments {
     /// Folder of motion files, required for the table of motion.
     #[arg(long, value_name = "DIR")]
     clips: Option<PathBuf>,
+
+    /// Folder with the rows of a survey, required for the table of people: `female.csv` and `male.csv` of ANSUR II or of
+    /// NHANES.
+    #[arg(long, value_name = "DIR")]
+    survey: Option<PathBuf>,
 
     /// Number of bodies; 10 for the table of motion.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -86,7 +94,11 @@ fn networks(arguments: &Arguments) -> Result<()> {
     let bodies = arguments.bodies.map(|n| n as usize);
     let table = match arguments.table {
         Table::Generator => commands::Table::Generator { split, bodies },
+        Table::People => match &arguments.survey {
+            Some(folder) => commands::Table::People(folder.clone()),
+            None => return Err(Failure::usage("--table people: expected --survey with a folder of rows")),
+        },
         _ => commands::Table::Statistics,
     };
-    print(&commands::evaluate(table, arguments.json)?)
+    print(&commands::evaluate(&table, arguments.json)?)
 }

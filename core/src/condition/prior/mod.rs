@@ -5,6 +5,7 @@
 //! likelihoods of the given measures. In formulas G are the given measures, U the open ones, A their values and e the standard
 //! deviation of the measurement noise.
 
+use super::chi_squared;
 use super::error::FILL_NOISE;
 use crate::math::cholesky::Cholesky;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
@@ -222,6 +223,15 @@ impl SexPrior {
     pub fn distance_squared(&self, given: &GivenMeasures, noise: f64) -> Result<f64> {
         let (rows, offset) = self.offsets(given)?;
         Ok(self.factor(&rows, noise)?.quadratic_form(&offset))
+    }
+
+    /// Share of people, under the Gaussian, who are at least as far from the mean as the given measures; 1 when nothing is given.
+    ///
+    /// # Errors
+    /// As [`SexPrior::project`].
+    pub fn share_beyond(&self, given: &GivenMeasures, noise: f64) -> Result<f64> {
+        let count = given.iter().flatten().count();
+        Ok(chi_squared::survival(self.distance_squared(given, noise)?, count))
     }
 
     /// Log-likelihood of the given measures, with covariance S_GG + e²I, up to a constant that depends on their number only.
