@@ -14,7 +14,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("pose", &["math", "skeleton", "space"]),
     ("network", &["measure"]),
     ("condition", &["math", "measure", "mesh"]),
-    ("model", &["condition", "math", "measure", "mesh", "network", "skeleton"]),
+    ("model", &["condition", "math", "measure", "mesh", "network", "skeleton", "space"]),
     ("body", &["condition", "measure", "mesh", "model", "skeleton"]),
     ("skin", &["math", "mesh", "pose", "skeleton"]),
     ("clip", &["math", "pose", "skeleton"]),
