@@ -38,7 +38,7 @@ fn a_request_is_read_in_any_encoding() {
         let file = write(&folder, "r.json", &bytes);
         let out = folder.path().join("a.glb").to_string_lossy().into_owned();
         let run = anthronet(&["generate", "--lod", "3", "--request", &file, "-o", &out], &[]).succeeds();
-        assert!(run.out.contains("1.830 m"), "{run:#?}");
+        assert!(run.err.contains("1.830 m"), "{run:#?}");
     }
 }
 
