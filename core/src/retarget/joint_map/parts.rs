@@ -63,6 +63,8 @@ enum Affix {
     /// A number, whichever it is.
     Number,
     Words(Vec<String>),
+    /// A number beside these words.
+    NumberAnd(Vec<String>),
 }
 
 /// The words of a name in lower case: split at separators, capitals, numbers and the signs of the sides.
@@ -111,8 +113,8 @@ fn words(name: &str) -> Vec<String> {
 
 fn side_of(word: &str) -> Option<Side> {
     match word {
-        "left" | "lft" | "l" | "左" => Some(Side::Left),
-        "right" | "rgt" | "r" | "右" => Some(Side::Right),
+        "left" | "lft" | "lt" | "l" | "左" => Some(Side::Left),
+        "right" | "rgt" | "rt" | "r" | "右" => Some(Side::Right),
         _ => None,
     }
 }
@@ -194,11 +196,19 @@ fn bare<'a>(mut words: &'a [String], prefix: &Affix, suffix: &Affix) -> &'a [Str
         }
         _ => words,
     };
-    match (suffix, words) {
-        (Affix::Number, [rest @ .., last]) if !rest.is_empty() && is_number(last) => rest,
-        (Affix::Words(suffix), _) => {
-            words.strip_suffix(&suffix[..]).filter(|rest| !rest.is_empty()).unwrap_or(words)
-        }
+    let without =
+        |suffix: &[String]| words.strip_suffix(suffix).filter(|rest| !rest.is_empty()).unwrap_or(words);
+    match suffix {
+        Affix::Nothing => words,
+        Affix::Number => without_number(words),
+        Affix::Words(suffix) => without(suffix),
+        Affix::NumberAnd(suffix) => without_number(without(suffix)),
+    }
+}
+
+fn without_number(words: &[String]) -> &[String] {
+    match words {
+        [rest @ .., last] if !rest.is_empty() && is_number(last) => rest,
         _ => words,
     }
 }
@@ -282,7 +292,12 @@ pub(super) fn improve(
     let free = || (0..names.len()).filter(|joint| !taken[*joint]);
     let vocabularies = || VOCABULARIES.iter().chain(MORE_VOCABULARIES.iter());
     let prefixes = shared(&names, |words, count| &words[..count]);
-    let suffixes = shared(&names, |words, count| &words[words.len() - count..]);
+    let mut suffixes = shared(&names, |words, count| &words[words.len() - count..]);
+    let numbered = suffixes.iter().filter_map(|suffix| match suffix {
+        Affix::Words(words) => Some(Affix::NumberAnd(words.clone())),
+        _ => None,
+    });
+    suffixes.extend(numbered.take(2).collect::<Vec<_>>());
     let mut best = score(source, &found.1);
     let mut form = index(free().map(|joint| (joint, &names[joint][..])));
     for prefix in &prefixes {
