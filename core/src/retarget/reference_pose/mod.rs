@@ -57,9 +57,7 @@ pub(super) fn find_map(sources: &[&Clip], overrides: &Overrides) -> Result<Joint
     let rest = first.skeleton();
     let found = JointMap::find(rest, overrides);
     let by_shape = |map: &JointMap| map.matched_by(RigJoint::Pelvis) == Some(MatchedBy::Geometry);
-    let stands = |map: &JointMap, model: &[RigidTransform]| {
-        Stance::of(map, rest, model).is_some_and(|stance| stance.is_person())
-    };
+    let stands = |map: &JointMap, model: &[RigidTransform]| stance::is_person(map, rest, model);
     if let Ok(map) = &found
         && (!by_shape(map) || stands(map, &rest.model_from_joints()))
     {
@@ -104,7 +102,7 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     let motion = Motion::of(map, sources);
     motion.check_sides(map)?;
     let at_rest = Stance::of(map, rest, &model);
-    let is_person = at_rest.as_ref().is_some_and(Stance::is_person);
+    let is_person = stance::is_person(map, rest, &model);
     let own = ReferencePose { model, frame: None };
     let Some(best) = motion.straightest else {
         return if is_person { Ok(own) } else { Err(no_person()) };
@@ -133,8 +131,8 @@ fn is_askew(
     (rest, stands): (&[RigidTransform], &[RigidTransform]),
     at_rest: Option<&Stance>,
 ) -> bool {
-    let yaw = |model: &[RigidTransform]| stance::facing(map, model).unwrap_or(Rotation::IDENTITY);
-    let turn = yaw(stands) * yaw(rest).conjugate();
+    let axes = |model: &[RigidTransform]| stance::axes(map, model).unwrap_or(Rotation::IDENTITY);
+    let turn = axes(stands) * axes(rest).conjugate();
     let feet = SidedJoint::Foot.both();
     let trunk = [RigJoint::Pelvis, RigJoint::Head].into_iter().chain(SPINE).chain(NECK);
     at_rest.is_some()
