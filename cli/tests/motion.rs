@@ -230,6 +230,25 @@ fn joints_have_the_names_that_are_asked_for() {
 }
 
 #[test]
+fn motion_goes_to_a_vrma_and_comes_back_from_it() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let (glb, vrma, other, back) = (path("a.glb"), path("a.vrma"), path("b.vrma"), path("c.glb"));
+    let generate =
+        |more: &[&str]| anthronet(&[&["generate", "--sex", "male", "--lod", "3"], more].concat(), &[]);
+    generate(&["--clip", "walk", "-o", &glb]).succeeds();
+    generate(&["--clip", "walk", "-o", &vrma]).succeeds();
+    let run = anthronet(&["convert", &glb, &other], &[]).succeeds();
+    assert!(run.err.contains("b.vrma: the format holds no meshes"), "{}", run.err);
+    let run = generate(&["--clip", &vrma, "--motion-report", "-", "-o", &back]).succeeds();
+    let report: Value = serde_json::from_str(&run.out).unwrap();
+    let matched = report["motions"][0]["retarget"]["joints"]["matched"].as_array().unwrap();
+    assert_eq!(matched.iter().filter(|joint| joint["by"] == "table").count(), 55);
+    generate(&["-o", &path("d.vrma")]).fails(1, &["a .vrma holds a motion"]);
+    assert_eq!(files_in(folder.path()), ["a.glb", "a.vrma", "b.vrma", "c.glb"]);
+}
+
+#[test]
 fn what_cannot_be_is_refused_and_nothing_is_left() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();

@@ -52,6 +52,8 @@ const SHARED: usize = 8;
 const TRIED: usize = 8;
 /// The most words of one of them.
 const LONGEST: usize = 7;
+/// From this number of joints of the main chains on, which are 19, no other prefix and suffix is tried: toes may be missing.
+const ENOUGH: usize = 17;
 
 /// A side, if the name tells one, and what the name says otherwise.
 pub(super) type Key = (Option<Side>, String);
@@ -63,6 +65,8 @@ enum Affix {
     /// A number, whichever it is.
     Number,
     Words(Vec<String>),
+    /// A number beside these words.
+    NumberAnd(Vec<String>),
 }
 
 /// The words of a name in lower case: split at separators, capitals, numbers and the signs of the sides.
@@ -111,8 +115,8 @@ fn words(name: &str) -> Vec<String> {
 
 fn side_of(word: &str) -> Option<Side> {
     match word {
-        "left" | "lft" | "l" | "左" => Some(Side::Left),
-        "right" | "rgt" | "r" | "右" => Some(Side::Right),
+        "left" | "lft" | "lt" | "l" | "左" => Some(Side::Left),
+        "right" | "rgt" | "rt" | "r" | "右" => Some(Side::Right),
         _ => None,
     }
 }
@@ -194,11 +198,19 @@ fn bare<'a>(mut words: &'a [String], prefix: &Affix, suffix: &Affix) -> &'a [Str
         }
         _ => words,
     };
-    match (suffix, words) {
-        (Affix::Number, [rest @ .., last]) if !rest.is_empty() && is_number(last) => rest,
-        (Affix::Words(suffix), _) => {
-            words.strip_suffix(&suffix[..]).filter(|rest| !rest.is_empty()).unwrap_or(words)
-        }
+    let without =
+        |suffix: &[String]| words.strip_suffix(suffix).filter(|rest| !rest.is_empty()).unwrap_or(words);
+    match suffix {
+        Affix::Nothing => words,
+        Affix::Number => without_number(words),
+        Affix::Words(suffix) => without(suffix),
+        Affix::NumberAnd(suffix) => without_number(without(suffix)),
+    }
+}
+
+fn without_number(words: &[String]) -> &[String] {
+    match words {
+        [rest @ .., last] if !rest.is_empty() && is_number(last) => rest,
         _ => words,
     }
 }
@@ -229,8 +241,11 @@ pub(super) fn keys_of_stem(side: Option<Side>, stem: &str) -> [Key; 2] {
     joined(&words.iter().map(String::as_str).collect::<Vec<_>>()).map(|stem| (side, stem))
 }
 
-/// The joints of the main chains: slot, and the slot that must be above it.
-fn chains() -> Vec<(Slot, Option<Slot>)> {
+/// A joint of the main chains, and the one that must be above it.
+type Link = (Slot, Option<Slot>);
+
+/// The joints of the main chains.
+fn chains() -> Vec<Link> {
     let mut chains = vec![(RigJoint::Pelvis.into(), None), (RigJoint::Neck01.into(), None)];
     chains.push((RigJoint::Head.into(), Some(RigJoint::Neck01.into())));
     for side in Side::ALL {
@@ -259,12 +274,12 @@ pub(super) fn is_complete(found: &BTreeMap<Slot, usize>) -> bool {
 }
 
 /// How many joints of the main chains were found and are in their order, and how many of all.
-fn score(source: &Skeleton, found: &BTreeMap<Slot, usize>) -> (usize, usize) {
-    let fits = |(slot, above): &(Slot, Option<Slot>)| {
+fn score(source: &Skeleton, chains: &[Link], found: &BTreeMap<Slot, usize>) -> (usize, usize) {
+    let fits = |(slot, above): &Link| {
         let Some(joint) = found.get(slot) else { return false };
         above.and_then(|above| found.get(&above)).is_none_or(|above| is_below(source, *joint, *above))
     };
-    (chains().iter().filter(|link| fits(link)).count(), found.len())
+    (chains.iter().filter(|link| fits(link)).count(), found.len())
 }
 
 fn is_below(source: &Skeleton, joint: usize, above: usize) -> bool {
@@ -282,23 +297,32 @@ pub(super) fn improve(
     let free = || (0..names.len()).filter(|joint| !taken[*joint]);
     let vocabularies = || VOCABULARIES.iter().chain(MORE_VOCABULARIES.iter());
     let prefixes = shared(&names, |words, count| &words[..count]);
-    let suffixes = shared(&names, |words, count| &words[words.len() - count..]);
-    let mut best = score(source, &found.1);
+    let mut suffixes = shared(&names, |words, count| &words[words.len() - count..]);
+    let numbered = suffixes.iter().filter_map(|suffix| match suffix {
+        Affix::Words(words) => Some(Affix::NumberAnd(words.clone())),
+        _ => None,
+    });
+    suffixes.extend(numbered.take(2).collect::<Vec<_>>());
+    let chains = chains();
+    let mut best = score(source, &chains, &found.1);
     let mut form = index(free().map(|joint| (joint, &names[joint][..])));
-    for prefix in &prefixes {
-        for suffix in &suffixes {
-            let index = index(free().map(|joint| (joint, bare(&names[joint], prefix, suffix))));
-            let mut better = false;
-            for vocabulary in vocabularies() {
-                let matched = names::matched(&vocabulary.keys, &index);
-                let reached = score(source, &matched);
-                if reached > best {
-                    (best, found, better) = (reached, (vocabulary.name, matched), true);
-                }
+    for (prefix, suffix) in
+        prefixes.iter().flat_map(|prefix| suffixes.iter().map(move |suffix| (prefix, suffix)))
+    {
+        let index = index(free().map(|joint| (joint, bare(&names[joint], prefix, suffix))));
+        let mut better = false;
+        for vocabulary in vocabularies() {
+            let matched = names::matched(&vocabulary.keys, &index);
+            let reached = score(source, &chains, &matched);
+            if reached > best {
+                (best, found, better) = (reached, (vocabulary.name, matched), true);
             }
-            if better {
-                form = index;
-            }
+        }
+        if better {
+            form = index;
+        }
+        if best.0 >= ENOUGH && is_complete(&found.1) {
+            break;
         }
     }
     fill(source, &form, &mut found.1);

@@ -106,7 +106,7 @@ pub(super) const MORE: [VocabularyText; 11] = [
         sides: ["l", "r"],
         central: "pelvis=hips|hip|pelvis|root spine_01=spine|abdomen|torso spine_02=chest neck_01=neck head=head",
         sided: "thigh=upperleg*|upleg*|thigh*|uleg* calf=lowerleg*|lowleg*|calf*|shin*|lleg*|knee* \
-                foot=foot*|ankle* ball=toe*|toes*|ball*|toebase* clavicle=clavicle*|collarbone*|collar*|shoulder* \
+                foot=foot*|ankle* ball=toe*|toes*|ball*|toebase* clavicle=clavicle*|clav*|collarbone*|collar*|shoulder* \
                 upperarm=upperarm*|uparm*|bicep*|arm* lowerarm=lowerarm*|lowarm*|forearm*|elbow* \
                 hand=hand*|wrist*|palm*",
     },

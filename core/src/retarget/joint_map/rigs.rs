@@ -208,13 +208,14 @@ type Rename = fn(&str, usize) -> String;
 
 #[test]
 fn the_main_joints_of_every_program_are_matched_whatever_is_about_them() {
-    let renames: [(&str, Rename); 6] = [
+    let renames: [(&str, Rename); 7] = [
         ("as they are", |name, _| name.to_owned()),
         ("a prefix", |name, _| format!("Alice_{name}")),
         ("a suffix", |name, _| format!("{name}.001")),
         ("a word at the end", |name, _| format!("{name}_jnt")),
         ("a path", |name, _| format!("Group|Char:{name}")),
         ("a number each", |name, joint| format!("{name}_{joint:02}")),
+        ("all of it", |name, joint| format!("Alice_{name}_{joint:02}.001")),
     ];
     let mut failed = Vec::new();
     for (sides, names) in PROGRAMS {

@@ -28,6 +28,8 @@ const FRAMES_TO_MATCH: usize = 12;
 const ASKEW: f32 = 1.05;
 /// How near a rest pose is to a frame that it was saved from, per joint, radians (1°).
 const SAVED: f32 = 0.0175;
+/// From where on a foot that is turned against such a frame is lifted or lowered, radians (10°).
+const LIFTED: f32 = 0.175;
 /// How much straighter a frame must stand to take the place of a rest pose that is a frame itself, radians (5°).
 const STRAIGHTER: f32 = 0.087;
 /// Mean cosine between the front that names tell and where feet or knees point, from which these contradict each other.
@@ -55,10 +57,13 @@ pub(super) fn find_map(sources: &[&Clip], overrides: &Overrides) -> Result<Joint
     let rest = first.skeleton();
     let found = JointMap::find(rest, overrides);
     let by_shape = |map: &JointMap| map.matched_by(RigJoint::Pelvis) == Some(MatchedBy::Geometry);
-    let stands = |map: &JointMap, model: &[RigidTransform]| {
-        Stance::of(map, rest, model).is_some_and(|stance| stance.is_person())
-    };
-    if found.as_ref().is_ok_and(|map| !by_shape(map) || stands(map, &rest.model_from_joints())) {
+    let stands = |map: &JointMap, model: &[RigidTransform]| stance::is_person(map, rest, model);
+    if let Ok(map) = &found
+        && (!by_shape(map) || stands(map, &rest.model_from_joints()))
+    {
+        if by_shape(map) && Motion::of(map, sources).is_backwards() {
+            return turned_map(rest, overrides).or(found);
+        }
         return found;
     }
     let step = first.frame_count().div_ceil(FRAMES_TO_MATCH).max(1);
@@ -74,6 +79,18 @@ pub(super) fn find_map(sources: &[&Clip], overrides: &Overrides) -> Result<Joint
     found
 }
 
+/// The map of a body that faces the other way than its shape was taken to.
+fn turned_map(rest: &Skeleton, overrides: &Overrides) -> Result<JointMap> {
+    let turn = RigidTransform {
+        rotation: Rotation::from_rotation_y(std::f32::consts::PI),
+        ..RigidTransform::IDENTITY
+    };
+    let locals = rest.rest_pose().locals.iter().zip(rest.parents());
+    let locals = locals.map(|(local, parent)| if parent.is_none() { turn.then(*local) } else { *local });
+    let turned = Skeleton::from_rest_pose(rest.tree().clone(), locals.collect(), rest.ends().to_vec())?;
+    JointMap::find(&turned, overrides)
+}
+
 /// The pose to compare with the rig's rest pose.
 ///
 /// # Errors
@@ -85,7 +102,7 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     let motion = Motion::of(map, sources);
     motion.check_sides(map)?;
     let at_rest = Stance::of(map, rest, &model);
-    let is_person = at_rest.as_ref().is_some_and(Stance::is_person);
+    let is_person = stance::is_person(map, rest, &model);
     let own = ReferencePose { model, frame: None };
     let Some(best) = motion.straightest else {
         return if is_person { Ok(own) } else { Err(no_person()) };
@@ -94,7 +111,7 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     let saved = || {
         motion.holds_rest && at_rest.as_ref().is_none_or(|stance| stance.strain() > best.strain + STRAIGHTER)
     };
-    if is_person && !askew() && !saved() {
+    if is_person && !askew() && !saved() && !motion.lifts_feet {
         return Ok(own);
     }
     Ok(ReferencePose { frame: Some(best.frame), model: best.model })
@@ -114,8 +131,8 @@ fn is_askew(
     (rest, stands): (&[RigidTransform], &[RigidTransform]),
     at_rest: Option<&Stance>,
 ) -> bool {
-    let yaw = |model: &[RigidTransform]| stance::facing(map, model).unwrap_or(Rotation::IDENTITY);
-    let turn = yaw(stands) * yaw(rest).conjugate();
+    let axes = |model: &[RigidTransform]| stance::axes(map, model).unwrap_or(Rotation::IDENTITY);
+    let turn = axes(stands) * axes(rest).conjugate();
     let feet = SidedJoint::Foot.both();
     let trunk = [RigJoint::Pelvis, RigJoint::Head].into_iter().chain(SPINE).chain(NECK);
     at_rest.is_some()
@@ -133,10 +150,13 @@ struct Standing {
 }
 
 /// What the frames of a motion tell.
+#[derive(Default)]
 struct Motion {
     straightest: Option<Standing>,
     /// Whether a frame is the rest pose.
     holds_rest: bool,
+    /// Whether a frame is the rest pose but for the feet, which that has lifted or lowered.
+    lifts_feet: bool,
     /// Sums over frames, and their numbers, of the cosine between the front that the names tell and where toes and knees point.
     toes: (f32, f32),
     knees: (f32, f32),
@@ -144,7 +164,7 @@ struct Motion {
 
 impl Motion {
     fn of(map: &JointMap, sources: &[&Clip]) -> Self {
-        let mut motion = Self { straightest: None, holds_rest: false, toes: (0.0, 0.0), knees: (0.0, 0.0) };
+        let mut motion = Self::default();
         let all: usize = sources.iter().map(|clip| clip.frame_count()).sum();
         let step = all.div_ceil(FRAMES).max(1);
         let (mut pose, mut model) = (Pose::default(), Vec::new());
@@ -152,7 +172,9 @@ impl Motion {
             for frame in (0..clip.frame_count()).step_by(step) {
                 clip.pose_into(frame, &mut pose);
                 crate::skeleton::model_from_joints(clip.skeleton().parents(), &pose.locals, &mut model);
-                motion.holds_rest |= is_rest(map, clip, &pose);
+                let [feet, others] = away_from_rest(map, clip, &pose);
+                motion.holds_rest |= feet.max(others) < SAVED;
+                motion.lifts_feet |= others < SAVED && feet > LIFTED;
                 let Some(stance) = Stance::of(map, clip.skeleton(), &model) else { continue };
                 for (sum, cosine) in [(&mut motion.toes, stance.toes()), (&mut motion.knees, stance.knees())]
                 {
@@ -171,17 +193,21 @@ impl Motion {
         motion
     }
 
-    /// Refuses a motion whose left is where its right should be, unless the user has named the legs.
-    fn check_sides(&self, map: &JointMap) -> Result<()> {
+    /// Whether feet and knees point to the back.
+    fn is_backwards(&self) -> bool {
         let mean = |(sum, count): (f32, f32)| (count > 0.0).then_some(sum / count);
         let (toes, knees) = (mean(self.toes), mean(self.knees));
-        let backwards = match (toes, knees) {
+        match (toes, knees) {
             (Some(toes), knees) => toes < BACKWARDS && knees.is_none_or(|knees| knees < -BACKWARDS / 2.0),
             (None, Some(knees)) => knees < BACKWARDS,
             (None, None) => false,
-        };
+        }
+    }
+
+    /// Refuses a motion whose left is where its right should be, unless the user has named the legs.
+    fn check_sides(&self, map: &JointMap) -> Result<()> {
         let [left, right] = SidedJoint::Thigh.both().map(|thigh| map.matched_by(thigh));
-        if !backwards || left == Some(MatchedBy::Mapping) || right == Some(MatchedBy::Mapping) {
+        if !self.is_backwards() || left == Some(MatchedBy::Mapping) || right == Some(MatchedBy::Mapping) {
             return Ok(());
         }
         let name = |side: Side| map.name_of(SidedJoint::Thigh.on(side)).unwrap_or_default();
@@ -197,8 +223,15 @@ impl Motion {
     }
 }
 
-/// Whether a pose is the clip's rest pose, by the rotations of joints that drive something.
-fn is_rest(map: &JointMap, clip: &Clip, pose: &Pose) -> bool {
+/// The largest turn of the feet, and of the other joints that drive something, from the clip's rest pose, radians.
+fn away_from_rest(map: &JointMap, clip: &Clip, pose: &Pose) -> [f32; 2] {
     let rest = &clip.skeleton().rest_pose().locals;
-    map.joints().all(|joint| rest[joint].rotation.angle_between(pose.locals[joint].rotation) < SAVED)
+    let feet = [SidedJoint::Foot, SidedJoint::Ball].into_iter().flat_map(SidedJoint::both);
+    let feet: Vec<usize> = feet.filter_map(|foot| map.source_of(foot)).collect();
+    let mut away = [0.0_f32; 2];
+    for joint in map.joints() {
+        let part = usize::from(!feet.contains(&joint));
+        away[part] = away[part].max(rest[joint].rotation.angle_between(pose.locals[joint].rotation));
+    }
+    away
 }

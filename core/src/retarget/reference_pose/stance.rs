@@ -1,6 +1,6 @@
 //! How a body stands, from positions of its joints alone.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::super::joint_map::{JointMap, NECK, SPINE};
 use crate::Side;
@@ -64,11 +64,32 @@ fn both(map: &JointMap, model: &[RigidTransform], joint: SidedJoint) -> Option<[
     Some([left?, right?])
 }
 
-/// The rotation about +Y to where a body faces by the line through its hips.
-pub(super) fn facing(map: &JointMap, model: &[RigidTransform]) -> Option<Rotation> {
-    let [left, right] = both(map, model, SidedJoint::Thigh)?;
-    let across = left - right;
-    Some(Rotation::from_rotation_y(libm::atan2f(-across.z, across.x)))
+/// The axes of a body: its left, up along the trunk, its front.
+pub(super) fn axes(map: &JointMap, model: &[RigidTransform]) -> Option<Rotation> {
+    let hips = both(map, model, SidedJoint::Thigh)?;
+    let up = (top(map, model)? - (hips[0] + hips[1]) / 2.0).try_normalize()?;
+    let front = (hips[0] - hips[1]).cross(up).try_normalize()?;
+    Some(Rotation::from_mat3(&Mat3::from_cols(up.cross(front), up, front)).normalize())
+}
+
+/// The top of the trunk.
+fn top(map: &JointMap, model: &[RigidTransform]) -> Option<Vec3> {
+    let shoulders = both(map, model, SidedJoint::Upperarm).map(|[left, right]| (left + right) / 2.0);
+    let at = |joint: &RigJoint| place(map, model, *joint);
+    let neck = || NECK.iter().find_map(at);
+    shoulders.or_else(neck).or_else(|| at(&RigJoint::Head)).or_else(|| SPINE.iter().rev().find_map(at))
+}
+
+/// Whether a body is a person in the pose of somebody who stands, even if it lies as a whole.
+pub(super) fn is_person(map: &JointMap, skeleton: &Skeleton, model: &[RigidTransform]) -> bool {
+    let stands =
+        |model: &[RigidTransform]| Stance::of(map, skeleton, model).is_some_and(|stance| stance.is_person());
+    let lies = || {
+        let upright = axes(map, model)?.conjugate();
+        let righted = RigidTransform { rotation: upright, ..RigidTransform::IDENTITY };
+        Some(model.iter().map(|joint| righted.then(*joint)).collect::<Vec<_>>())
+    };
+    stands(model) || lies().is_some_and(|righted| stands(&righted))
 }
 
 fn angle(a: Vec3, b: Vec3) -> f32 {
@@ -83,9 +104,7 @@ impl Stance {
         let middle = |[left, right]: [Vec3; 2]| (left + right) / 2.0;
         let head = place(map, model, RigJoint::Head);
         let neck = NECK.into_iter().find_map(|joint| place(map, model, joint));
-        let spine = SPINE.into_iter().rev().find_map(|joint| place(map, model, joint));
-        let top = shoulders.map(middle).or(neck).or(head).or(spine)?;
-        let up = (top - middle(hips)).try_normalize()?;
+        let up = (top(map, model)? - middle(hips)).try_normalize()?;
         let across = (hips[0] - hips[1]).try_normalize()?;
         let front = across.cross(up).try_normalize()?;
         let tilt = |[left, right]: [Vec3; 2]| {
@@ -173,7 +192,7 @@ impl Stance {
         }
     }
 
-    pub(super) fn is_person(&self) -> bool {
+    fn is_person(&self) -> bool {
         self.upright() != Upright::Not
     }
 

@@ -136,6 +136,24 @@ fn a_rest_pose_that_is_a_frame_gives_way_to_one_that_stands() {
 }
 
 #[test]
+fn a_lifted_heel_does_not_stay_lifted() {
+    let (clip, body) = squat();
+    let (wanted, _) = run(&clip, &body);
+    let mut saved = clip.pose(0).locals;
+    for foot in ["foot_l", "foot_r"] {
+        saved[body.find(foot).unwrap()].rotation *= Rotation::from_rotation_x(0.38);
+    }
+    let rest = Skeleton::from_rest_pose(body.tree().clone(), saved, body.ends().to_vec()).unwrap();
+    let rotations = (0..clip.frame_count()).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    let tracks = clip.translations().to_vec();
+    let lifted = Clip::new("lifted".into(), Arc::new(rest), 30.0, rotations, tracks).unwrap();
+    let (found, reference) = run(&lifted, &body);
+    assert!(reference.is_some());
+    let (degrees, joint) = apart(&wanted, &found, &["foot_l", "foot_r"]);
+    assert!(degrees < 5.0, "{joint} is off by {degrees}°");
+}
+
+#[test]
 fn a_rig_of_unknown_names_is_matched_in_a_frame() {
     let (clip, body) = squat();
     let heap = heap(&clip, 3);

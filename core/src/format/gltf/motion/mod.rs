@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{DAffine3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3, Mat4};
 use gltf_json::Node;
 use gltf_json::animation::Property;
 use gltf_json::validation::Checked;
@@ -193,10 +193,8 @@ impl<'a> Rig<'a> {
         let above = self.joints.iter().zip(&self.parents).filter(|(_, parent)| parent.is_none());
         let spaces = meshes.chain(above.filter_map(|(joint, _)| self.tree.parents[*joint]));
         let turn = |node: usize| {
-            RigidTransformF64::without_scale(&DAffine3::from_mat4(DMat4::from(
-                glam::Mat4::from(world[node]).as_dmat4(),
-            )))
-            .rotation
+            RigidTransformF64::without_scale(&DAffine3::from_mat4(Mat4::from(world[node]).as_dmat4()))
+                .rotation
         };
         let turns: Vec<DQuat> = [DQuat::IDENTITY].into_iter().chain(spaces.map(turn)).collect();
         let bind: Vec<_> = self.joints.iter().map(|node| known.get(node).copied()).collect();
