@@ -55,6 +55,8 @@ pub struct PeopleRow {
     pub given: Vec<&'static str>,
     /// Number of people who have all the given measures.
     pub people: usize,
+    /// Number of those with a measure that the model takes for nobody's; they are not met, and in no other number.
+    pub refused: usize,
     /// The measures that were not given.
     pub measures: BTreeMap<&'static str, MeasureScore>,
     /// Mean of the bodies' mass less the people's, kg.
@@ -156,6 +158,15 @@ struct Scoring<'a> {
     mass: Regression,
 }
 
+/// What came of a person.
+enum Tried {
+    /// One of the given measures was not taken.
+    Incomplete,
+    /// One of the given measures is beyond the model's range.
+    Refused,
+    Made(Outcome),
+}
+
 /// One person beside the body: differences in metres and kg.
 struct Outcome {
     /// Per open measure: difference, the regression's difference, inside the interval; `None` where the person has no value.
@@ -200,7 +211,7 @@ impl<'a> Scoring<'a> {
     }
 
     fn row(&self, progress: &(dyn Fn() + Sync)) -> Result<PeopleRow> {
-        let outcomes: Vec<Option<Outcome>> = self
+        let outcomes: Vec<Tried> = self
             .people
             .people
             .par_iter()
@@ -210,7 +221,15 @@ impl<'a> Scoring<'a> {
                 outcome
             })
             .collect::<Result<_>>()?;
-        let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
+        let refused = outcomes.iter().filter(|tried| matches!(tried, Tried::Refused)).count();
+        let outcomes: Vec<Outcome> = outcomes
+            .into_iter()
+            .filter_map(|tried| match tried {
+                Tried::Made(outcome) => Some(outcome),
+                Tried::Incomplete | Tried::Refused => None,
+            })
+            .collect();
+        let people = outcomes.len() + refused;
         let measures = self.open.iter().enumerate().map(|(k, (open, _))| {
             let of: Vec<(f64, f64, bool)> = outcomes.iter().filter_map(|o| o.open[k]).collect();
             let (bias, deviation) = spread(of.iter().map(|o| o.0));
@@ -227,28 +246,32 @@ impl<'a> Scoring<'a> {
         Ok(PeopleRow {
             sex: self.people.sex,
             given: self.given.iter().map(|g| g.name).collect(),
-            people: outcomes.len(),
+            people,
+            refused,
             measures: measures.collect(),
             mass_bias_kg,
             mass_sd_kg,
             mass_sd_regression_kg: spread(masses().map(|m| m.1)).1,
-            joint_met: share(outcomes.iter().map(|o| o.met)),
+            joint_met: outcomes.iter().filter(|o| o.met).count() as f64 / people.max(1) as f64,
             p_uniform_ks: distance_from_uniform(outcomes.iter().map(|o| o.share_beyond).collect()),
         })
     }
 
-    /// `None` for a person without one of the given measures.
-    fn person(&self, person: &[Option<f64>]) -> Result<Option<Outcome>> {
+    fn person(&self, person: &[Option<f64>]) -> Result<Tried> {
         let mut request = Request { sex: Some(self.people.sex), nearest: true, ..Request::default() };
         let mut values = Vec::with_capacity(self.given.len());
         for given in &self.given {
-            let Some(value) = person[given.column] else { return Ok(None) };
+            let Some(value) = person[given.column] else { return Ok(Tried::Incomplete) };
             values.push(value);
             for id in &given.ids {
                 request.measures[id.index()] = Some(value);
             }
         }
-        let body = self.model.generate(&request)?;
+        let body = match self.model.generate(&request) {
+            Ok(body) => body,
+            Err(anthronet::Error::Request { .. }) => return Ok(Tried::Refused),
+            Err(error) => return Err(error.into()),
+        };
         let report = body.report();
         let mean = |ids: &[MeasureId], of: &dyn Fn(usize) -> f64| {
             ids.iter().map(|id| of(id.index())).sum::<f64>() / ids.len() as f64
@@ -265,10 +288,10 @@ impl<'a> Scoring<'a> {
         let met = self.given.iter().zip(&values).all(|(given, asked)| {
             given.ids.iter().all(|id| (report.measures[id.index()].obtained - asked).abs() <= limit(*id))
         });
-        let mass = person[self.mass_column]
-            .map(|own| (report.mass_kg - own, self.mass.predict(&values) - own));
+        let mass =
+            person[self.mass_column].map(|own| (report.mass_kg - own, self.mass.predict(&values) - own));
         let prior = self.model.prior().of(self.people.sex);
-        Ok(Some(Outcome {
+        Ok(Tried::Made(Outcome {
             open: open.collect(),
             mass,
             met,
@@ -303,7 +326,14 @@ impl std::fmt::Display for PeopleTable {
         let title = Survey::ALL.into_iter().find(|s| s.name() == self.survey).map_or("", Survey::title);
         writeln!(f, "people of {title}: the body's measures less the person's")?;
         for row in &self.rows {
-            writeln!(f, "\n{} people, {}, given {}", row.people, row.sex, row.given.join(", "))?;
+            writeln!(
+                f,
+                "\n{} people ({} refused), {}, given {}",
+                row.people,
+                row.refused,
+                row.sex,
+                row.given.join(", ")
+            )?;
             writeln!(
                 f,
                 "  given measures met {:.1} %; mass {:+.1} kg (sd {:.1}, a regression's {:.1}); likelihoods {:.2} from uniform",
@@ -314,7 +344,11 @@ impl std::fmt::Display for PeopleTable {
                 row.p_uniform_ks
             )?;
             if !row.measures.is_empty() {
-                writeln!(f, "  {:26} {:>8} {:>8} {:>12} {:>9}", "mm", "bias", "sd", "regression's", "in 90 %")?;
+                writeln!(
+                    f,
+                    "  {:26} {:>8} {:>8} {:>12} {:>9}",
+                    "mm", "bias", "sd", "regression's", "in 90 %"
+                )?;
             }
             for (name, score) in &row.measures {
                 writeln!(

@@ -25,9 +25,10 @@ impl Survey {
         let mut mappings: Vec<Mapping> = Vec::new();
         for id in anthronet::measure::MeasureId::all() {
             let column = id.standard().and_then(|standard| {
-                standard.split("; ").filter(|part| !part.ends_with(", near")).find_map(|part| {
-                    part.strip_prefix(self.title()).map(str::trim_start)
-                })
+                standard
+                    .split("; ")
+                    .filter(|part| !part.ends_with(", near"))
+                    .find_map(|part| part.strip_prefix(self.title()).map(str::trim_start))
             });
             let new = |mapping: &Mapping| mapping.measure != id.base_name();
             if let Some(column) = column.filter(|_| mappings.iter().all(new)) {

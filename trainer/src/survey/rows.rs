@@ -132,8 +132,7 @@ impl Rows {
         };
         let units: Vec<Option<f64>> = titles.iter().map(|title| survey.unit(title)).collect();
         let sample_weight = titles.iter().position(|title| title == SAMPLE_WEIGHT);
-        let mut rows =
-            Self { survey, sex, columns: Vec::new(), people: Vec::new(), weights: Vec::new() };
+        let mut rows = Self { survey, sex, columns: Vec::new(), people: Vec::new(), weights: Vec::new() };
         rows.columns =
             titles.iter().zip(&units).filter(|(_, u)| u.is_some()).map(|(t, _)| t.to_owned()).collect();
         for (line, record) in (2..).zip(reader.records()) {

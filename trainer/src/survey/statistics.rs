@@ -13,9 +13,9 @@ use crate::{Error, Result};
 /// Number of quantiles of a column: 0 %, 1 %, … 100 %.
 pub const QUANTILES: usize = 101;
 
-/// People farther from the mean of logarithms than this many standard deviations along any direction are slips of the
-/// pen: among a Gaussian's seven columns one person in 400 million.
-const SLIP: f64 = 7.0;
+/// People whose logarithms are farther from the mean than √n + 5 standard deviations, for n columns, are slips of the pen: of a
+/// Gaussian's people fewer than one in a hundred million, whatever n is.
+const SLIP: f64 = 5.0;
 
 /// Steps of the expectation maximisation; with the 2 % of values that NHANES lacks it has converged to 1e-9 after ten.
 const STEPS: usize = 25;
@@ -88,7 +88,7 @@ impl SexStatistics {
         let logarithms: Vec<Vec<Option<f64>>> = logarithms.collect();
         let rough = gaussian(&logarithms, &weights)?;
         for (person, weight) in logarithms.iter().zip(&mut weights) {
-            if rough.distance(person)? > SLIP * (person.len() as f64 / 7.0).sqrt() {
+            if rough.distance(person)? > SLIP + (person.len() as f64).sqrt() {
                 *weight = 0.0;
             }
         }
@@ -193,17 +193,16 @@ fn gaussian(people: &[Vec<Option<f64>>], weights: &[f64]) -> Result<Gaussian> {
         for (missing, members) in &patterns {
             let known: Vec<usize> = (0..columns).filter(|i| !missing.contains(i)).collect();
             let slopes = solved(&so_far.part(&known, &known), &so_far.part(&known, missing))?;
-            let unexplained =
-                so_far.part(missing, missing) - so_far.part(missing, &known) * &slopes;
+            let unexplained = so_far.part(missing, missing) - so_far.part(missing, &known) * &slopes;
             for &number in members {
                 let weight = weights[number] / total;
-                let mut values: Vec<f64> = (0..columns)
-                    .map(|i| people[number][i].unwrap_or(so_far.mean[i]))
-                    .collect();
+                let mut values: Vec<f64> =
+                    (0..columns).map(|i| people[number][i].unwrap_or(so_far.mean[i])).collect();
                 for (m, &i) in missing.iter().enumerate() {
-                    let explained = known.iter().enumerate().map(|(k, &j)| {
-                        slopes[(k, m)] * (people[number][j].unwrap_or(0.0) - so_far.mean[j])
-                    });
+                    let explained = known
+                        .iter()
+                        .enumerate()
+                        .map(|(k, &j)| slopes[(k, m)] * (people[number][j].unwrap_or(0.0) - so_far.mean[j]));
                     values[i] += explained.sum::<f64>();
                     for (n, &j) in missing.iter().enumerate() {
                         left_open[(i, j)] += weight * unexplained[(m, n)];
@@ -244,8 +243,7 @@ fn without_gaps(people: &[Vec<Option<f64>>], weights: &[f64], columns: usize) ->
         }
         let mean = taken().map(|(v, w)| v * w).sum::<f64>() / total;
         start.mean[i] = mean;
-        start.covariance[(i, i)] =
-            taken().map(|(v, w)| w * (v - mean) * (v - mean)).sum::<f64>() / total;
+        start.covariance[(i, i)] = taken().map(|(v, w)| w * (v - mean) * (v - mean)).sum::<f64>() / total;
     }
     Ok(start)
 }
@@ -259,7 +257,8 @@ fn solved(a: &Mat<f64>, b: &Mat<f64>) -> Result<Mat<f64>> {
 
 /// Weighted quantiles, each person in the middle of their weight.
 fn quantiles(values: impl Iterator<Item = (Option<f64>, f64)>) -> Vec<f64> {
-    let mut sorted: Vec<(f64, f64)> = values.filter_map(|(v, w)| Some((v?, w))).filter(|v| v.1 > 0.0).collect();
+    let mut sorted: Vec<(f64, f64)> =
+        values.filter_map(|(v, w)| Some((v?, w))).filter(|v| v.1 > 0.0).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = sorted.iter().map(|v| v.1).sum();
     let mut below = 0.0;

@@ -66,7 +66,12 @@ fn statistics_are_the_textbooks_and_gaps_do_not_bend_them() {
         assert_eq!(statistics.people, 4_000);
         let [x, y] = &statistics.columns[..] else { panic!("two columns") };
         // Five standard errors: 0.016 of a mean of x, 0.009 of y and more with gaps.
-        assert!((x.mean - 2.0).abs() < 0.016 && (y.mean - 1.3).abs() < 0.015, "{gaps}: {} {}", x.mean, y.mean);
+        assert!(
+            (x.mean - 2.0).abs() < 0.016 && (y.mean - 1.3).abs() < 0.015,
+            "{gaps}: {} {}",
+            x.mean,
+            y.mean
+        );
         assert!((x.deviation - 0.2).abs() < 0.012 && (y.deviation - 0.1118).abs() < 0.01);
         let regression = statistics.regression(&[0], 1).unwrap();
         assert!((regression.slopes[0] - 0.5).abs() < 0.03, "{gaps}: {regression:?}");
