@@ -49,7 +49,7 @@ pub struct Definition {
 const WHAT: &str = "measure definitions";
 
 impl Definition {
-    /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
+    /// As [`MeasureId::standard`].
     pub fn standard(&self) -> Option<&'static str> {
         MeasureId::from_name(&self.name)?.standard()
     }

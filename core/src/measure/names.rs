@@ -63,7 +63,7 @@ impl MeasureId {
         self.entry().part
     }
 
-    /// The nearest measure of ISO 8559-1, ISO 7250-1 or ANSUR II, where one exists.
+    /// The nearest measures of ISO 8559-1, ISO 7250-1, ANSUR II and NHANES, where they exist, separated by `; `.
     pub fn standard(self) -> Option<&'static str> {
         self.entry().standard
     }

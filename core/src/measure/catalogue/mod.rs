@@ -46,7 +46,7 @@ pub(super) struct Row {
     sides: Option<[&'static str; 2]>,
     part: BodyPart,
     /// The nearest measure of a published standard or survey: ISO 8559-1:2017 (garment sizing), ISO 7250-1:2017
-    /// (technological design) and ANSUR II (Gordon et al. 2014). Nearest, not the same: ours are taken in the T-pose,
+    /// (technological design), ANSUR II (Gordon et al. 2014) and NHANES (2017 to March 2020). Nearest, not the same: ours are taken in the T-pose,
     /// between points of the mesh.
     standard: Option<&'static str>,
 }
@@ -78,8 +78,8 @@ macro_rules! sided {
 const ROWS: &[Row] = &[
     central!("waist_circumference", Trunk, Some("ISO 8559-1 waist girth; ANSUR II waistcircumference")),
     central!("chest_circumference", Trunk, Some("ISO 8559-1 bust/chest girth; ANSUR II chestcircumference")),
-    central!("hip_circumference", Trunk, Some("ISO 8559-1 hip girth; ANSUR II buttockcircumference")),
-    central!("height", Trunk, Some("ISO 7250-1 stature; ANSUR II stature")),
+    central!("hip_circumference", Trunk, Some("ISO 8559-1 hip girth; ANSUR II buttockcircumference; NHANES bmxhip")),
+    central!("height", Trunk, Some("ISO 7250-1 stature; ANSUR II stature; NHANES bmxht")),
     central!("shoulder_width", Trunk, Some("ISO 7250-1 shoulder (biacromial) breadth; ANSUR II biacromialbreadth")),
     central!("torso_height_back", Trunk, Some("ISO 8559-1 back neck point to waist; ANSUR II waistbacklength")),
     central!("torso_height_front", Trunk, Some("ANSUR II waistfrontlengthsitting")),
