@@ -108,10 +108,12 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
         return if is_person { Ok(own) } else { Err(no_person()) };
     };
     let askew = || is_askew(map, (&own.model, &best.model), at_rest.as_ref());
-    let saved = || {
-        motion.holds_rest && at_rest.as_ref().is_none_or(|stance| stance.strain() > best.strain + STRAIGHTER)
-    };
-    if is_person && !askew() && !saved() && !motion.lifts_feet {
+    // A motion may well begin in its rest pose: that is doubtful only if nobody stands so.
+    let bent =
+        |stance: &Stance| stance.upright() != Upright::Straight && stance.strain() > best.strain + STRAIGHTER;
+    let saved = || motion.holds_rest && at_rest.as_ref().is_none_or(bent);
+    let lifted = motion.lifts_feet && !motion.holds_rest;
+    if is_person && !askew() && !saved() && !lifted {
         return Ok(own);
     }
     Ok(ReferencePose { frame: Some(best.frame), model: best.model })
