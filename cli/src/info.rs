@@ -9,12 +9,12 @@ use serde_json::Value;
 use crate::failure::Result;
 use crate::terminal::print;
 
-/// List the measures with their ranges, the joints, and the model's version and scores.
+/// List the measures with their ranges, the landmarks, the joints, and the model's version and scores.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  anthronet info\n  anthronet info --json > definitions.json")]
 pub(crate) struct Arguments {
     /// Print JSON: {"measures": [{"name", "kind", "points", "normal", "axis", "standard", "min", "max"}, …],
-    /// "joints": [{"name", "parent"}, …], …}. Vertices are those of level of detail 0, lengths metres.
+    /// "landmarks": [{"name", "place", "point"}, …], "joints": [{"name", "parent"}, …], …}. Vertices are those of level of detail 0, lengths metres.
     #[arg(long)]
     json: bool,
 }
@@ -47,6 +47,10 @@ fn text(info: &Value) -> String {
             word(&measure["standard"])
         );
     }
+    let _ = writeln!(out, "\n{:28} place", "landmark");
+    for landmark in list("landmarks") {
+        let _ = writeln!(out, "{:28} {}", word(&landmark["name"]), word(&landmark["place"]));
+    }
     let _ = writeln!(out, "\n{} joints:", list("joints").len());
     let joints: Vec<_> = list("joints").iter().map(|joint| word(&joint["name"])).collect();
     for row in joints.chunks(6) {
@@ -68,10 +72,12 @@ mod tests {
     fn text_lists_measures_joints_and_the_rest() {
         let text = text(&serde_json::json!({
             "measures": [{"name": "height", "kind": "length", "standard": null, "min": 1.4, "max": 2.1}],
+            "landmarks": [{"name": "menton", "place": "lowest point of the chin", "point": [[732, 1.0]]}],
             "joints": [{"name": "root", "parent": null}],
             "model": {"version": 1}
         }));
-        for expected in ["height", "1.400", "1 joints", "root", "\"version\": 1"] {
+        for expected in ["height", "1.400", "lowest point of the chin", "1 joints", "root", "\"version\": 1"]
+        {
             assert!(text.contains(expected), "{expected} in {text}");
         }
         assert!(!text.contains("null"));

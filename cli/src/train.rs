@@ -22,8 +22,8 @@ pub(crate) enum Network {
     /// Fit the slider centres to the paper's mean measures and write trainer/src/sampling_bias.json. The generator must
     /// be retrained afterwards.
     Biases,
-    /// Define the measures on the mean body again and write model/measures.json. The generator must be retrained
-    /// afterwards.
+    /// Define landmarks and measures on the mean body again and write model/landmarks.json and model/measures.json. Where
+    /// measures change, the generator must be retrained afterwards.
     Measures,
     /// Compute the statistics of two surveys of people and write trainer/src/survey/statistics.json.
     Surveys(SurveysArguments),
@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             let table = commands::fit_biases(Path::new("trainer/src/sampling_bias.json"))?;
             return crate::terminal::print(&table);
         }
-        Network::Measures => commands::define_measures(Path::new("model/measures.json")),
+        Network::Measures => commands::define_measures(Path::new("model")),
         Network::Surveys(surveys) => commands::compute_surveys(
             [(Survey::Ansur2, &surveys.ansur2), (Survey::Nhanes, &surveys.nhanes)],
             Path::new("trainer/src/survey/statistics.json"),

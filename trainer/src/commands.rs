@@ -175,17 +175,22 @@ pub fn evaluate(table: &Table, as_json: bool) -> Result<String> {
     serde_json::to_string_pretty(&json).map_err(|e| Error::Invalid(e.to_string()))
 }
 
-/// Rewrites `model/measures.json` from the landmarks.
+/// Rewrites `model/measures.json` and `model/landmarks.json`, which are defined on the mean body.
 ///
 /// # Errors
-/// When the source of bodies is not available or the landmarks do not fit it.
-pub fn define_measures(path: &Path) -> Result<()> {
+/// When the source of bodies is not available or the definitions do not fit it.
+pub fn define_measures(folder: &Path) -> Result<()> {
     let corpus = Corpus::open(Path::new(CACHE))?;
-    let mirror = &corpus.assets.mesh.mirror;
-    let definitions = crate::landmarks::definitions(&corpus, &|v| mirror.get(&v).copied())?;
-    let lines = definitions
+    let mirror = |v| corpus.assets.mesh.mirror.get(&v).copied();
+    write_lines(&folder.join("landmarks.json"), &crate::landmarks::landmarks(&mirror)?)?;
+    write_lines(&folder.join("measures.json"), &crate::measures::definitions(&corpus, &mirror)?)
+}
+
+/// Writes a JSON list, a line per element.
+fn write_lines(path: &Path, list: &[impl serde::Serialize]) -> Result<()> {
+    let lines = list
         .iter()
-        .map(|d| serde_json::to_string(d).map_err(|e| Error::Invalid(e.to_string())))
+        .map(|element| serde_json::to_string(element).map_err(|e| Error::Invalid(e.to_string())))
         .collect::<Result<Vec<_>>>()?;
     write_atomic(path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())?;
     Ok(())

@@ -36,7 +36,7 @@ pub struct Specimen {
 }
 
 /// The split that a body belongs to. Basis, prior and networks never see a held-out body. The definitions of the measures
-/// do not depend on the split: [`crate::landmarks`] cuts its loops on the mean of the first 512 bodies of all splits, and
+/// do not depend on the split: [`crate::measures`] cuts its loops on the mean of the first 512 bodies of all splits, and
 /// collects the chest's candidate edges on the first 4,096.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {

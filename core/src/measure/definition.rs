@@ -26,6 +26,20 @@ pub enum Kind {
 #[serde(transparent)]
 pub struct Point(pub Vec<(u32, f64)>);
 
+impl Point {
+    /// What is wrong with the point on a surface of `vertex_count` vertices.
+    pub(super) fn validate(&self, vertex_count: usize) -> std::result::Result<(), String> {
+        if let Some((v, _)) = self.0.iter().find(|(v, _)| *v as usize >= vertex_count) {
+            return Err(format!("vertex {v} of {vertex_count}"));
+        }
+        let sum: f64 = self.0.iter().map(|t| t.1).sum();
+        if !sum.is_finite() || (sum - 1.0).abs() > 1e-6 {
+            return Err(format!("weights of a point sum to {sum}, not 1"));
+        }
+        Ok(())
+    }
+}
+
 /// One measure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,14 +84,11 @@ impl Definition {
         if self.points.len() < least || (self.kind == Kind::Length && self.points.len() != 2) {
             return Err(fail(format!("{} points do not make a {:?}", self.points.len(), self.kind)));
         }
-        if let Some(v) = self.vertices().find(|v| *v as usize >= vertex_count) {
+        if let Some(v) = self.edges.iter().flatten().find(|v| **v as usize >= vertex_count) {
             return Err(fail(format!("vertex {v} of {vertex_count}")));
         }
         for point in &self.points {
-            let sum: f64 = point.0.iter().map(|t| t.1).sum();
-            if !sum.is_finite() || (sum - 1.0).abs() > 1e-6 {
-                return Err(fail(format!("weights of a point sum to {sum}, not 1")));
-            }
+            point.validate(vertex_count).map_err(fail)?;
         }
         let unit = |v: DVec3| (v.length() - 1.0).abs() < 1e-6;
         if self.kind != Kind::Length && !unit(self.normal) {
@@ -101,7 +112,7 @@ pub struct Definitions {
 }
 
 /// Number of vertices of LOD 0, which the definitions index.
-const SURFACE_VERTICES: usize = 53_514;
+pub(super) const SURFACE_VERTICES: usize = 53_514;
 
 impl Definitions {
     /// The definitions of this version of the library: `model/measures.json`.

@@ -12,7 +12,7 @@ use super::shape_space::ShapeSpace;
 use crate::condition::{
     Limits, MeasureRange, MeasuredShape, Prepared, Prior, Request, SolveOptions, SolveOutcome, solve,
 };
-use crate::measure::{Definitions, MEASURE_COUNT, Measurements, Sex};
+use crate::measure::{Definitions, Landmarks, MEASURE_COUNT, Measurements, Sex};
 use crate::network::{Decoder, Encoder};
 use crate::skeleton::BonePositions;
 use crate::{Error, Result};
@@ -35,6 +35,7 @@ struct Shared {
     origin: String,
     character: Arc<Character>,
     definitions: Definitions,
+    landmarks: Landmarks,
     space: ShapeSpace,
     measured: MeasuredSpace,
     joint_mean: Vec<f32>,
@@ -128,6 +129,7 @@ impl Model {
         };
         let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
         let definitions = Definitions::embedded().map_err(named)?;
+        let landmarks = Landmarks::embedded().map_err(named)?;
         if parts.definitions_hash != definitions.hash() {
             return Err(fail("made with other measure definitions than this library's".into()));
         }
@@ -179,6 +181,7 @@ impl Model {
                 origin: origin.to_owned(),
                 character: Arc::new(character),
                 definitions,
+                landmarks,
                 space,
                 measured,
                 joint_mean: parts.joint_mean.clone(),
@@ -202,6 +205,11 @@ impl Model {
     /// Where each measure is taken.
     pub fn definitions(&self) -> &Definitions {
         &self.shared.definitions
+    }
+
+    /// Where each landmark lies.
+    pub fn landmarks(&self) -> &Landmarks {
+        &self.shared.landmarks
     }
 
     /// The shape space.

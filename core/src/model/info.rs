@@ -6,8 +6,8 @@ use super::Model;
 use crate::mesh::Lod;
 
 impl Model {
-    /// The JSON of `anthronet info --json`: measures with definitions, standards and ranges (metres), joints with parents,
-    /// vertices per level of detail, versions and scores.
+    /// The JSON of `anthronet info --json`: measures with definitions, standards and ranges (metres), landmarks, joints with
+    /// parents, vertices per level of detail, versions and scores.
     pub fn info(&self) -> serde_json::Value {
         let (character, ranges) = (self.character(), self.ranges());
         let measures = self.definitions().iter().map(|(id, definition)| {
@@ -35,6 +35,7 @@ impl Model {
         json!({
             "version": env!("CARGO_PKG_VERSION"),
             "measures": measures.collect::<Vec<_>>(),
+            "landmarks": self.landmarks().iter().collect::<Vec<_>>(),
             "joints": joints.collect::<Vec<_>>(),
             "vertices_per_lod": levels,
             "latent_size": self.latent_size(),

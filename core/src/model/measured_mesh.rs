@@ -30,6 +30,9 @@ pub struct MeasuredMesh {
     pub measurements: Measurements,
     /// Volume, mass and body mass index.
     pub mass: Mass,
+    /// Positions of the landmarks, in the order of [`Model::landmarks`], metres; model space, standing where the vertices
+    /// stand.
+    pub landmarks: Vec<DVec3>,
     /// How the vertices were read where they are not in metres, +Y up and +Z forward; one sentence each.
     pub warnings: Vec<String>,
 }
@@ -49,7 +52,8 @@ impl Model {
         let measurements = self.definitions().read_all(at);
         let volume = enclosed_volume(at, &self.character().subdivision().refined().quads);
         let mass = Mass::new(volume, measurements[MeasureId::HEIGHT.index()]);
-        Ok(MeasuredMesh { lod, measurements, mass, warnings: Vec::new() })
+        let landmarks = self.landmarks().positions(at);
+        Ok(MeasuredMesh { lod, measurements, mass, landmarks, warnings: Vec::new() })
     }
 
     /// [`measure_mesh`](Self::measure_mesh) for vertices that come back from elsewhere: in another unit or other axes, which
