@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anthronet::clip::{self, BUILTIN, Clip};
 use anthronet::format::{self, Format, Purpose, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
-use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::retarget::{self, Confidence, FingerMode, RetargetOptions};
 use anthronet::scene::Scene;
 use anthronet::skeleton::Skeleton;
 use anthronet::skeleton::humanoid::{JointNames, native_name, renamed};
@@ -49,6 +49,10 @@ pub(crate) struct MotionArguments {
     /// the source joint unmapped.
     #[arg(long, value_name = "FILE")]
     pub(crate) mapping: Option<PathBuf>,
+
+    /// Retarget a motion even if it seems to be no person's, an animal's for example.
+    #[arg(long)]
+    pub(crate) force: bool,
 
     /// Frames per second of the written clips; by default those of the motion file, 30 for built-in clips.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
@@ -123,8 +127,9 @@ impl MotionArguments {
 
     /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with
     /// feet on the floor, joints within their limits and relaxed hands.
-    fn of_files(&self) -> [(&'static str, bool); 8] {
+    fn of_files(&self) -> [(&'static str, bool); 9] {
         [
+            ("--force", self.force),
             ("--clip-unit", self.clip_unit.is_some()),
             ("--clip-up", self.clip_up.is_some()),
             ("--clip-fps", self.clip_fps.is_some()),
@@ -213,6 +218,7 @@ fn load(
     }
     let (clips, report) = retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?)
         .map_err(|error| Failure::in_file(path, error))?;
+    check_confidence(source, &report.confidence, arguments)?;
     if let Some(reference) = &report.reference {
         let retarget::ReferenceFrame { clip, frame } = reference;
         eprintln!(
@@ -224,6 +230,25 @@ fn load(
         eprintln!("note: {source}: unmatched joints: {joints}");
     }
     Ok((clips, json!({ "source": source, "file": motion.report, "retarget": report })))
+}
+
+/// Tells what speaks against a person, and refuses what is more likely none, unless the user insists.
+fn check_confidence(source: &str, confidence: &Confidence, arguments: &MotionArguments) -> Result<()> {
+    if confidence.doubts.is_empty() {
+        return Ok(());
+    }
+    let doubts = confidence.doubts.join("; ");
+    let (value, least) = (confidence.value, retarget::LEAST_CONFIDENCE);
+    if value < least && !arguments.force && arguments.mapping.is_none() {
+        return Err(Failure::failed(format!(
+            "{source}: this is no person, with a confidence of {value:.2} where {least} is expected: {doubts}; use --force, or \
+             name the joints with --mapping"
+        )));
+    }
+    eprintln!(
+        "warning: {source}: this may be no person, or not a whole one (confidence {value:.2} of 1): {doubts}"
+    );
+    Ok(())
 }
 
 fn read_options(arguments: &MotionArguments) -> ReadOptions {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::confidence::Confidence;
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
 use super::reference_pose::{self, ReferenceFrame};
@@ -77,6 +78,8 @@ pub struct RetargetReport {
     pub joints: JointMapReport,
     /// Scale of root motion and heights: the ratio of leg lengths, unless given.
     pub scale: f32,
+    /// How sure it is that the motion is a person's.
+    pub confidence: Confidence,
     /// The frame that was taken for the rest pose, as that is no standing person; `None` for the file's rest pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference: Option<ReferenceFrame>,
@@ -134,12 +137,14 @@ impl<'a> Pipeline<'a> {
         let map = reference_pose::find_map(sources, &options.mapping)?;
         let reference = reference_pose::find(&map, sources)?;
         let (source, target_rest) = (sources[0].skeleton(), target.clone());
+        let confidence = Confidence::of(&map, source, &reference.model);
         let retargeter =
             Retargeter::with_reference(source, reference.model, target_rest, &map, &options.transfer)?;
         let limits = JointLimits::of_rig(target);
         let report = RetargetReport {
             joints: map.report().clone(),
             scale: retargeter.scale(),
+            confidence,
             reference: reference.frame,
             clips: Vec::new(),
         };
@@ -164,6 +169,7 @@ impl<'a> Pipeline<'a> {
         }
         // Both compare with the source, so they are measured before looping changes the clip.
         let direction = direction_error(source, &clip, map);
+        report.confidence.compare(source.name(), direction.mean());
         let jump = worst_jump(source, &clip, map);
         if let Some(unplanted) = unplanted {
             // Feet are planted after the blend, as it would make them slide.

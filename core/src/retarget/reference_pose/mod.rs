@@ -13,6 +13,7 @@ mod tests;
 use serde::Serialize;
 
 use self::stance::{Stance, Upright};
+use super::confidence::lacks;
 use super::joint_map::{JointMap, MatchedBy, NECK, Overrides, SPINE};
 use crate::clip::Clip;
 use crate::math::{RigidTransform, Rotation};
@@ -105,7 +106,7 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     let is_person = stance::is_person(map, rest, &model);
     let own = ReferencePose { model, frame: None };
     let Some(best) = motion.straightest else {
-        return if is_person { Ok(own) } else { Err(no_person()) };
+        return if is_person { Ok(own) } else { Err(no_person(map)) };
     };
     let askew = || is_askew(map, (&own.model, &best.model), at_rest.as_ref());
     // A motion may well begin in its rest pose: that is doubtful only if nobody stands so.
@@ -119,12 +120,13 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     Ok(ReferencePose { frame: Some(best.frame), model: best.model })
 }
 
-fn no_person() -> Error {
-    Error::invalid(
-        "motion",
-        "its zero pose (rest pose) is no standing person, and the body stands in none of its frames: expected a rest pose with \
-         legs down and trunk up, or a frame that stands so",
-    )
+fn no_person(map: &JointMap) -> Error {
+    let lacks: Vec<&str> = lacks(map).into_iter().map(|(part, _)| part).collect();
+    let lacks = if lacks.is_empty() { String::new() } else { format!("; it lacks {}", lacks.join(", ")) };
+    let expected = "expected a rest pose with legs down and trunk up, or a frame that stands so";
+    let message =
+        format!("no person stands in its zero pose (rest pose), nor in any of its frames{lacks}: {expected}");
+    Error::invalid("motion", message)
 }
 
 /// Whether trunk, head or feet, which say little by positions, would be turned far in a frame that stands upright.

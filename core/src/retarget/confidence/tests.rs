@@ -1,0 +1,144 @@
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::*;
+use crate::clip::builtin;
+use crate::retarget::{Overrides, RetargetOptions, retarget_clip};
+use crate::testing::bodies::bodies;
+
+/// A skeleton of the rig as another file has it: names, parents, rest pose.
+struct Rig {
+    names: Vec<String>,
+    parents: Vec<Option<u32>>,
+    rest: Vec<RigidTransform>,
+}
+
+impl Rig {
+    fn of(skeleton: &Skeleton) -> Self {
+        let rest = skeleton.rest_pose().locals.clone();
+        Self { names: skeleton.names().to_vec(), parents: skeleton.parents().to_vec(), rest }
+    }
+
+    fn at(&self, name: &str) -> usize {
+        self.names.iter().position(|n| n == name).unwrap()
+    }
+
+    /// Removes a joint with all below it.
+    fn without(mut self, name: &str) -> Self {
+        let top = self.at(name);
+        let mut gone = vec![false; self.names.len()];
+        for joint in 0..gone.len() {
+            gone[joint] = joint == top || self.parents[joint].is_some_and(|parent| gone[parent as usize]);
+        }
+        let place: Vec<u32> = gone
+            .iter()
+            .scan(0, |next, gone| {
+                *next += u32::from(!gone);
+                Some(*next - u32::from(!gone))
+            })
+            .collect();
+        let mut kept = gone.iter().map(|gone| !gone);
+        self.names.retain(|_| kept.next().unwrap());
+        let mut kept = gone.iter().map(|gone| !gone);
+        self.rest.retain(|_| kept.next().unwrap());
+        let mut kept = gone.iter().map(|gone| !gone);
+        self.parents.retain(|_| kept.next().unwrap());
+        for parent in self.parents.iter_mut().flatten() {
+            *parent = place[*parent as usize];
+        }
+        self
+    }
+
+    /// Hangs a chain of four joints below one; `first` in that joint's space, then bones of this length downwards in model space.
+    fn with_chain(mut self, below: &str, name: &str, first: Vec3, bone: f32) -> Self {
+        let mut parent = self.at(below) as u32;
+        let mut model = Vec::new();
+        crate::skeleton::model_from_joints(&self.parents, &self.rest, &mut model);
+        let down = model[parent as usize].rotation.conjugate() * Vec3::NEG_Y;
+        for i in 0..4 {
+            let translation = if i == 0 { first } else { down * bone };
+            self.names.push(format!("{name}{i}"));
+            self.parents.push(Some(parent));
+            self.rest.push(RigidTransform { translation, ..RigidTransform::IDENTITY });
+            parent = self.names.len() as u32 - 1;
+        }
+        self
+    }
+
+    fn confidence(self) -> Confidence {
+        let ends = vec![None; self.names.len()];
+        let skeleton = Skeleton::new(self.names, self.parents, self.rest, ends).unwrap();
+        let map = JointMap::find(&skeleton, &Overrides::new()).unwrap();
+        Confidence::of(&map, &skeleton, &skeleton.model_from_joints())
+    }
+}
+
+fn rig() -> Rig {
+    Rig::of(&bodies()[0].1)
+}
+
+#[test]
+fn a_person_is_one_with_hair_and_a_dress_too() {
+    for (body, skeleton) in bodies() {
+        let confidence = Rig::of(&skeleton).confidence();
+        assert!(confidence.value == 1.0 && confidence.doubts.is_empty(), "{body}: {confidence:?}");
+    }
+    let side = Vec3::new(0.1, 0.0, 0.0);
+    let tails = rig().with_chain("head", "x_a", side, 0.4).with_chain("head", "x_b", -side, 0.4);
+    assert_eq!(tails.confidence().value, 1.0, "from the head");
+    let mut dress = rig();
+    for name in ["x_a", "x_b", "x_c", "x_d"] {
+        dress = dress.with_chain("pelvis", name, side, 0.3);
+    }
+    assert_eq!(dress.confidence().value, 1.0, "more than two");
+    let named = rig().with_chain("pelvis", "tail_a", side, 0.3).with_chain("pelvis", "tail_b", -side, 0.3);
+    assert_eq!(named.confidence().value, 1.0, "by name");
+}
+
+#[test]
+fn what_is_lacking_is_named() {
+    let one_arm = rig().without("upperarm_l").confidence();
+    assert_eq!(one_arm.doubts, ["it lacks the left arm"]);
+    assert!(one_arm.value > LEAST_CONFIDENCE && one_arm.value < 1.0);
+    let legs = rig().without("spine_01").confidence();
+    assert_eq!(legs.doubts, ["it lacks the trunk, the head, the left arm, the right arm"]);
+    assert!(legs.value < LEAST_CONFIDENCE);
+}
+
+#[test]
+fn more_legs_are_an_animals() {
+    let side = Vec3::new(0.1, 0.0, 0.0);
+    let four =
+        rig().with_chain("pelvis", "x_a", side, 0.3).with_chain("pelvis", "x_b", -side, 0.3).confidence();
+    assert_eq!(four.doubts, ["it has two more legs, `x_a0` and `x_b0`"]);
+    assert!(four.value < LEAST_CONFIDENCE);
+    let short =
+        rig().with_chain("pelvis", "x_a", side, 0.1).with_chain("pelvis", "x_b", -side, 0.1).confidence();
+    assert_eq!(short.value, 1.0);
+}
+
+#[test]
+fn proportions_and_directions_tell_too() {
+    let mut long = rig();
+    for name in ["lowerarm_l", "lowerarm_r", "hand_l", "hand_r"] {
+        let joint = long.at(name);
+        long.rest[joint].translation *= 4.0;
+    }
+    let long = long.confidence();
+    assert!(long.value < 1.0 && long.doubts[0].starts_with("its arms are 2."), "{long:?}");
+    let mut confidence = rig().confidence();
+    confidence.compare("walk", 5.0);
+    assert_eq!(confidence.value, 1.0);
+    confidence.compare("walk", 31.4);
+    assert_eq!(confidence.doubts, ["bones of `walk` are 31° off on average"]);
+    assert!(confidence.value < 1.0);
+}
+
+#[test]
+fn the_report_of_retargeting_has_it() {
+    let skeleton = Arc::new(bodies()[0].1.clone());
+    let walk = builtin("walk", &skeleton).unwrap();
+    let (_, report) = retarget_clip(&walk, &skeleton, &RetargetOptions::default()).unwrap();
+    assert_eq!(report.confidence, Confidence { value: 1.0, doubts: Vec::new() });
+}
