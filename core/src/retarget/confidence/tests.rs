@@ -89,10 +89,10 @@ fn a_person_is_one_with_hair_and_a_dress_too() {
     assert_eq!(tails.confidence().value, 1.0, "from the head");
     let mut dress = rig();
     for name in ["x_a", "x_b", "x_c", "x_d"] {
-        dress = dress.with_chain("pelvis", name, side, 0.3);
+        dress = dress.with_chain("pelvis", name, side, 0.22);
     }
     assert_eq!(dress.confidence().value, 1.0, "more than two");
-    let named = rig().with_chain("pelvis", "tail_a", side, 0.3).with_chain("pelvis", "tail_b", -side, 0.3);
+    let named = rig().with_chain("pelvis", "tail_a", side, 0.22).with_chain("pelvis", "tail_b", -side, 0.22);
     assert_eq!(named.confidence().value, 1.0, "by name");
 }
 
@@ -110,7 +110,7 @@ fn what_is_lacking_is_named() {
 fn more_legs_are_an_animals() {
     let side = Vec3::new(0.1, 0.0, 0.0);
     let four =
-        rig().with_chain("pelvis", "x_a", side, 0.3).with_chain("pelvis", "x_b", -side, 0.3).confidence();
+        rig().with_chain("pelvis", "x_a", side, 0.22).with_chain("pelvis", "x_b", -side, 0.22).confidence();
     assert_eq!(four.doubts, ["it has two more legs, `x_a0` and `x_b0`"]);
     assert!(four.value < LEAST_CONFIDENCE);
     let short =
