@@ -220,4 +220,4 @@ fn convert_takes(raw: &mut RawMotion, unit: Unit, up: Axis) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(in crate::format) mod tests;
