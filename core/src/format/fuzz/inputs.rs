@@ -98,11 +98,11 @@ fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
 }
 
-/// A person who squats, without a mesh: the skeleton and three frames.
+/// A person who squats, with the meshes of an arm: some frames of a whole skeleton.
 pub(super) fn person() -> Scene {
     let skeleton = Arc::clone(&bodies()[0].1);
     let clip = resample(&builtin("squat", &skeleton).unwrap(), 1.0).unwrap();
-    Scene { name: "Person".into(), skeleton: Some(skeleton), clips: vec![clip], ..Scene::default() }
+    Scene { name: "Person".into(), skeleton: Some(skeleton), clips: vec![clip], ..scene::arm(4) }
 }
 
 /// An arm with morph targets, textures and a motion.

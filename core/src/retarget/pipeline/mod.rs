@@ -106,7 +106,9 @@ impl RetargetReport {
                 let expected = format!("expected a confidence of {LEAST_CONFIDENCE} or more");
                 Err(Error::invalid(
                     "motion",
-                    format!("{why}; {expected}, unless its joints are mapped or it is forced"),
+                    format!(
+                        "{why}; {expected}, unless its joints are mapped (`mapping`) or it is forced (`force`)"
+                    ),
                 ))
             }
             _ => Ok(()),

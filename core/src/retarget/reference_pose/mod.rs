@@ -126,8 +126,7 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip], force: bool) -> Result<Ref
 fn no_person(map: &JointMap) -> Error {
     let lacks: Vec<&str> = lacks(map).into_iter().map(|(part, _)| part).collect();
     let lacks = if lacks.is_empty() { String::new() } else { format!("; it lacks {}", lacks.join(", ")) };
-    let expected =
-        "expected a rest pose with legs down and trunk up, or a frame that stands so, unless it is forced";
+    let expected = "expected a rest pose with legs down and trunk up, or a frame that stands so, unless it is forced (`force`)";
     let message =
         format!("no person stands in its zero pose (rest pose), nor in any of its frames{lacks}: {expected}");
     Error::invalid("motion", message)
