@@ -78,7 +78,10 @@ class BakesMotion:
             body = character.generate_body(rig)
             clips.append((rig, body, motion_source.make_clip(source, motion, body, scene)))
             yield 0.5 + 0.25 * len(clips) / len(rigs)
-        unmatched = (clips[0][2].report or {}).get("joints", {}).get("unmatched")
+        report = clips[0][2].report or {}
+        for doubt in report.get("confidence", {}).get("doubts", ()):
+            self.report({"WARNING"}, f"This may be no person, or not a whole one: {doubt}")
+        unmatched = report.get("joints", {}).get("unmatched")
         if unmatched:
             self.report({"INFO"}, f"Joints of the source without a counterpart: {', '.join(unmatched)}")
         for done, (rig, body, clip) in enumerate(clips, 1):
@@ -114,18 +117,21 @@ class RetargetsMotion(BakesMotion):
         name="Foot Contacts", description="Keep feet that touch the floor from sliding and from sinking in", default=True
     )
     looped: BoolProperty(name="Loop", description="Blend the end of the motion into its beginning")
+    force: BoolProperty(
+        name="Force", description="Retarget even what seems to be no person's motion, or motion in which nobody stands"
+    )
 
     def source_dictionary(self, kind, **fields):
         """A source with the options of this operator."""
         source = super().source_dictionary(kind, **fields)
         source["options"].update(
-            fingers=self.fingers.lower(), limits=self.limits, feet=self.feet, looped=self.looped
+            fingers=self.fingers.lower(), limits=self.limits, feet=self.feet, looped=self.looped, force=self.force
         )
         return source
 
 
 class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, bpy.types.Operator, ImportHelper):
-    """Retarget a motion file to the selected characters: BVH, FBX, glTF, USD or AMASS / SMPL-X npz. Press Esc to stop"""
+    """Retarget a motion file to the selected characters: BVH, FBX, glTF, VRM, USD or AMASS / SMPL-X npz. Press Esc to stop"""
 
     bl_idname = "anthronet.clip_apply"
     bl_label = "Apply Clip"
@@ -134,10 +140,11 @@ class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, 
     filter_glob: StringProperty(
         name="File Filter",
         description="Files that are shown",
-        default="*.bvh;*.fbx;*.glb;*.gltf;*.npz;*.usd;*.usda;*.usdc;*.usdz",
+        default="*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.vrma;*.npz;*.usd;*.usda;*.usdc;*.usdz",
         options={"HIDDEN"},
     )
     clip: IntProperty(name="Clip", description="Index of the clip in the file. The first one has 0", min=0)
+    person: IntProperty(name="Person", description="Index of the person in an .npz of several. The first one has 0", min=0)
     up: EnumProperty(name="Up Axis", description="Axis of the file that points up", items=_UP_AXES)
     scale: FloatProperty(
         name="Meters per Unit",
@@ -147,7 +154,8 @@ class ANTHRONET_OT_clip_apply(ChangesCharacter, ModalOperator, RetargetsMotion, 
 
     def work(self, context):
         """Bakes the file's clip for all selected characters."""
-        source = self.source_dictionary("file", path=self.filepath, clip=self.clip, up=self.up, scale=self.scale)
+        chosen = {"clip": self.clip, "person": self.person, "up": self.up, "scale": self.scale}
+        source = self.source_dictionary("file", path=self.filepath, **chosen)
         yield from self.bake(context, character.selected(context), source)
 
 
@@ -207,7 +215,7 @@ class ANTHRONET_OT_clip_from_armature(ChangesCharacter, ModalOperator, Retargets
         layout.use_property_split = True
         layout.prop_search(self, "source", context.scene, "objects", icon="ARMATURE_DATA")
         layout.prop_search(self, "action", bpy.data, "actions")
-        for name in ("slot", "start", "end", "fingers", "limits", "feet", "looped"):
+        for name in ("slot", "start", "end", "fingers", "limits", "feet", "looped", "force"):
             layout.prop(self, name)
         for name in ("frame_start", "in_place", "use_scene_rate", "use_scene_range", "nla"):
             layout.prop(self, name)

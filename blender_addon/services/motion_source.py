@@ -2,7 +2,7 @@
 """Sources of motion: built-in clips, files, other armatures. A source is a dictionary of plain values that an action stores, so
 that its clip can be made again after the body changed.
 
-``kind`` is ``builtin`` (with ``name``), ``file`` (``path``, ``clip``, ``up``, ``scale``) or ``armature`` (``object``,
+``kind`` is ``builtin`` (with ``name``), ``file`` (``path``, ``clip``, ``person``, ``up``, ``scale``) or ``armature`` (``object``,
 ``action``, ``slot``, ``start``, ``end``). All have ``frame_start``, ``at_scene_rate`` and ``options``, those of retargeting."""
 
 import contextlib
@@ -28,6 +28,8 @@ def _read_file(source):
         bpy.path.abspath(source["path"]),
         metres_per_unit=scale or None,
         up=None if up == "FOUND" else up.lower(),
+        # Actions of older releases have none; for the first person the library says how many there are.
+        person=source.get("person") or None,
     )
 
 

@@ -14,7 +14,7 @@ def _draw_add(self, _context):
 
 
 def _draw_import(self, _context):
-    self.layout.operator("anthronet.clip_apply", text="Motion for AnthroNet Character (.bvh/.fbx/.glb/.npz/.usd)")
+    self.layout.operator("anthronet.clip_apply", text="Motion for AnthroNet Character (.bvh/.fbx/.glb/.vrma/.npz/.usd)")
 
 
 def _draw_export(self, _context):

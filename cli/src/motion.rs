@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anthronet::clip::{self, BUILTIN, Clip};
 use anthronet::format::{self, Format, Purpose, ReadOptions};
 use anthronet::retarget::feet::FeetOptions;
-use anthronet::retarget::{self, FingerMode, RetargetOptions};
+use anthronet::retarget::{self, FingerMode, RetargetOptions, RetargetReport};
 use anthronet::scene::Scene;
 use anthronet::skeleton::Skeleton;
 use anthronet::skeleton::humanoid::{JointNames, native_name, renamed};
@@ -49,6 +49,10 @@ pub(crate) struct MotionArguments {
     /// the source joint unmapped.
     #[arg(long, value_name = "FILE")]
     pub(crate) mapping: Option<PathBuf>,
+
+    /// Retarget a motion even if it seems to be no person's, an animal's for example, or nobody stands in it.
+    #[arg(long)]
+    pub(crate) force: bool,
 
     /// Frames per second of the written clips; by default those of the motion file, 30 for built-in clips.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
@@ -123,8 +127,9 @@ impl MotionArguments {
 
     /// Options that apply to motion files only, and whether they were given. Built-in clips are made for the body, with
     /// feet on the floor, joints within their limits and relaxed hands.
-    fn of_files(&self) -> [(&'static str, bool); 8] {
+    fn of_files(&self) -> [(&'static str, bool); 9] {
         [
+            ("--force", self.force),
             ("--clip-unit", self.clip_unit.is_some()),
             ("--clip-up", self.clip_up.is_some()),
             ("--clip-fps", self.clip_fps.is_some()),
@@ -168,23 +173,32 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
         return Ok(());
     }
     let skeleton = Arc::new(scene.skeleton_with_ends(|name| native_name(name).into_owned())?);
-    let mut reports = Vec::new();
+    let (mut reports, mut accepted) = (Vec::new(), Ok(()));
     for source in &arguments.clips {
-        let (clips, report) = load(source, &skeleton, arguments)?;
-        clips.into_iter().for_each(|clip| scene.add_clip(clip));
-        reports.push(report);
+        let loaded = load(source, &skeleton, arguments)?;
+        loaded.clips.into_iter().for_each(|clip| scene.add_clip(clip));
+        reports.push(loaded.report);
+        accepted = loaded.accepted;
+        if accepted.is_err() {
+            break;
+        }
     }
-    let Some(path) = &arguments.motion_report else { return Ok(()) };
-    let text = serde_json::to_string_pretty(&json!({ "motions": reports }))?;
-    files::write_text(path, &(text + "\n"))
+    if let Some(path) = &arguments.motion_report {
+        let text = serde_json::to_string_pretty(&json!({ "motions": reports }))?;
+        files::write_text(path, &(text + "\n"))?;
+    }
+    accepted
 }
 
-/// The clips of one `--clip`, retargeted to the skeleton, with their report.
-fn load(
-    source: &str,
-    skeleton: &Arc<Skeleton>,
-    arguments: &MotionArguments,
-) -> Result<(Vec<Clip>, serde_json::Value)> {
+/// The clips of one `--clip`, retargeted to the skeleton.
+struct Loaded {
+    clips: Vec<Clip>,
+    report: serde_json::Value,
+    /// An error for a motion that seems to be no person's: its report helps to name the joints.
+    accepted: Result<()>,
+}
+
+fn load(source: &str, skeleton: &Arc<Skeleton>, arguments: &MotionArguments) -> Result<Loaded> {
     if BUILTIN.contains(&source) {
         let clip = clip::builtin(source, skeleton)?;
         let clip = match arguments.fps {
@@ -200,7 +214,7 @@ fn load(
                 "frames_per_second": clip.frames_per_second(),
             }],
         });
-        return Ok((vec![clip], report));
+        return Ok(Loaded { clips: vec![clip], report, accepted: Ok(()) });
     }
     let path = Path::new(source);
     if path.extension().is_none() && !path.exists() {
@@ -211,10 +225,23 @@ fn load(
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }
-    let (clips, report) = retarget::retarget(&motion.clips, skeleton, &retarget_options(arguments)?)
+    let options = retarget_options(arguments)?;
+    let (clips, report) = retarget::retarget(&motion.clips, skeleton, &options)
         .map_err(|error| Failure::in_file(path, error))?;
-    if let Some(reference) = &report.reference {
-        let retarget::ReferenceFrame { clip, frame } = reference;
+    let accepted = report.check(&options).map_err(|error| Failure::in_file(path, error));
+    if accepted.is_ok() {
+        tell(source, &report);
+    }
+    let report = json!({ "source": source, "file": motion.report, "retarget": report });
+    Ok(Loaded { clips, report, accepted })
+}
+
+/// Tells what a user should know of a motion that was retargeted.
+fn tell(source: &str, report: &RetargetReport) {
+    if let Some(warning) = report.confidence.warning() {
+        eprintln!("warning: {source}: {warning}");
+    }
+    if let Some(retarget::ReferenceFrame { clip, frame }) = &report.reference {
         eprintln!(
             "warning: {source}: the rest pose is no standing person: frame {frame} of `{clip}`, which stands, was taken for it"
         );
@@ -223,7 +250,6 @@ fn load(
         let joints = report.joints.unmatched.join(", ");
         eprintln!("note: {source}: unmatched joints: {joints}");
     }
-    Ok((clips, json!({ "source": source, "file": motion.report, "retarget": report })))
 }
 
 fn read_options(arguments: &MotionArguments) -> ReadOptions {
@@ -242,6 +268,7 @@ fn retarget_options(arguments: &MotionArguments) -> Result<RetargetOptions> {
         frames_per_second: arguments.fps,
         in_place: arguments.in_place,
         looped: arguments.looped,
+        force: arguments.force,
         ..RetargetOptions::default()
     };
     if let Some(path) = &arguments.mapping {

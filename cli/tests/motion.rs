@@ -249,6 +249,35 @@ fn motion_goes_to_a_vrma_and_comes_back_from_it() {
 }
 
 #[test]
+fn half_a_person_is_refused_unless_it_is_forced() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let frame = format!("0 90 0{}\n", " 0".repeat(27));
+    let above = &BVH[..BVH.find("JOINT Spine").unwrap()];
+    let legs = format!("{above}}}\nMOTION\nFrames: 2\nFrame Time: 0.04\n{frame}{frame}");
+    let legs = write(&folder, "legs.bvh", legs.as_bytes());
+    let map = write(&folder, "map.json", br#"{"Hips": "pelvis"}"#);
+    let (out, report) = (path("a.glb"), path("report.json"));
+    let generate = |more: &[&str]| {
+        let given = ["generate", "--sex", "male", "--lod", "3", "-o", &out, "--motion-report", &report];
+        anthronet(&[&given[..], &["--clip", &legs], more].concat(), &[])
+    };
+    let confidence = || {
+        let text: Value = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+        text["motions"][0]["retarget"]["confidence"].clone()
+    };
+    generate(&[]).fails(1, &["legs.bvh", "no person", "it lacks the trunk, the head", "0.5"]);
+    assert!(!fs::exists(&out).unwrap());
+    let refused = confidence();
+    assert!(refused["value"].as_f64().unwrap() < 0.5, "{refused}");
+    for more in [&["--force"][..], &["--mapping", &map]] {
+        let run = generate(more).succeeds();
+        assert!(run.err.contains("warning: ") && run.err.contains("it lacks the trunk"), "{}", run.err);
+        assert_eq!(confidence(), refused);
+    }
+}
+
+#[test]
 fn what_cannot_be_is_refused_and_nothing_is_left() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
@@ -276,6 +305,7 @@ fn what_cannot_be_is_refused_and_nothing_is_left() {
         &["--clip-up", "z"],
         &["--clip-fps", "50"],
         &["--clip-person", "1"],
+        &["--force"],
     ] {
         generate(option, 2, &[option[0], "together with --clip"]);
         let built_in = [&["--clip", "walk", "--clip", "idle"], option].concat();

@@ -205,6 +205,8 @@ pub(crate) mod ffi {
         bmi: f64,
         /// The measures in the order of `measure_names`, metres.
         metres: Vec<f64>,
+        /// In which unit and axes a file was read, if not in metres with +Y up; empty for a mesh in memory.
+        warnings: Vec<String>,
     }
 
     /// How a mesh is made of a body. `MeshOptions{}` is the default.
@@ -245,6 +247,8 @@ pub(crate) mod ffi {
         metres_per_unit: f64,
         /// Frames were recorded at this rate, curves are sampled at it; 0 leaves it to the file.
         frames_per_second: f64,
+        /// Which of several people in an `.npz`, from 1; 0 reads the first, and the report warns.
+        person: u32,
     }
 
     /// How a motion is retargeted to a body. `RetargetOptions{}` is the default: joints within their limits, feet on the
@@ -266,6 +270,8 @@ pub(crate) mod ffi {
         /// Which joint of the motion drives which joint of the rig, or none, as JSON: `{"LeftArm": "upperarm_l", "Tail":
         /// null}`; joints that it does not name are matched automatically. Empty matches all of them.
         mapping_json: String,
+        /// Accepts a motion that seems to be no person's, or in which nobody stands.
+        force: bool,
     }
 
     /// Colour and gloss of a part of a mesh.
@@ -367,7 +373,8 @@ pub(crate) mod ffi {
         /// body alone in the model's order, metres.
         fn measure_mesh(self: &Model, positions: &[f32], space: Space) -> Result<Measured>;
 
-        /// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order.
+        /// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order. Other
+        /// units and axes are found from the body, and the warnings say so.
         fn measure_file(self: &Model, path: &str) -> Result<Measured>;
 
         /// A person to be made. Metres.
@@ -606,7 +613,7 @@ pub(crate) mod ffi {
         /// A motion file as it was read: at least one clip of the file's own skeleton. Immutable.
         type Motion;
 
-        /// Reads .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz.
+        /// Reads .bvh, .fbx, .glb, .gltf, .vrm, .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc, .usdz.
         #[Self = "Motion"]
         fn open(path: &str, options: &MotionOptions) -> Result<Box<Motion>>;
 
@@ -623,7 +630,8 @@ pub(crate) mod ffi {
         /// How the file was read, as JSON: format, unit, up axis, frame rate, how each was found, warnings.
         fn report(self: &Motion) -> Result<String>;
 
-        /// Retargets one of its clips to a body.
+        /// Retargets one of its clips to a body. The clip's report says how sure it is that the motion is a person's
+        /// (`confidence`) and why not; below 0.5 it is refused, unless joints are mapped or it is forced.
         fn retarget(self: &Motion, clip: usize, body: &Body, options: &RetargetOptions) -> Result<Box<Clip>>;
 
         /// A body with its clips, ready to become a file.

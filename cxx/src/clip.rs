@@ -210,6 +210,7 @@ impl Motion {
         let options = retarget_options(options)?;
         let source = at(&self.0.clips, clip, "clip")?;
         let (clip, report) = retarget::retarget_clip(source, body.body.skeleton(), &options)?;
+        report.check(&options)?;
         let report = json("retarget report", &report)?;
         Ok(Box::new(Clip { clip, report }))
     }
@@ -219,8 +220,8 @@ fn read_options(asked: &ffi::MotionOptions) -> Result<ReadOptions> {
     let options = ReadOptions {
         unit: None,
         up: asked.up.meaning()?,
+        person: asked.person.checked_sub(1).map(|person| person as usize),
         frames_per_second: given(asked.frames_per_second),
-        ..ReadOptions::default()
     };
     match given(asked.metres_per_unit) {
         None => Ok(options),
@@ -245,6 +246,7 @@ fn retarget_options(asked: &ffi::RetargetOptions) -> Result<RetargetOptions> {
         feet: (!asked.no_feet).then(FeetOptions::default),
         in_place: asked.in_place,
         looped: asked.looped,
+        force: asked.force,
         frames_per_second: given(asked.frames_per_second),
     })
 }

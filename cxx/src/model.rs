@@ -77,6 +77,7 @@ impl From<MeasuredMesh> for ffi::Measured {
             volume_m3: found.mass.volume_m3,
             bmi: found.mass.bmi,
             metres: found.measurements.to_vec(),
+            warnings: found.warnings,
         }
     }
 }

@@ -491,6 +491,8 @@ typedef struct anthronet_motion_options {
     double metres_per_unit;
     // Frames per second: frames were recorded at this rate, curves are sampled at it.
     double frames_per_second;
+    // Which of several people in an `.npz`, from 1; 0 reads the first, with a warning.
+    uint32_t person;
 } anthronet_motion_options;
 
 // A motion of a skeleton of another program, such as an action of an armature. Arrays are read only during the call.
@@ -540,6 +542,8 @@ typedef struct anthronet_retarget_options {
     const char *mapping_json;
     // Frames per second of the result; 0 keeps those of the motion.
     double frames_per_second;
+    // 1 accepts a motion that seems to be no person's, or in which nobody stands.
+    uint32_t force;
 } anthronet_retarget_options;
 
 // One surface to pose. Everything is in the space of the mesh that the skinner was made of.
@@ -694,8 +698,8 @@ anthronet_status anthronet_measure_mesh(const struct anthronet_model *model,
                                         struct anthronet_measured *out_measured,
                                         struct anthronet_error *error);
 
-// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order. Results as
-// of `anthronet_measure_mesh`.
+// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order. Results as
+// of `anthronet_measure_mesh`. Other units and axes are found from the body, which is logged as a warning.
 anthronet_status anthronet_measure_file(const struct anthronet_model *model,
                                         const char *path,
                                         uint64_t path_length,
@@ -703,6 +707,15 @@ anthronet_status anthronet_measure_file(const struct anthronet_model *model,
                                         uint32_t count,
                                         struct anthronet_measured *out_measured,
                                         struct anthronet_error *error);
+
+// Measures the body of a file as `anthronet_measure_file` does, as JSON: `{"measures": [{"name", "value"}, …], "mass_kg",
+// "volume_m3", "bmi", "lod", "warnings"}`; metres. The warnings say in which unit and axes the file was read, if not in metres
+// with +Y up.
+anthronet_status anthronet_measure_file_report(const struct anthronet_model *model,
+                                               const char *path,
+                                               uint64_t path_length,
+                                               struct anthronet_bytes **out_json,
+                                               struct anthronet_error *error);
 
 // A request without given measures: the most likely person.
 anthronet_status anthronet_request_new(struct anthronet_request **out_request, struct anthronet_error *error);
@@ -1075,7 +1088,8 @@ anthronet_status anthronet_clip_crossfade(const struct anthronet_clip *first,
                                           struct anthronet_clip **out_clip,
                                           struct anthronet_error *error);
 
-// Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz. `read_options` may be NULL.
+// Reads a motion file: .bvh, .fbx, .glb, .gltf, .vrm, .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc, .usdz.
+// `read_options` may be NULL.
 anthronet_status anthronet_motion_open_path(const char *path,
                                             uint64_t path_length,
                                             const struct anthronet_motion_options *read_options,
@@ -1117,7 +1131,9 @@ anthronet_status anthronet_motion_report(const struct anthronet_motion *motion,
                                          struct anthronet_error *error);
 
 // Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
-// which joint drives which, which joints drive none, errors of directions, limits and feet.
+// which joint drives which, which joints drive none, how sure it is that the motion is a person's (`confidence`: `value` from 0
+// to 1 and `doubts`, which are also logged as a warning), errors of directions, limits and feet. Below a confidence of
+// 0.5 the motion is refused, unless joints are mapped or `force` is set.
 anthronet_status anthronet_motion_retarget(const struct anthronet_motion *motion,
                                            uint32_t clip,
                                            const struct anthronet_body *body,

@@ -1,10 +1,16 @@
 //! Bytes that the library made: files, JSON.
 
 use crate::pointer::{Out, free, read};
-use crate::status::{anthronet_error, anthronet_status, guard};
+use crate::status::{ANTHRONET_ERROR_OTHER, Fault, Outcome, anthronet_error, anthronet_status, guard};
 
 /// Bytes that the library made: a file in memory, or JSON as UTF-8.
 pub struct anthronet_bytes(pub(crate) Vec<u8>);
+
+/// A value as JSON.
+pub(crate) fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {
+    let bytes = serde_json::to_vec(value);
+    bytes.map(anthronet_bytes).map_err(|e| Fault::new(ANTHRONET_ERROR_OTHER, e.to_string()))
+}
 
 /// Where the bytes are, and how many; valid until they are freed.
 #[unsafe(no_mangle)]

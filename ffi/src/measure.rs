@@ -7,6 +7,7 @@ use anthronet::measure::{MEASURE_COUNT, MeasureId};
 use anthronet::mesh::Lod;
 use anthronet::model::MeasuredMesh;
 
+use crate::bytes::{anthronet_bytes, json};
 use crate::model::anthronet_model;
 use crate::options::{Descriptor, DescriptorOut, space};
 use crate::pointer::{Out, OutSlice, anthronet_text, beyond, exactly, read, read_vectors, text};
@@ -98,8 +99,8 @@ pub unsafe extern "C" fn anthronet_measure_mesh(
     })
 }
 
-/// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order. Results as
-/// of `anthronet_measure_mesh`.
+/// Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order. Results as
+/// of `anthronet_measure_mesh`. Other units and axes are found from the body, which is logged as a warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_measure_file(
     model: *const anthronet_model,
@@ -113,11 +114,44 @@ pub unsafe extern "C" fn anthronet_measure_file(
     guard(error, || {
         let out = Results::new(out_metres, count, out_measured)?;
         let model = read(model, "model")?;
-        let measured =
-            anthronet::format::measure_file(&model.0, Path::new(text(path, path_length, "path")?))?;
-        out.write(&measured);
+        out.write(&measured_file(model, text(path, path_length, "path")?)?);
         Ok(())
     })
+}
+
+/// Measures the body of a file as `anthronet_measure_file` does, as JSON: `{"measures": [{"name", "value"}, …], "mass_kg",
+/// "volume_m3", "bmi", "lod", "warnings"}`; metres. The warnings say in which unit and axes the file was read, if not in metres
+/// with +Y up.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn anthronet_measure_file_report(
+    model: *const anthronet_model,
+    path: *const c_char,
+    path_length: u64,
+    out_json: *mut *mut anthronet_bytes,
+    error: *mut anthronet_error,
+) -> anthronet_status {
+    guard(error, || {
+        let out = Out::new(out_json, "out_json")?;
+        let model = read(model, "model")?;
+        let found = measured_file(model, text(path, path_length, "path")?)?;
+        let named = MeasureId::all().zip(found.measurements);
+        out.give(json(&serde_json::json!({
+            "measures": named.map(|(id, value)| serde_json::json!({ "name": id.name(), "value": value })).collect::<Vec<_>>(),
+            "mass_kg": found.mass.mass_kg,
+            "volume_m3": found.mass.volume_m3,
+            "bmi": found.mass.bmi,
+            "lod": u8::from(found.lod),
+            "warnings": found.warnings,
+        }))?);
+        Ok(())
+    })
+}
+
+/// Measures a file and logs its warnings.
+fn measured_file(model: &anthronet_model, path: &str) -> Outcome<MeasuredMesh> {
+    let found = anthronet::format::measure_file(&model.0, Path::new(path))?;
+    found.warnings.iter().for_each(|warning| crate::log::warning(warning));
+    Ok(found)
 }
 
 /// Refuses a number of vertices that no level of detail has.

@@ -13,7 +13,7 @@ use anthronet::skeleton::{MAX_JOINTS, Skeleton};
 use anthronet::space::{Axis, Space};
 
 use crate::body::anthronet_body;
-use crate::bytes::anthronet_bytes;
+use crate::bytes::{anthronet_bytes, json};
 use crate::clip::anthronet_clip;
 use crate::options::{Descriptor, choice, described, flag, given, space};
 use crate::pointer::{Out, anthronet_text, at, at_most, file, free, read, slice, text};
@@ -65,6 +65,8 @@ pub struct anthronet_motion_options {
     pub metres_per_unit: f64,
     /// Frames per second: frames were recorded at this rate, curves are sampled at it.
     pub frames_per_second: f64,
+    /// Which of several people in an `.npz`, from 1; 0 reads the first, with a warning.
+    pub person: u32,
 }
 
 // SAFETY: numbers alone, the size first.
@@ -95,6 +97,8 @@ pub struct anthronet_retarget_options {
     pub mapping_json: *const c_char,
     /// Frames per second of the result; 0 keeps those of the motion.
     pub frames_per_second: f64,
+    /// 1 accepts a motion that seems to be no person's, or in which nobody stands.
+    pub force: u32,
 }
 
 // SAFETY: numbers and a pointer that may be NULL, the size first.
@@ -108,8 +112,8 @@ fn options(pointer: *const anthronet_motion_options) -> Outcome<ReadOptions> {
     let options = ReadOptions {
         unit: None,
         up: choice(&UPS, asked.up, "up")?,
+        person: asked.person.checked_sub(1).map(|person| person as usize),
         frames_per_second: given(asked.frames_per_second),
-        ..ReadOptions::default()
     };
     match given(asked.metres_per_unit) {
         None => Ok(options),
@@ -122,7 +126,8 @@ fn give(out: Out<*mut anthronet_motion>, motion: Motion) {
     out.give(anthronet_motion(motion));
 }
 
-/// Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz. `read_options` may be NULL.
+/// Reads a motion file: .bvh, .fbx, .glb, .gltf, .vrm, .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc, .usdz.
+/// `read_options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_open_path(
     path: *const c_char,
@@ -292,7 +297,9 @@ pub unsafe extern "C" fn anthronet_motion_report(
 }
 
 /// Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
-/// which joint drives which, which joints drive none, errors of directions, limits and feet.
+/// which joint drives which, which joints drive none, how sure it is that the motion is a person's (`confidence`: `value` from 0
+/// to 1 and `doubts`, which are also logged as a warning), errors of directions, limits and feet. Below a confidence of
+/// 0.5 the motion is refused, unless joints are mapped or `force` is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn anthronet_motion_retarget(
     motion: *const anthronet_motion,
@@ -311,7 +318,11 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
         let options = options_of(&described(retarget_options, "options")?)?;
         let (clip, report) =
             retarget::retarget_clip(at(&motion.clips, clip, "clip")?, body.body.skeleton(), &options)?;
+        report.check(&options)?;
         let report_json = json(&report)?;
+        if let Some(warning) = report.confidence.warning() {
+            crate::log::warning(&warning);
+        }
         if !report.joints.unmatched.is_empty() {
             crate::log::info(&format!("unmatched joints: {}", report.joints.unmatched.join(", ")));
         }
@@ -342,11 +353,7 @@ fn options_of(asked: &anthronet_retarget_options) -> Outcome<RetargetOptions> {
         feet: (!flag(asked.no_feet, "no_feet")?).then(FeetOptions::default),
         in_place: flag(asked.in_place, "in_place")?,
         looped: flag(asked.looped, "looped")?,
+        force: flag(asked.force, "force")?,
         frames_per_second: given(asked.frames_per_second),
     })
-}
-
-fn json(value: &impl serde::Serialize) -> Outcome<anthronet_bytes> {
-    let bytes = serde_json::to_vec(value);
-    bytes.map(anthronet_bytes).map_err(|e| Fault::new(crate::status::ANTHRONET_ERROR_OTHER, e.to_string()))
 }

@@ -29,6 +29,8 @@ class Measured(NamedTuple):
     bmi: float
     #: The level of detail that the mesh was recognised as.
     lod: int
+    #: In which unit and axes a file was read, if not in metres with +Y up.
+    warnings: Tuple[str, ...] = ()
 
 
 class Model(Owner):
@@ -150,23 +152,25 @@ class Model(Owner):
             array = _arguments.floats(positions, "positions", (None, 3))
         count = _arguments.whole(len(array), "positions")
         stride = array.strides[0] if count > 1 else 0
-        return self._measured(lib.anthronet_measure_mesh, array.ctypes.data, count, stride, number)
+        metres = (ctypes.c_double * len(MEASURES))()
+        found = described(_native.Measured)
+        place = (array.ctypes.data, count, stride, number)
+        call(lib.anthronet_measure_mesh, self._open, *place, metres, len(MEASURES), ctypes.byref(found))
+        return Measured(dict(zip(MEASURES, metres)), found.mass_kg, found.volume_m3, found.bmi, found.lod)
 
     def measure_file(self, path: Path) -> Measured:
         """Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order.
+
+        Other units and axes are found from the body, and `warnings` say so.
 
         Raises:
             FileError: there is no such body in it.
             IoError: the system does not let it be read.
         """
         encoded = _arguments.path(path)
-        return self._measured(lib.anthronet_measure_file, encoded, len(encoded))
-
-    def _measured(self, function: Any, *arguments: Any) -> Measured:
-        metres = (ctypes.c_double * len(MEASURES))()
-        found = described(_native.Measured)
-        call(function, self._open, *arguments, metres, len(MEASURES), ctypes.byref(found))
-        return Measured(dict(zip(MEASURES, metres)), found.mass_kg, found.volume_m3, found.bmi, found.lod)
+        said = json_of(lib.anthronet_measure_file_report, self._open, encoded, len(encoded))
+        measures = {row["name"]: row["value"] for row in said.pop("measures")}
+        return Measured(measures=measures, warnings=tuple(said.pop("warnings")), **said)
 
     def __repr__(self) -> str:
         return "<Model, closed>" if self.closed else "<Model>"

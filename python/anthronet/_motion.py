@@ -52,15 +52,16 @@ class Motion(Owner):
         metres_per_unit: Optional[float] = None,
         up: Optional[str] = None,
         frames_per_second: Optional[float] = None,
+        person: Optional[int] = None,
     ) -> Motion:
         """Reads a motion file from memory.
 
         Args:
             data: bytes, or anything that has some.
             name: the file's: its extension says the format, and a clip without a name gets it.
-            metres_per_unit, up, frames_per_second: as of `open_motion`.
+            metres_per_unit, up, frames_per_second, person: as of `open_motion`.
         """
-        options = _options(metres_per_unit, up, frames_per_second)
+        options = _options(metres_per_unit, up, frames_per_second, person)
         content, encoded = _arguments.data(data, "data"), _arguments.text(name, "name")
         return cls._make(
             lib.anthronet_motion_open_memory,
@@ -148,6 +149,7 @@ class Motion(Owner):
         root_motion: bool = False,
         mapping: Optional[Mapping[str, Optional[str]]] = None,
         frames_per_second: Optional[float] = None,
+        force: bool = False,
     ) -> Clip:
         """Retargets one clip to a body.
 
@@ -164,13 +166,16 @@ class Motion(Owner):
             mapping: which joint of the motion drives which joint of the rig, or none: `{"LeftArm": "upperarm_l", "Jaw":
                 None}`; other joints are matched automatically.
             frames_per_second: rate of the result; None for the motion's.
+            force: accepts a motion that seems to be no person's, an animal's for example, or in which nobody stands.
 
         Returns:
-            A clip with a `report`.
+            A clip with a `report`. Its `confidence` says how sure it is that the motion is a person's, as `value` from 0 to 1,
+            and why it may be none, as `doubts`.
 
         Raises:
             ArgumentError: there is no such clip.
-            Error: the joints cannot be matched, or the mapping names what there is not.
+            Error: the joints cannot be matched, or the mapping names what there is not; the motion is more likely no person's (a
+                confidence below 0.5), and it has no mapping and is not forced.
         """
         from ._body import Body
 
@@ -188,6 +193,7 @@ class Motion(Owner):
             mapping_length=len(said),
             mapping_json=ctypes.addressof(kept) if said else None,
             frames_per_second=_rate(frames_per_second),
+            force=_arguments.flag(force, "force"),
         )
         made, report = Handle(), Handle()
         call(
@@ -211,8 +217,9 @@ def open_motion(
     metres_per_unit: Optional[float] = None,
     up: Optional[str] = None,
     frames_per_second: Optional[float] = None,
+    person: Optional[int] = None,
 ) -> Motion:
-    """Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usd, .usda, .usdc or .usdz.
+    """Reads a motion file: .bvh, .fbx, .glb, .gltf, .vrm, .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc or .usdz.
 
     Args:
         path: of the file.
@@ -220,13 +227,14 @@ def open_motion(
         up: `"x"`, `"y"` or `"z"`, or with a minus where that axis points down, as `"-y"` does in the axes of cameras; None for
             what the file says, or its skeleton's stance.
         frames_per_second: the rate that frames were recorded at, and that curves are sampled at.
+        person: which of several people in an .npz, from 0; None for the first, with a warning in the report.
 
     Raises:
         FileError: the file is not what its extension says.
         IoError: the system does not let it be read.
         TypeError, ValueError: an argument does not fit.
     """
-    options = _options(metres_per_unit, up, frames_per_second)
+    options = _options(metres_per_unit, up, frames_per_second, person)
     encoded = _arguments.path(path)
     return Motion._make(lib.anthronet_motion_open_path, encoded, len(encoded), ctypes.byref(options))
 
@@ -235,12 +243,16 @@ def _text(buffer: ctypes.c_char_p, length: int) -> _native.Text:
     return _native.Text(ctypes.cast(buffer, ctypes.c_void_p), length)
 
 
-def _options(metres_per_unit: Optional[float], up: Optional[str], frames_per_second: Optional[float]) -> Any:
+def _options(
+    metres_per_unit: Optional[float], up: Optional[str], frames_per_second: Optional[float], person: Optional[int]
+) -> Any:
     return described(
         _native.MotionOptions,
         up=_arguments.choice(_UPS, up, "up"),
         metres_per_unit=0.0 if metres_per_unit is None else _arguments.positive(metres_per_unit, "metres_per_unit"),
         frames_per_second=_rate(frames_per_second),
+        # The library counts from 1, as 0 is its default.
+        person=0 if person is None else _arguments.whole(_arguments.whole(person, "person") + 1, "person"),
     )
 
 

@@ -237,6 +237,7 @@ class MotionOptions(Structure):
         ("up", c_uint32),
         ("metres_per_unit", c_double),
         ("frames_per_second", c_double),
+        ("person", c_uint32),
     ]
 
 
@@ -267,6 +268,7 @@ class RetargetOptions(Structure):
         ("mapping_length", c_uint32),
         ("mapping_json", c_void_p),
         ("frames_per_second", c_double),
+        ("force", c_uint32),
     ]
 
 
@@ -323,6 +325,7 @@ FUNCTIONS = {
     "anthronet_measure_index": (c_int32, [c_char_p, c_uint64, c_void_p, POINTER(Error)]),
     "anthronet_measure_mesh": (c_int32, [c_void_p, c_void_p, c_uint32, c_uint64, c_uint32, c_void_p, c_uint32, POINTER(Measured), POINTER(Error)]),
     "anthronet_measure_file": (c_int32, [c_void_p, c_char_p, c_uint64, c_void_p, c_uint32, POINTER(Measured), POINTER(Error)]),
+    "anthronet_measure_file_report": (c_int32, [c_void_p, c_char_p, c_uint64, c_void_p, POINTER(Error)]),
     "anthronet_request_new": (c_int32, [c_void_p, POINTER(Error)]),
     "anthronet_request_from_json": (c_int32, [c_char_p, c_uint64, c_void_p, POINTER(Error)]),
     "anthronet_request_copy": (c_int32, [c_void_p, c_void_p, POINTER(Error)]),

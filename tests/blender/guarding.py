@@ -173,14 +173,44 @@ def failing_whole():
         )
 
 
+def _legs():
+    """A motion of two legs alone."""
+    leg = """JOINT {0}UpLeg
+{{
+OFFSET {1} -4 0
+CHANNELS 1 Xrotation
+JOINT {0}Leg
+{{
+OFFSET 0 -42 0
+CHANNELS 1 Xrotation
+JOINT {0}Foot
+{{
+OFFSET 0 -42 0
+CHANNELS 1 Xrotation
+End Site
+{{
+OFFSET 0 -6 12
+}}
+}}
+}}
+}}
+"""
+    hips = "ROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+    frames = "MOTION\nFrames: 2\nFrame Time: 0.04\n" + 2 * "0 92 0 0 0 0 0 0 0\n"
+    return "HIERARCHY\n" + hips + leg.format("Left", 9) + leg.format("Right", -9) + "}\n" + frames
+
+
 def failing():
     clean()
     character = add(sex="FEMALE")
     add(sex="FEMALE")
     broken = home / "broken.bvh"
     broken.write_text("HIERARCHY\nROOT hips\n{\n")
+    legs = home / "legs.bvh"
+    legs.write_text(_legs())
     for name, work, expected in (
         ("a broken clip", lambda: bpy.ops.anthronet.clip_apply(filepath=str(broken)), "broken.bvh"),
+        ("half a person", lambda: bpy.ops.anthronet.clip_apply(filepath=str(legs)), "lacks the trunk"),
         ("a missing clip", lambda: bpy.ops.anthronet.clip_apply(filepath="/nowhere/a.bvh"), "/nowhere/a.bvh"),
         ("an unknown armature", lambda: bpy.ops.anthronet.clip_from_armature(source="nobody"), "nobody"),
         ("no armature", lambda: bpy.ops.anthronet.clip_from_armature(), "armature"),
@@ -206,6 +236,8 @@ def failing():
         message = failure(work)
         check(f"{name} is reported", expected in message and "Traceback" not in message, message.strip()[:160])
     character = bpy.context.object
+    bpy.ops.anthronet.clip_apply(filepath=str(legs), force=True)
+    check("half a person is retargeted if forced", character.animation_data.action is not None)
     mesh_of(character).data.clear_geometry()
     message = failure(bpy.ops.anthronet.measure_selected)
     check(

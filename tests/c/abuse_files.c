@@ -36,6 +36,7 @@ void test_no_files(const fixture *f) {
     static const char *const NO_PATHS[] = {"", "/nowhere/at/all.glb", "/", ".", "no_extension", "a.png"};
     anthronet_model *model;
     anthronet_motion *motion;
+    anthronet_bytes *bytes;
     double metres[MEASURES];
     size_t i;
     const char *path;
@@ -44,6 +45,7 @@ void test_no_files(const fixture *f) {
         FAILS_OUT(model, anthronet_model_open_path(NO_PATHS[i], length, &model, &fault));
         FAILS_OUT(motion, anthronet_motion_open_path(NO_PATHS[i], length, NULL, &motion, &fault));
         FAILS_OUT(metres, anthronet_measure_file(f->model, NO_PATHS[i], length, metres, MEASURES, NULL, &fault));
+        FAILS_OUT(bytes, anthronet_measure_file_report(f->model, NO_PATHS[i], length, &bytes, &fault));
         FAILS(anthronet_export_path(f->body, NULL, NO_PATHS[i], length, &fault));
     }
     REFUSED_OUT(ANTHRONET_ERROR_IO, model, anthronet_model_open_path(TEXT("/nowhere/a"), &model, &fault));

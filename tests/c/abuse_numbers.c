@@ -154,6 +154,9 @@ void test_enumerations(const fixture *f) {
             anthronet_motion_options options;
             anthronet_motion_source source;
             SIZED(options);
+            options.person = wrong;
+            REFUSED_OUT(REQUEST, motion, anthronet_motion_open_memory((const uint8_t *)BVH, strlen(BVH), TEXT("a.bvh"), &options, &motion, &fault));
+            SIZED(options);
             options.up = wrong;
             REFUSED_OUT(ENUM, motion, anthronet_motion_open_memory((const uint8_t *)BVH, strlen(BVH), TEXT("a.bvh"), &options, &motion, &fault));
             SIZED(source);

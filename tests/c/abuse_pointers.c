@@ -45,6 +45,9 @@ void test_null_in_makers(const fixture *f) {
     REFUSED_OUT(NONE, metres, anthronet_measure_file(NULL, TEXT("a.glb"), metres, MEASURES, NULL, &fault));
     REFUSED_OUT(NONE, metres, anthronet_measure_file(f->model, NULL, 5, metres, MEASURES, NULL, &fault));
     REFUSED(NONE, anthronet_measure_file(f->model, TEXT("a.glb"), NULL, MEASURES, NULL, &fault));
+    REFUSED_OUT(NONE, bytes, anthronet_measure_file_report(NULL, TEXT("a.glb"), &bytes, &fault));
+    REFUSED_OUT(NONE, bytes, anthronet_measure_file_report(f->model, NULL, 5, &bytes, &fault));
+    REFUSED(NONE, anthronet_measure_file_report(f->model, TEXT("a.glb"), NULL, &fault));
     REFUSED(NONE, anthronet_clip_builtin_name(0, NULL, &fault));
     REFUSED(NONE, anthronet_humanoid_bone_at(0, NULL, &fault));
     REFUSED_OUT(ANTHRONET_ERROR_INDEX, text, anthronet_measure_name(MEASURES, &text, &fault));

@@ -59,6 +59,7 @@ void test_export_path(const fixture *f) {
     anthronet_measure_report report[MEASURES];
     double metres[MEASURES];
     anthronet_measured measured;
+    anthronet_bytes *json = NULL;
     size_t i;
     int m;
     options.lod = 1;
@@ -74,6 +75,8 @@ void test_export_path(const fixture *f) {
         OK(anthronet_measure_file(f->model, path, strlen(path), metres, MEASURES, &measured, &fault));
         CHECK(measured.lod == 1 && measured.mass_kg > 30 && measured.volume_m3 > 0.03 && measured.bmi > 10, "%s: level %u",
               NAMES[i], measured.lod);
+        OK(anthronet_measure_file_report(f->model, path, strlen(path), &json, &fault));
+        CHECK(contains_freed(json, "\"warnings\":[]"), "%s: warnings about a file in metres with +Y up", NAMES[i]);
         for (m = 0; m < MEASURES; m++) {
             CHECK(fabs(metres[m] - report[m].obtained) < 1e-4, "%s: measure %d is %f, not %f", NAMES[i], m, metres[m],
                   report[m].obtained);

@@ -208,6 +208,7 @@ void test_motion_files(const fixture *f) {
     read.metres_per_unit = 0.01;
     read.up = ANTHRONET_UP_Y;
     read.frames_per_second = 10;
+    read.person = 1;
     OK(anthronet_motion_open_path(path, strlen(path), &read, &from_path, &fault));
     OK(anthronet_motion_clip_count(from_path, &clips, &fault));
     CHECK(clips == 1, "%u clips", clips);

@@ -419,6 +419,10 @@ void motion(const Model &model) {
     auto there = read->retarget(0, *person(model, 1.85), options);
     check(there->frames_per_second() == 15.0, "rate");
     check(std::string(there->report()).find("\"scale\"") != std::string::npos, "report");
+    check(std::string(there->report()).find("\"doubts\":[]") != std::string::npos, "doubts about a person");
+    MotionOptions second{};
+    second.person = 2;
+    throws({"person", "got 1"}, [&] { Motion::from_bytes(rust::Slice<const std::uint8_t>(glb), "squat.glb", second); });
     options.mapping_json = "{";
     throws({"mapping_json"}, [&] { read->retarget(0, *body, options); });
     throws({"clip", "got 1"}, [&] { read->retarget(1, *body, {}); });
@@ -556,6 +560,7 @@ int main(int argc, char **argv) {
     check(read(path) == read(argv[2]), "the saved file differs");
     const auto measured = model->measure_file(path);
     check(std::abs(measured.mass_kg - body->summary().mass_kg) < 1e-3, "mass of the file");
+    check(measured.warnings.empty(), "warnings of the file");
   });
   test("the version is that of the package", [] { check(std::string(version()) == ANTHRONET_VERSION, std::string(version())); });
   return all_passed ? 0 : 1;

@@ -24,6 +24,8 @@ namespace Anthronet
         /// <summary>Which joint of the file drives which joint of the rig, as JSON; null maps all of them
         /// automatically.</summary>
         public string mappingJson;
+        /// <summary>Accepts a motion that seems to be no person's, or in which nobody stands.</summary>
+        public bool force;
     }
 
     /// <summary>An animation clip for a body's joints. Immutable; any number of threads may sample it.</summary>
@@ -65,6 +67,13 @@ namespace Anthronet
         /// <summary>Time from the first frame to the last, seconds.</summary>
         public double Duration { get; private set; }
 
+        /// <summary>How the clip was retargeted, as JSON: which joint drives which, how sure it is that the motion is a person's
+        /// (`confidence`), errors of directions, limits and feet. Null for other clips.</summary>
+        public string ReportJson { get; private set; }
+
+        /// <summary>Why the motion may be no person's, such as a limb that it lacks; mostly empty.</summary>
+        public string[] Doubts { get; private set; } = new string[0];
+
         /// <summary>The names of the built-in clips.</summary>
         public static string[] BuiltinNames()
         {
@@ -97,11 +106,12 @@ namespace Anthronet
         }
 
         /// <summary>
-        /// Reads the first clip of a motion file and retargets it to a body: .bvh, .fbx, .glb, .gltf, .npz (AMASS,
-        /// SMPL-X), .usda, .usdc, .usdz. For files with several clips, or for several bodies, use `AnthroMotion`.
+        /// Reads the first clip of a motion file and retargets it to a body: .bvh, .fbx, .glb, .gltf, .vrm,
+        /// .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc, .usdz. For files with several clips or people, or for several bodies, use
+        /// `AnthroMotion`.
         /// </summary>
         /// <exception cref="AnthroException">The file is not valid, or joints of a humanoid were not found in
-        /// it.</exception>
+        /// it, or it seems to be no person's.</exception>
         public static AnthroClip Open(string path, AnthroBody body, AnthroRetargetOptions options = default(AnthroRetargetOptions))
         {
             using (var motion = AnthroMotion.Open(path))
@@ -128,9 +138,9 @@ namespace Anthronet
             }
         }
 
-        internal static AnthroClip Wrap(anthronet_clip* pointer)
+        internal static AnthroClip Wrap(anthronet_clip* pointer, string report)
         {
-            return new AnthroClip(pointer);
+            return new AnthroClip(pointer) { ReportJson = report, Doubts = new AnthroJson(report).Texts("doubts") };
         }
 
         /// <summary>

@@ -46,6 +46,25 @@ namespace Anthronet
         Rest = 2,
     }
 
+    /// <summary>The axis of a motion file that points up.</summary>
+    public enum AnthroUpAxis
+    {
+        /// <summary>As the file says, or else found from its skeleton.</summary>
+        Found = 0,
+        /// <summary>+Y.</summary>
+        Y = 1,
+        /// <summary>+Z.</summary>
+        Z = 2,
+        /// <summary>+X.</summary>
+        X = 3,
+        /// <summary>−X.</summary>
+        NegativeX = 4,
+        /// <summary>−Y, as in the axes of cameras.</summary>
+        NegativeY = 5,
+        /// <summary>−Z.</summary>
+        NegativeZ = 6,
+    }
+
     /// <summary>Methods of skinning on the CPU.</summary>
     public enum AnthroSkinMethod
     {

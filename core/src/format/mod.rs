@@ -21,6 +21,8 @@ mod beside;
 mod bvh;
 mod disk;
 mod fbx;
+#[cfg(test)]
+mod fuzz;
 pub mod gltf;
 mod guard;
 mod kind;

@@ -62,8 +62,8 @@ pub fn read_meshes_from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Sc
     read(bytes, path)
 }
 
-/// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it,
-/// `.usd`, `.usda`, `.usdc`, `.usdz`, these with the layers in their folder. The extension chooses the format, the
+/// Reads the motion of any skeleton: `.bvh`, `.npz` (AMASS, SMPL-X), `.fbx`, `.glb`, `.gltf` with the buffers beside it, `.vrm`,
+/// `.vrma`, `.usd`, `.usda`, `.usdc`, `.usdz`, these with the layers in their folder. The extension chooses the format, the
 /// first bytes confirm it.
 ///
 /// # Errors
@@ -85,7 +85,7 @@ pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &Re
     options.check()?;
     let (format, read) = able(path, |format| format.read_motion)?;
     if let Some(person) = options.person.filter(|person| *person > 0 && format != Format::Npz) {
-        let message = format!("a .{} has one person: expected 0, got {person}", format.extension());
+        let message = format!("a .{} has one person: expected index 0, got {person}", format.extension());
         return Err(Error::request("person", message));
     }
     let raw = read(bytes, path, options)?;
@@ -117,7 +117,7 @@ mod tests {
         assert!(matches!(read_motion("missing.bvh", &ReadOptions::default()), Err(Error::Io { .. })));
         let person = ReadOptions { person: Some(1), ..Default::default() };
         let error = read_motion_from_bytes(b"", "a.bvh", &person).unwrap_err().to_string();
-        assert_eq!(error, "person: a .bvh has one person: expected 0, got 1");
+        assert_eq!(error, "person: a .bvh has one person: expected index 0, got 1");
         let rate = ReadOptions { frames_per_second: Some(f64::NAN), ..Default::default() };
         assert!(matches!(read_motion_from_bytes(b"", "a.bvh", &rate), Err(Error::Request { .. })));
     }

@@ -2,5 +2,6 @@
 
 pub(crate) mod bodies;
 pub(crate) mod clips;
+pub(crate) mod memory;
 pub(crate) mod person;
 pub(crate) mod scene;

@@ -229,6 +229,14 @@ def test_measuring_files(woman, model, tmp_path):
     woman.save(file)
     found = model.measure_file(file)
     assert found.lod == 0 and abs(found.measures["height"] - 1.70) < 1e-4
+    assert found.warnings == () and abs(found.mass_kg - woman.mass_kg) < 0.01
+    large = tmp_path / "centimetres.obj"
+    woman.save(large)
+    lines = (line.split() for line in large.read_text(encoding="utf-8").splitlines())
+    scaled = (["v"] + [repr(100 * float(x)) for x in line[1:]] if line[:1] == ["v"] else line for line in lines)
+    large.write_text("\n".join(map(" ".join, scaled)) + "\n", encoding="utf-8")
+    found = model.measure_file(large)
+    assert abs(found.measures["height"] - 1.70) < 1e-4 and "0.01 m" in found.warnings[0], found.warnings
     raises(anthronet.IoError, lambda: model.measure_file(tmp_path / "nothing.glb"), "nothing.glb")
     file.write_bytes(b"glTF")
     raises(anthronet.FileError, lambda: model.measure_file(file), "measured.glb")

@@ -168,6 +168,30 @@ def test_retarget_options(woman, motion, option):
     assert motion.retarget(woman, **option).frame_count > 0
 
 
+def test_motion_people(woman, tmp_path):
+    """one of two people in an archive of arrays"""
+    file, poses = tmp_path / "two.npz", np.zeros((2, 5, 66), np.float32)
+    poses[..., 0] = math.pi / 2
+    poses[1, :, 3 * 16 + 1] = 0.5
+    np.savez(file, poses=poses, trans=np.zeros((2, 5, 3), np.float32), fps=30.0)
+    first, second = (anthronet.open_motion(file, person=person) for person in (0, 1))
+    assert "2 people" in " ".join(anthronet.open_motion(file).report["warnings"])
+    assert not any("people" in warning for warning in first.report["warnings"] + second.report["warnings"])
+    assert not np.allclose(first.retarget(woman).bake(), second.retarget(woman).bake())
+    assert anthronet.Motion.from_bytes(file.read_bytes(), "two.npz", person=1).report == second.report
+    raises(anthronet.Error, lambda: anthronet.open_motion(file, person=2), "person", "2")
+    for wrong in (-1, 2**32 - 1):
+        raises(ValueError, lambda: anthronet.open_motion(file, person=wrong), "person")
+    raises(TypeError, lambda: anthronet.open_motion(file, person=0.5), "person")
+
+
+def test_motion_doubts(woman, motion):
+    """how sure it is that a motion is a person's"""
+    assert motion.retarget(woman).report["confidence"] == {"value": 1.0, "doubts": []}
+    armless = motion.retarget(woman, mapping={"LeftArm": None, "LeftForeArm": None, "LeftHand": None}).report["confidence"]
+    assert armless["value"] < 1 and armless["doubts"] == ["it lacks the left arm"], armless
+
+
 def test_motion_refusals(woman, file, motion):
     """motions that are none, and wrong options"""
     raises(anthronet.ArgumentError, lambda: motion.retarget(woman, clip=1), "clip")

@@ -478,6 +478,9 @@ namespace UnityEngine
         public static void LogError(object message, Object context) { Errors.Add(message.ToString()); }
         public static void LogException(Exception exception) { Errors.Add(exception.ToString()); }
         public static void LogException(Exception exception, Object context) { Errors.Add(exception.ToString()); }
+        /// Logged warnings.
+        internal static readonly List<string> Warnings = new List<string>();
+        public static void LogWarning(object message) { Warnings.Add(message.ToString()); }
     }
 
     public static class Application

@@ -422,11 +422,19 @@ namespace Anthronet.Native
         internal static extern int anthronet_measure_mesh(anthronet_model* model, void* positions, uint vertex_count, ulong stride, uint from_space, double* out_metres, uint count, anthronet_measured* out_measured, anthronet_error* error);
 
         /// <summary>
-        ///  Measures the body of a file: .glb, .gltf, .vrm, .obj, .usda, .usdc or .usdz with the model's vertex order. Results as
-        ///  of `anthronet_measure_mesh`.
+        ///  Measures the body of a file: .glb, .gltf, .vrm, .obj, .usd, .usda, .usdc or .usdz with the model's vertex order. Results as
+        ///  of `anthronet_measure_mesh`. Other units and axes are found from the body, which is logged as a warning.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_measure_file", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_measure_file(anthronet_model* model, byte* path, ulong path_length, double* out_metres, uint count, anthronet_measured* out_measured, anthronet_error* error);
+
+        /// <summary>
+        ///  Measures the body of a file as `anthronet_measure_file` does, as JSON: `{"measures": [{"name", "value"}, …], "mass_kg",
+        ///  "volume_m3", "bmi", "lod", "warnings"}`; metres. The warnings say in which unit and axes the file was read, if not in metres
+        ///  with +Y up.
+        /// </summary>
+        [DllImport(__DllName, EntryPoint = "anthronet_measure_file_report", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        internal static extern int anthronet_measure_file_report(anthronet_model* model, byte* path, ulong path_length, anthronet_bytes** out_json, anthronet_error* error);
 
         /// <summary>
         ///  A request without given measures: the most likely person.
@@ -805,7 +813,8 @@ namespace Anthronet.Native
         internal static extern int anthronet_clip_crossfade(anthronet_clip* first, anthronet_clip* second, double seconds, anthronet_clip** out_clip, anthronet_error* error);
 
         /// <summary>
-        ///  Reads a motion file: .bvh, .fbx, .glb, .gltf, .npz (AMASS, SMPL-X), .usda, .usdc, .usdz. `read_options` may be NULL.
+        ///  Reads a motion file: .bvh, .fbx, .glb, .gltf, .vrm, .vrma, .npz (AMASS, SMPL-X), .usd, .usda, .usdc, .usdz.
+        ///  `read_options` may be NULL.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_open_path", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_open_path(byte* path, ulong path_length, anthronet_motion_options* read_options, anthronet_motion** out_motion, anthronet_error* error);
@@ -849,7 +858,9 @@ namespace Anthronet.Native
 
         /// <summary>
         ///  Retargets one clip of a motion to a body. `retarget_options` may be NULL, and so may `out_report`; it receives JSON:
-        ///  which joint drives which, which joints drive none, errors of directions, limits and feet.
+        ///  which joint drives which, which joints drive none, how sure it is that the motion is a person's (`confidence`: `value` from 0
+        ///  to 1 and `doubts`, which are also logged as a warning), errors of directions, limits and feet. Below a confidence of
+        ///  0.5 the motion is refused, unless joints are mapped or `force` is set.
         /// </summary>
         [DllImport(__DllName, EntryPoint = "anthronet_motion_retarget", CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         internal static extern int anthronet_motion_retarget(anthronet_motion* motion, uint clip, anthronet_body* body, anthronet_retarget_options* retarget_options, anthronet_clip** out_clip, anthronet_bytes** out_report, anthronet_error* error);
@@ -1387,6 +1398,10 @@ namespace Anthronet.Native
         ///  Frames per second: frames were recorded at this rate, curves are sampled at it.
         /// </summary>
         public double frames_per_second;
+        /// <summary>
+        ///  Which of several people in an `.npz`, from 1; 0 reads the first, with a warning.
+        /// </summary>
+        public uint person;
     }
 
     /// <summary>
@@ -1436,6 +1451,10 @@ namespace Anthronet.Native
         ///  Frames per second of the result; 0 keeps those of the motion.
         /// </summary>
         public double frames_per_second;
+        /// <summary>
+        ///  1 accepts a motion that seems to be no person's, or in which nobody stands.
+        /// </summary>
+        public uint force;
     }
 
     /// <summary>

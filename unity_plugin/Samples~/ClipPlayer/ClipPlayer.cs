@@ -6,7 +6,7 @@ namespace Anthronet.Samples
     /// <summary>Plays the built-in clips and a motion file on a character, with a time slider.</summary>
     public sealed class ClipPlayer : MonoBehaviour
     {
-        [Tooltip("A .bvh, .fbx, .glb, .gltf, .npz or .usd file; may be empty.")]
+        [Tooltip("A .bvh, .fbx, .glb, .gltf, .vrma, .npz or .usd file; may be empty.")]
         public string file = "";
 
         AnthroAnimator animator;

@@ -145,6 +145,18 @@ namespace Anthronet.Tests
                 Expect.That(before.x < -0.4f, "the left hand is at x " + before.x);
                 Expect.That(pose[hand].translation.y > before.y + 0.1f, "it is not lifted");
                 Expect.That(motion.ReportJson.Contains("\"BVH\""), "report: " + motion.ReportJson);
+                Expect.That(clip.ReportJson.Contains("\"confidence\"") && clip.Doubts.Length == 0, "doubts: " + string.Join("; ", clip.Doubts));
+                var armless = new AnthroRetargetOptions { mappingJson = "{\"LeftArm\": null, \"LeftForeArm\": null, \"LeftHand\": null}" };
+                using (var other = motion.Retarget(body, 0, armless))
+                {
+                    Expect.Equal("it lacks the left arm", string.Join("; ", other.Doubts), "doubts");
+                }
+                using (var walk = AnthroClip.Builtin("walk", body))
+                {
+                    Expect.That(walk.ReportJson == null && walk.Doubts.Length == 0, "report of a built-in clip");
+                }
+                Expect.Code(AnthroError.Request, "person", () => AnthroMotion.Open(System.Text.Encoding.ASCII.GetBytes(Bvh), "arm.bvh",
+                    new AnthroMotionOptions { person = 2 }), "a second person");
                 Expect.Code(AnthroError.File, "", () => AnthroMotion.Open(new byte[] { 1, 2, 3 }, "broken.bvh"), "no BVH");
                 Expect.Code(AnthroError.File, "", () => AnthroMotion.Open(new byte[] { 1, 2, 3 }, "broken.fbx"), "no FBX");
                 Expect.Code(AnthroError.File, "", () => AnthroMotion.Open(new byte[] { 1, 2, 3 }, "broken.npz"), "no npz");

@@ -20,7 +20,7 @@ enum Property {
 
 /// The binary file for a text with one node per line, arrays as `Name: *N {` with `a: …` on the next line, and no commas
 /// or braces in strings.
-pub(super) fn binary(text: &str) -> Vec<u8> {
+pub(in crate::format) fn binary(text: &str) -> Vec<u8> {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with(';'));
     let nodes = nodes(&mut lines);
     let mut out = b"Kaydara FBX Binary  \0\x1a\0".to_vec();

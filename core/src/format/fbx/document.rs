@@ -11,6 +11,9 @@ use crate::format::motion::bounds;
 
 /// Maximum memory, bytes, that `ufbx` may use for a scene, and again while reading it.
 const MAX_MEMORY: usize = 1 << 31;
+/// The same for a file of no bytes, and what each byte adds: a short file can claim arrays of any length.
+const LEAST_MEMORY: usize = 1 << 26;
+const MEMORY_OF_BYTE: usize = 256;
 /// Maximum number of nodes of a file.
 const MAX_NODES: usize = 1 << 16;
 /// Maximum depth of the node tree.
@@ -20,7 +23,8 @@ pub(super) const BINARY: &[u8] = b"Kaydara FBX Binary";
 
 /// Parses a file's bytes into a scene, without geometry.
 pub(super) fn open(bytes: &[u8]) -> Result<ufbx::SceneRoot> {
-    let memory = || ufbx::AllocatorOpts { memory_limit: MAX_MEMORY, ..Default::default() };
+    let most = bytes.len().saturating_mul(MEMORY_OF_BYTE).saturating_add(LEAST_MEMORY).min(MAX_MEMORY);
+    let memory = || ufbx::AllocatorOpts { memory_limit: most, ..Default::default() };
     let opts = ufbx::LoadOpts {
         temp_allocator: memory(),
         result_allocator: memory(),

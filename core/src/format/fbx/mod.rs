@@ -5,11 +5,11 @@
 //! bind pose where it has one. Files whose up axis is neither +Y nor +Z are rotated here, as FBX allows any axes.
 
 #[cfg(test)]
-mod binary;
+pub(super) mod binary;
 mod document;
 mod motion;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use super::kind::{Description, Holds};
 use crate::error::FbxError;

@@ -12,7 +12,7 @@ use crate::space::{Axis, Unit};
 
 /// Hips above a leg, in centimetres, +Y up, 30 frames per second: the hips rise by 20 cm in a second; the leg, which has a
 /// pre-rotation of 90° about Z at rest, rotates by 90° about X; the empty above both is scaled.
-const SMALL: &str = r#"; FBX 7.4.0 project file
+pub(in crate::format) const SMALL: &str = r#"; FBX 7.4.0 project file
 FBXHeaderExtension: {
     FBXVersion: 7400
 }

@@ -104,7 +104,7 @@ impl Lead {
 pub(super) fn person_of(people: usize, asked: Option<usize>, warnings: &mut Vec<String>) -> Result<usize> {
     let person = asked.unwrap_or(0);
     if person >= people {
-        return Err(Fault::unexpected(format_args!("a person below {people}"), person).into());
+        return Err(Fault::unexpected(format_args!("an index of a person below {people}"), person).into());
     }
     if people > 1 && asked.is_none() {
         warnings

@@ -202,7 +202,7 @@ fn one_of_several_people_is_read() {
         assert!(motion.report.warnings.iter().any(|w| w.contains("of 2 people the first was read")));
         let options = ReadOptions { person: Some(2), ..ReadOptions::default() };
         let error = read_motion_from_bytes(&bytes, Path::new("a.npz"), &options).unwrap_err().to_string();
-        assert!(error.contains("expected a person below 2, got 2"), "{error}");
+        assert!(error.contains("expected an index of a person below 2, got 2"), "{error}");
     }
     // Three frames of two people: there are fewer people than frames.
     let frame = |poses: &[f64], other: &[f64]| [&poses[..72], &other[..72]].concat();

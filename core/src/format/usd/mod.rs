@@ -2,7 +2,7 @@
 
 mod character;
 mod document;
-mod motion;
+pub(super) mod motion;
 pub(crate) mod write;
 
 use std::path::{Path, PathBuf};

@@ -14,6 +14,8 @@ mod plant;
 mod roll;
 mod soles;
 
+use glam::Vec3;
+
 use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::pose::Leg;
@@ -85,10 +87,10 @@ impl FeetOptions {
 pub struct FeetMeasure {
     /// Number of contacts of heels and balls.
     pub contacts: [usize; 2],
-    /// The longest path along the floor that the touching part of the sole slides in one contact, metres; 0 when it rolls
-    /// without slipping.
+    /// How far the touching part of the sole is along the floor from where a contact began, the most in any contact, metres; 0
+    /// when it rolls without slipping. Trembling about one place adds nothing to it.
     pub worst_slide: [f32; 2],
-    /// The mean of that path over the contacts, metres.
+    /// The mean of that distance over the contacts, metres.
     pub mean_slide: [f32; 2],
     /// How deep the lowest of heel, ball and tip is below the floor in any frame, metres; 0 when none is.
     pub deepest: [f32; 2],
@@ -125,7 +127,7 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
     let tracks = soles::tracks(clip, &legs, contacts.floor);
     for (foot, track) in tracks.iter().enumerate() {
         let steps = roll::steps(clip, &legs[foot], &contacts.feet[foot]);
-        let slides: Vec<f32> = steps.iter().map(|of| of.iter().map(|step| step.length()).sum()).collect();
+        let slides: Vec<f32> = steps.iter().map(|steps| drift(steps)).collect();
         out.contacts[foot] = slides.len();
         out.worst_slide[foot] = slides.iter().copied().fold(0.0, f32::max);
         out.mean_slide[foot] = slides.iter().fold(0.0, |sum, s| sum + s) / slides.len().max(1) as f32;
@@ -133,6 +135,15 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
         out.deepest[foot] = (-lowest).max(0.0);
     }
     Ok(out)
+}
+
+/// The farthest that a path of these steps leads from where it begins.
+fn drift(steps: &[Vec3]) -> f32 {
+    let places = steps.iter().scan(Vec3::ZERO, |place, step| {
+        *place += *step;
+        Some(place.length())
+    });
+    places.fold(0.0, f32::max)
 }
 
 /// Visits the frames of a clip in order: pose and `model_from_joint`, both of the legs and the joints above them alone.

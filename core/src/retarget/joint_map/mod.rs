@@ -173,6 +173,11 @@ impl JointMap {
             .map(|found| found.source.as_str())
     }
 
+    /// Joints that are no part of the body by their names, with all below them: hair, skirts, weapons.
+    pub(super) fn hanging(&self, source: &Skeleton) -> Vec<bool> {
+        parts::hanging(source, &self.joints().collect::<Vec<_>>())
+    }
+
     /// The source's joints between pelvis and neck, upwards.
     pub fn spine(&self) -> &[usize] {
         &self.spine

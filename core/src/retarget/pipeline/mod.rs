@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::confidence::{Confidence, LEAST_CONFIDENCE};
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
 use super::reference_pose::{self, ReferenceFrame};
@@ -33,6 +34,8 @@ pub struct RetargetOptions {
     pub in_place: bool,
     /// Whether the clip is made to loop.
     pub looped: bool,
+    /// Whether a motion is accepted that seems to be no person's; where nobody stands in it, it is compared with its rest pose.
+    pub force: bool,
 }
 
 impl Default for RetargetOptions {
@@ -45,6 +48,7 @@ impl Default for RetargetOptions {
             frames_per_second: None,
             in_place: false,
             looped: false,
+            force: false,
         }
     }
 }
@@ -77,6 +81,8 @@ pub struct RetargetReport {
     pub joints: JointMapReport,
     /// Scale of root motion and heights: the ratio of leg lengths, unless given.
     pub scale: f32,
+    /// How sure it is that the motion is a person's.
+    pub confidence: Confidence,
     /// The frame that was taken for the rest pose, as that is no standing person; `None` for the file's rest pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference: Option<ReferenceFrame>,
@@ -84,12 +90,38 @@ pub struct RetargetReport {
     pub clips: Vec<ClipReport>,
 }
 
+impl RetargetReport {
+    /// Refuses a motion that is more likely no person's, unless these options force it or name joints. Retargeting does not do so
+    /// by itself, as the report says what was found.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with what speaks against a person.
+    pub fn check(&self, options: &RetargetOptions) -> Result<()> {
+        match self.confidence.warning() {
+            Some(why)
+                if self.confidence.value < LEAST_CONFIDENCE
+                    && !options.force
+                    && options.mapping.is_empty() =>
+            {
+                let expected = format!("expected a confidence of {LEAST_CONFIDENCE} or more");
+                Err(Error::invalid(
+                    "motion",
+                    format!(
+                        "{why}; {expected}, unless its joints are mapped (`mapping`) or it is forced (`force`)"
+                    ),
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Retargets all clips of a motion, which share one skeleton, to a body; `target` is the body's own skeleton, see
 /// [`Body::skeleton`](crate::Body::skeleton).
 ///
 /// # Errors
-/// [`Error::Invalid`] without clips, when neither the rest pose nor a frame is a person that stands, or when names of left and right
-/// contradict the shape of the body; as [`JointMap::find`], [`Retargeter::new`], [`resample`] and [`plant`].
+/// [`Error::Invalid`] without clips, when neither the rest pose nor a frame is a person that stands and nothing is forced, or when
+/// names of left and right contradict the shape of the body; as [`JointMap::find`], [`Retargeter::new`], [`resample`] and [`plant`].
 pub fn retarget(
     sources: &[Clip],
     target: &Arc<Skeleton>,
@@ -132,14 +164,16 @@ impl<'a> Pipeline<'a> {
     /// For clips that share a skeleton, at least one.
     fn new(sources: &[&Clip], target: &'a Arc<Skeleton>, options: &'a RetargetOptions) -> Result<Self> {
         let map = reference_pose::find_map(sources, &options.mapping)?;
-        let reference = reference_pose::find(&map, sources)?;
+        let reference = reference_pose::find(&map, sources, options.force)?;
         let (source, target_rest) = (sources[0].skeleton(), target.clone());
+        let confidence = Confidence::of(&map, source, &reference);
         let retargeter =
             Retargeter::with_reference(source, reference.model, target_rest, &map, &options.transfer)?;
         let limits = JointLimits::of_rig(target);
         let report = RetargetReport {
             joints: map.report().clone(),
             scale: retargeter.scale(),
+            confidence,
             reference: reference.frame,
             clips: Vec::new(),
         };
@@ -164,6 +198,7 @@ impl<'a> Pipeline<'a> {
         }
         // Both compare with the source, so they are measured before looping changes the clip.
         let direction = direction_error(source, &clip, map);
+        report.confidence.compare(source.name(), &direction);
         let jump = worst_jump(source, &clip, map);
         if let Some(unplanted) = unplanted {
             // Feet are planted after the blend, as it would make them slide.

@@ -13,6 +13,7 @@ mod tests;
 use serde::Serialize;
 
 use self::stance::{Stance, Upright};
+use super::confidence::lacks;
 use super::joint_map::{JointMap, MatchedBy, NECK, Overrides, SPINE};
 use crate::clip::Clip;
 use crate::math::{RigidTransform, Rotation};
@@ -49,6 +50,8 @@ pub(super) struct ReferencePose {
     pub(super) model: Vec<RigidTransform>,
     /// `None` for the rest pose of the file.
     pub(super) frame: Option<ReferenceFrame>,
+    /// Whether a person stands in it.
+    pub(super) stands: bool,
 }
 
 /// Matches the joints of a motion in its rest pose. Where that is no person and the names are unknown, frames are tried.
@@ -94,8 +97,9 @@ fn turned_map(rest: &Skeleton, overrides: &Overrides) -> Result<JointMap> {
 /// The pose to compare with the rig's rest pose.
 ///
 /// # Errors
-/// [`Error::Invalid`] when neither the rest pose nor a frame is a person that stands, or when left and right are exchanged.
-pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
+/// [`Error::Invalid`] when neither the rest pose nor a frame is a person that stands, unless it is forced, or when left and right
+/// are exchanged.
+pub(super) fn find(map: &JointMap, sources: &[&Clip], force: bool) -> Result<ReferencePose> {
     let Some(first) = sources.first() else { return Err(Error::invalid("motion", "has no clip")) };
     let rest = first.skeleton();
     let model = rest.model_from_joints();
@@ -103,9 +107,9 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     motion.check_sides(map)?;
     let at_rest = Stance::of(map, rest, &model);
     let is_person = stance::is_person(map, rest, &model);
-    let own = ReferencePose { model, frame: None };
+    let own = ReferencePose { model, frame: None, stands: is_person };
     let Some(best) = motion.straightest else {
-        return if is_person { Ok(own) } else { Err(no_person()) };
+        return if is_person || force { Ok(own) } else { Err(no_person(map)) };
     };
     let askew = || is_askew(map, (&own.model, &best.model), at_rest.as_ref());
     // A motion may well begin in its rest pose: that is doubtful only if nobody stands so.
@@ -116,15 +120,16 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip]) -> Result<ReferencePose> {
     if is_person && !askew() && !saved() && !lifted {
         return Ok(own);
     }
-    Ok(ReferencePose { frame: Some(best.frame), model: best.model })
+    Ok(ReferencePose { frame: Some(best.frame), model: best.model, stands: true })
 }
 
-fn no_person() -> Error {
-    Error::invalid(
-        "motion",
-        "its zero pose (rest pose) is no standing person, and the body stands in none of its frames: expected a rest pose with \
-         legs down and trunk up, or a frame that stands so",
-    )
+fn no_person(map: &JointMap) -> Error {
+    let lacks: Vec<&str> = lacks(map).into_iter().map(|(part, _)| part).collect();
+    let lacks = if lacks.is_empty() { String::new() } else { format!("; it lacks {}", lacks.join(", ")) };
+    let expected = "expected a rest pose with legs down and trunk up, or a frame that stands so, unless it is forced (`force`)";
+    let message =
+        format!("no person stands in its zero pose (rest pose), nor in any of its frames{lacks}: {expected}");
+    Error::invalid("motion", message)
 }
 
 /// Whether trunk, head or feet, which say little by positions, would be turned far in a frame that stands upright.

@@ -72,12 +72,19 @@ pub(super) fn axes(map: &JointMap, model: &[RigidTransform]) -> Option<Rotation>
     Some(Rotation::from_mat3(&Mat3::from_cols(up.cross(front), up, front)).normalize())
 }
 
-/// The top of the trunk.
+/// The top of the trunk; of legs alone a point above them.
 fn top(map: &JointMap, model: &[RigidTransform]) -> Option<Vec3> {
     let shoulders = both(map, model, SidedJoint::Upperarm).map(|[left, right]| (left + right) / 2.0);
     let at = |joint: &RigJoint| place(map, model, *joint);
     let neck = || NECK.iter().find_map(at);
-    shoulders.or_else(neck).or_else(|| at(&RigJoint::Head)).or_else(|| SPINE.iter().rev().find_map(at))
+    let above_legs = || {
+        let [hips, knees] =
+            [SidedJoint::Thigh, SidedJoint::Calf].map(|joint| both(map, model, joint).map(|[l, r]| l + r));
+        Some(hips? - knees? / 2.0)
+    };
+    let trunk =
+        shoulders.or_else(neck).or_else(|| at(&RigJoint::Head)).or_else(|| SPINE.iter().rev().find_map(at));
+    trunk.or_else(above_legs)
 }
 
 /// Whether a body is a person in the pose of somebody who stands, even if it lies as a whole.

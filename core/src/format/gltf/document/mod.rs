@@ -23,9 +23,10 @@ use crate::format::{Fault, disk};
 use crate::math::Rotation;
 use crate::text;
 
-/// Prefixes of required extensions of which everything that a scene holds is read, as it has neither images nor lights.
-const READ_EXTENSIONS: [&str; 5] =
-    [meshopt::NAME, "KHR_materials_", "KHR_texture_basisu", "KHR_texture_transform", "KHR_lights_"];
+/// Prefixes of required extensions of which everything that a scene holds is read, as it has neither images nor lights:
+/// `EXT_texture_webp`, `EXT_texture_avif`, `KHR_texture_basisu` and the like are kinds of images.
+const READ_EXTENSIONS: [&str; 6] =
+    [meshopt::NAME, "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_dds", "KHR_lights_"];
 
 /// What a document is read for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

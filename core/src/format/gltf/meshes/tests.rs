@@ -147,6 +147,21 @@ fn texture_coordinates_are_those_of_the_base_colour() {
 }
 
 #[test]
+fn images_of_other_kinds_may_be_required() {
+    for name in ["EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"] {
+        let glb = changed(|json| {
+            json["extensionsRequired"] = json!([name]);
+            json["images"] = json!([{"uri": "skin.webp", "mimeType": "image/webp"}]);
+            json["textures"] = json!([{"extensions": {name: {"source": 0}}}]);
+            json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+        });
+        let scene = crate::format::read_scene_from_bytes(&glb, "a.glb").unwrap();
+        assert_eq!(scene.meshes[0].positions, read(&glb).unwrap().meshes[0].positions, "{name}");
+        assert_eq!(scene.materials[0].base_color, read(&GLB).unwrap().materials[0].base_color, "{name}");
+    }
+}
+
+#[test]
 fn says_what_is_wrong_and_where() {
     type Case = (&'static str, fn(&mut Value));
     let cases: &[Case] = &[

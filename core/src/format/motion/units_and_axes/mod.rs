@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::bounds::{check_motion, jumps};
 use super::figure::{Figure, Stance};
 use super::proportions::Proportions;
-use super::raw::RawMotion;
+use super::raw::{RawMotion, Take};
 use super::stride::fit_root;
 use super::{Found, Motion, ReadOptions, ReadReport};
 use crate::clip::Clip;
@@ -42,6 +42,7 @@ pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motio
     }
     check_motion(&raw, Some(unit.metres())).map_err(huge)?;
     raw.warnings.append(&mut jumps(&raw, unit.metres()));
+    raw.warnings.append(&mut still_takes(&raw));
     let mut warnings = std::mem::take(&mut raw.warnings);
     let stature = height * unit.metres();
     if unit_found != Found::File && height > 0.0 && !ORDINARY.contains(&stature) {
@@ -51,7 +52,7 @@ pub(crate) fn resolve(mut raw: RawMotion, options: &ReadOptions) -> Result<Motio
     convert_takes(&mut raw, unit, up);
     let rest = Arc::new(convert_skeleton(&raw, unit, rest_up)?);
     let rate = raw.takes.first().map_or(0.0, |take| take.frames_per_second);
-    let clip = |take: super::raw::Take| {
+    let clip = |take: Take| {
         Clip::new(take.name, Arc::clone(&rest), take.frames_per_second, take.rotations, take.tracks)
     };
     let clips = raw.takes.into_iter().map(clip).collect::<Result<Vec<_>>>()?;
@@ -117,6 +118,23 @@ fn up(raw: &mut RawMotion, body: &Proportions, options: &ReadOptions) -> (Axis, 
         (None, Some(seen)) => (seen, Found::Detected),
         (None, None) => (Axis::Y, Found::Assumed),
     }
+}
+
+/// What to say of takes in which nothing moves, beside others: programs leave empty ones behind.
+fn still_takes(raw: &RawMotion) -> Vec<String> {
+    let moves = |take: &Take| {
+        let mut frames = take.rotations.chunks_exact(raw.skeleton.len());
+        let first = frames.next();
+        let weights = take.weights.iter().flat_map(|track| track.weights.windows(2));
+        frames.any(|frame| Some(frame) != first)
+            || take.tracks.iter().any(|track| track.values.windows(2).any(|pair| pair[0] != pair[1]))
+            || weights.into_iter().any(|pair| pair[0] != pair[1])
+    };
+    let (moving, still): (Vec<&Take>, Vec<&Take>) = raw.takes.iter().partition(|take| moves(take));
+    if moving.is_empty() {
+        return Vec::new();
+    }
+    still.iter().map(|take| format!("`{}` is empty: nothing moves in it", take.name)).collect()
 }
 
 /// The axis up, corrected where a person who is seen to stand would come out lying or upside down; told where that cannot be
@@ -202,4 +220,4 @@ fn convert_takes(raw: &mut RawMotion, unit: Unit, up: Axis) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(in crate::format) mod tests;

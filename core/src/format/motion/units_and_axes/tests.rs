@@ -7,7 +7,7 @@ use crate::format::read_motion_from_bytes;
 use crate::math::Rotation;
 
 /// A standing person of 1.7 m as BVH, with lengths divided by `unit` and the given up axis.
-fn person(unit: f64, up: Axis) -> String {
+pub(in crate::format) fn person(unit: f64, up: Axis) -> String {
     let v = |x: f64, y: f64, z: f64| {
         let [x, y, z] = match up {
             Axis::Y => [x, y, z],

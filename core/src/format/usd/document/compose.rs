@@ -40,6 +40,8 @@ pub(super) struct Composed {
     pub(super) layer: sdf::Layer,
     /// What could not be composed, one sentence each.
     pub(super) missing: Vec<String>,
+    /// Prims with value clips, which are lost.
+    pub(super) value_clips: Vec<sdf::Path>,
 }
 
 /// Whether a layer is more than it says itself.
@@ -54,7 +56,7 @@ pub(super) fn compose(bytes: &[u8], path: &Path) -> Result<Composed> {
     let resolver = Folder::new(bytes, path, Rc::clone(&outside));
     let root = resolver.root.clone();
     let stage = guarded(|| Stage::builder().resolver(resolver).open(&root))?;
-    check_size(&stage)?;
+    let value_clips = check_prims(&stage)?;
     let layer = guarded(|| stage.flatten())?;
     let outside = outside.borrow();
     let mut missing: Vec<String> = stage
@@ -73,7 +75,7 @@ pub(super) fn compose(bytes: &[u8], path: &Path) -> Result<Composed> {
         missing.truncate(MAX_NOTES);
         missing.push(format!("{more} more"));
     }
-    Ok(Composed { layer, missing })
+    Ok(Composed { layer, missing, value_clips })
 }
 
 /// The layers and assets that a document is made of or refers to, of those in its folder or below it.
@@ -90,19 +92,24 @@ pub(super) fn files(bytes: &[u8], path: &Path) -> Vec<PathBuf> {
     files.into_iter().filter(|file| *file != root).map(|file| outer(file).into()).collect()
 }
 
-/// Refuses a stage of too many prims before it is flattened: references of references multiply.
-fn check_size(stage: &Stage) -> Result<()> {
+/// Refuses a stage of too many prims before it is flattened: references of references multiply. Returns those with value clips.
+fn check_prims(stage: &Stage) -> Result<Vec<sdf::Path>> {
     let mut open = vec![sdf::Path::abs_root()];
     let mut count = 0;
+    let mut value_clips = Vec::new();
     while let Some(path) = open.pop() {
-        let children = guarded(|| stage.prim(&path)?.children())?;
+        let prim = guarded(|| stage.prim(&path))?;
+        if guarded(|| prim.has_clips())? {
+            value_clips.push(path);
+        }
+        let children = guarded(|| prim.children())?;
         count += children.len();
         if count > MAX_PRIMS {
             return Err(Fault::too_many(format_args!("{MAX_PRIMS} prims"), "more").into());
         }
         open.extend(children.iter().map(|child| child.path().clone()));
     }
-    Ok(())
+    Ok(value_clips)
 }
 
 /// Finds layers in the folder of the document or below it.

@@ -25,14 +25,15 @@ enum Content {
 
 impl Layer {
     /// Opens the bytes of a text, crate or package file, identified by their first bytes, and composes it with the layers
-    /// that it refers to in the folder of `path` or below. Returns what could not be composed, too.
-    pub(crate) fn open(bytes: &[u8], path: &std::path::Path) -> Result<(Self, Vec<String>)> {
+    /// that it refers to in the folder of `path` or below. Returns what could not be composed, and the prims whose value clips
+    /// composing lost.
+    pub(crate) fn open(bytes: &[u8], path: &std::path::Path) -> Result<(Self, Vec<String>, Vec<Path>)> {
         let data = parse(bytes)?;
         if !compose::has_arcs(&*data) {
-            return Ok((Self(Content::Parsed(data)), Vec::new()));
+            return Ok((Self(Content::Parsed(data)), Vec::new(), Vec::new()));
         }
         let composed = compose::compose(bytes, path)?;
-        Ok((Self(Content::Composed(Box::new(composed.layer))), composed.missing))
+        Ok((Self(Content::Composed(Box::new(composed.layer))), composed.missing, composed.value_clips))
     }
 
     fn data(&self) -> &dyn AbstractData {

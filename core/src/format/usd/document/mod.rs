@@ -9,7 +9,7 @@ pub(super) mod xform;
 
 use std::path::{Path as FilePath, PathBuf};
 
-use openusd::sdf::Path;
+use openusd::sdf::{FieldKey, Path};
 
 use self::layer::Layer;
 use self::skeleton::Skeleton;
@@ -27,16 +27,21 @@ pub(super) struct Document {
     pub(super) meshes: Vec<Path>,
     /// What could not be composed, one sentence each.
     pub(super) missing: Vec<String>,
+    /// Prims with value clips, which are not read.
+    pub(super) value_clips: Vec<Path>,
 }
 
 impl Document {
     /// Parses the bytes of a text, crate or package file, identified by their first bytes; `path` locates the layers that
     /// it refers to.
     pub(super) fn open(bytes: &[u8], path: &FilePath) -> Result<Self> {
-        let (layer, missing) = Layer::open(bytes, path)?;
+        let (layer, missing, mut value_clips) = Layer::open(bytes, path)?;
         let prims = layer.prims()?;
         let (mut skeletons, mut animations, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for prim in &prims {
+            if layer.field(prim, FieldKey::Clips.as_str())?.is_some() {
+                value_clips.push(prim.clone());
+            }
             match layer.type_name(prim)?.as_str() {
                 "Skeleton" => skeletons.push(prim.clone()),
                 "SkelAnimation" => animations.push(prim.clone()),
@@ -44,7 +49,7 @@ impl Document {
                 _ => {}
             }
         }
-        Ok(Self { layer, prims, skeletons, animations, meshes, missing })
+        Ok(Self { layer, prims, skeletons, animations, meshes, missing, value_clips })
     }
 
     /// Number of skeletons, of which one is read.

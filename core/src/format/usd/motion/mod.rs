@@ -32,7 +32,8 @@ const LEAST_FRAME_RATE: f64 = 10.0;
 pub(super) fn read(document: &Document, name: &str, options: &ReadOptions) -> Result<RawMotion> {
     if document.animations.is_empty() {
         let prims = document.prims.len();
-        let missing = document.missing.iter().map(|missing| format!("; {missing}")).collect::<String>();
+        let missing = document.missing.iter().cloned().chain(value_clips(document));
+        let missing: String = missing.map(|missing| format!("; {missing}")).collect();
         return Err(Fault::missing(format_args!("SkelAnimation among {prims} prims{missing}")).into());
     }
     let skeleton = document.skeleton()?.ok_or_else(|| Fault::missing("Skeleton beside the SkelAnimation"))?;
@@ -48,6 +49,7 @@ pub(super) fn of_skeleton(
 ) -> Result<RawMotion> {
     let (layer, Skeleton { prim, joints, above, animation: bound }) = (&document.layer, skeleton);
     let mut warnings: Vec<String> = document.missing.iter().map(|m| format!("left out: {m}")).collect();
+    warnings.extend(value_clips(document));
     let skeletons = document.skeleton_count();
     if skeletons > 1 {
         warnings.push(format!("{skeletons} skeletons: {prim} is read"));
@@ -89,6 +91,12 @@ pub(super) fn of_skeleton(
         rate_found: if options.frames_per_second.is_some() { Found::Asked } else { rate.found },
         warnings,
     })
+}
+
+/// What to say of value clips: animation in other files, a file for a span of time each.
+fn value_clips(document: &Document) -> Option<String> {
+    let prims: Vec<String> = document.value_clips.iter().map(Path::to_string).collect();
+    (!prims.is_empty()).then(|| format!("value clips are not read: {} has them", prims.join(", ")))
 }
 
 /// `parent_from_joint` of every joint in the pose of `bindTransforms`, where that is another than that of `restTransforms`,
@@ -232,4 +240,4 @@ fn frame_rate(times: &[f64], time_codes_per_second: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(in crate::format) mod tests;

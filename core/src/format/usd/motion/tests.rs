@@ -5,7 +5,7 @@ use crate::math::Rotation;
 
 /// Typical of other programs: centimetres, +Z up, xformOps above the skeleton, a child before its parent, an animation
 /// whose joint order differs and which lacks one joint and has a foreign one.
-const OTHERS: &str = r#"#usda 1.0
+pub(in crate::format) const OTHERS: &str = r#"#usda 1.0
 (
     metersPerUnit = 0.01
     timeCodesPerSecond = 48
@@ -267,6 +267,23 @@ fn what_is_not_composed_is_named() {
     assert!(error.contains("SkelAnimation"), "{error}");
     let error = composed(&reference("./b.usda"), &[("b.usda", "#usda 1.0\n)")]).unwrap_err().to_string();
     assert!(error.contains("b.usda"), "{error}");
+}
+
+#[test]
+fn value_clips_are_named() {
+    let clips = "    def Skeleton \"Skel\" (\n clips = { dictionary default = { asset[] assetPaths = [@./walk.usd@]\n string primPath = \"/Skel\" } }\n";
+    let plain = OTHERS.replace("    def Skeleton \"Skel\" (", clips);
+    let arc = format!("{clips} inherits = </Pose>\n");
+    let composed_too = OTHERS.replace("    def Skeleton \"Skel\" (", &arc) + "class \"Pose\" { }\n";
+    for text in [plain, composed_too] {
+        let motion = composed(&text, &[]).unwrap();
+        let warnings = motion.report.warnings;
+        assert_eq!(warnings, ["value clips are not read: /World/Man/Skel has them"], "{text}");
+    }
+    let without =
+        layer("", "def \"A\" (\n clips = { dictionary default = { string primPath = \"/A\" } }\n) { }\n");
+    let error = composed(&without, &[]).unwrap_err().to_string();
+    assert!(error.contains("SkelAnimation") && error.contains("value clips are not read: /A"), "{error}");
 }
 
 #[test]
