@@ -143,3 +143,61 @@ impl Foot {
         sum.length() / count.max(1) as f32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use anthronet::clip::{TranslationTrack, builtin};
+    use anthronet::condition::Request;
+    use anthronet::math::Rotation;
+    use anthronet::measure::Sex;
+    use anthronet::model::Model;
+    use anthronet::retarget::feet::{FeetOptions, plant};
+
+    use super::*;
+
+    #[test]
+    fn soles_of_very_different_bodies_stand_still_and_on_the_floor() {
+        let model = Model::from_environment().unwrap();
+        for (sex, measures) in [
+            (Sex::Female, &[("height", 1.50), ("waist_circumference", 1.05)][..]),
+            (Sex::Female, &[("height", 1.88), ("waist_circumference", 0.68)][..]),
+            (Sex::Male, &[("height", 1.72), ("waist_circumference", 1.15)][..]),
+            (Sex::Male, &[("height", 1.99)][..]),
+        ] {
+            let mut request = Request { sex: Some(sex), ..Request::default() };
+            measures.iter().for_each(|(name, value)| request.set(name, *value).unwrap());
+            let body = model.generate(&request).unwrap();
+            let skeleton = body.skeleton().clone();
+            let soles = Soles::of(&body, &skeleton).unwrap();
+            let clip = sliding(&builtin("walk", &skeleton).unwrap());
+            let (planted, report) = plant(&clip, &FeetOptions::default()).unwrap();
+            let before = soles.measure(&clip, &report.contacts).unwrap();
+            let on_floor = Contacts { floor: 0.0, ..report.contacts };
+            let after = soles.measure(&planted, &on_floor).unwrap();
+            let said = format!("{sex:?} {measures:?}: {before:?} {after:?}");
+            assert!(before.slide > 0.03, "{said}");
+            assert!(after.slide < 0.003 && after.deepest < 0.01, "{said}");
+        }
+    }
+
+    /// The clip with a way that is 8 % too long, and feet that roll aside by 10° as they swing.
+    fn sliding(walk: &Clip) -> Clip {
+        let skeleton = walk.skeleton();
+        let feet = SidedJoint::Foot.both().map(|foot| skeleton.require_rig_joint(foot).unwrap());
+        let mut rotations = Vec::new();
+        for frame in 0..walk.frame_count() {
+            let mut pose = walk.pose(frame);
+            let phase = std::f32::consts::TAU * frame as f32 / (walk.frame_count() - 1) as f32;
+            for foot in feet {
+                pose.locals[foot].rotation *= Rotation::from_rotation_y(0.17 * phase.sin());
+            }
+            rotations.extend(pose.locals.iter().map(|local| local.rotation));
+        }
+        let longer = |track: &TranslationTrack| TranslationTrack {
+            joint: track.joint,
+            values: track.values.iter().map(|v| Vec3::new(v.x, v.y, v.z * 1.08)).collect(),
+        };
+        let tracks = walk.translations().iter().map(longer).collect();
+        Clip::new("sliding".into(), skeleton.clone(), walk.frames_per_second(), rotations, tracks).unwrap()
+    }
+}

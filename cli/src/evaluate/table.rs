@@ -18,6 +18,13 @@ pub(super) struct Row {
     pub(super) unmatched: usize,
     /// Mean over frames, limb bones and bodies.
     direction_mean_deg: f64,
+    /// Mean over frames, bodies, and hips, spine, shoulders, neck and head.
+    trunk_mean_deg: f64,
+    /// Mean over frames, bodies, and rolls of palms and soles.
+    rolls_mean_deg: f64,
+    /// The part of the body with the largest mean over the frames, and that mean.
+    worst_part: Option<String>,
+    worst_part_deg: f64,
     beyond_limits_deg: f64,
     beyond_limits_joint: Option<String>,
     /// The largest rotation of a limb in one frame beyond that of the motion, and where.
@@ -42,6 +49,9 @@ pub(super) struct MotionTable {
     clips: usize,
     direction_mean_deg: f64,
     direction_worst_clip_mean_deg: f64,
+    trunk_worst_clip_mean_deg: f64,
+    rolls_worst_clip_mean_deg: f64,
+    worst_part_deg: f64,
     beyond_limits_deg: f64,
     jump_deg: f64,
     slide_mm: f64,
@@ -59,6 +69,10 @@ impl Row {
             frames: 0,
             unmatched: 0,
             direction_mean_deg: 0.0,
+            trunk_mean_deg: 0.0,
+            rolls_mean_deg: 0.0,
+            worst_part: None,
+            worst_part_deg: 0.0,
             beyond_limits_deg: 0.0,
             beyond_limits_joint: None,
             jump_deg: 0.0,
@@ -75,7 +89,14 @@ impl Row {
     /// Adds one clip on one body; `share` is its weight in the means.
     pub(super) fn add_quality(&mut self, quality: &ClipReport, share: f64) {
         self.frames = self.frames.max(quality.frames);
-        self.direction_mean_deg += share * quality.direction.mean();
+        let direction = &quality.direction;
+        self.direction_mean_deg += share * direction.mean();
+        self.trunk_mean_deg += share * direction.trunk_mean();
+        self.rolls_mean_deg += share * direction.roll_mean();
+        if let Some(worst) = direction.worst.as_ref().filter(|worst| worst.mean > self.worst_part_deg) {
+            self.worst_part_deg = worst.mean;
+            self.worst_part = Some(worst.bone.clone());
+        }
         self.add_limit_excess(quality.beyond_limits, quality.beyond_limits_joint.as_deref());
         let jump = &quality.jump;
         if jump.degrees > self.jump_deg {
@@ -118,6 +139,9 @@ impl MotionTable {
             clips: rows.len(),
             direction_mean_deg: of_files.iter().map(|r| r.direction_mean_deg).sum::<f64>() / files as f64,
             direction_worst_clip_mean_deg: worst(|r| r.direction_mean_deg),
+            trunk_worst_clip_mean_deg: worst(|r| r.trunk_mean_deg),
+            rolls_worst_clip_mean_deg: worst(|r| r.rolls_mean_deg),
+            worst_part_deg: worst(|r| r.worst_part_deg),
             beyond_limits_deg: worst(|r| r.beyond_limits_deg),
             jump_deg: worst(|r| r.jump_deg),
             slide_mm: worst(|r| r.slide_mm),
@@ -137,10 +161,13 @@ impl MotionTable {
         );
         let _ = writeln!(
             out,
-            "  {:24} {:>6} {:>9} {:>14} {:>21} {:>8} {:>16} {:>16}",
+            "  {:24} {:>6} {:>9} {:>9} {:>9} {:>19} {:>14} {:>21} {:>8} {:>16} {:>16}",
             "clip",
             "frames",
             "direction",
+            "trunk",
+            "rolls",
+            "worst part",
             "beyond limits",
             "jump in one frame",
             "contacts",
@@ -151,10 +178,14 @@ impl MotionTable {
             let joint = r.beyond_limits_joint.as_deref().unwrap_or("");
             let _ = writeln!(
                 out,
-                "  {:24} {:6} {:7.2} ° {:6.2} ° {:>12} {:5.1} ° {:>15} {:5.0} {:6.1} mm ({:.0}) {:6.1} mm ({:.0})",
+                "  {:24} {:6} {:7.2} ° {:7.2} ° {:7.2} ° {:6.2} ° {:>10} {:6.2} ° {:>12} {:5.1} ° {:>15} {:5.0} {:6.1} mm ({:.0}) {:6.1} mm ({:.0})",
                 r.clip,
                 r.frames,
                 r.direction_mean_deg,
+                r.trunk_mean_deg,
+                r.rolls_mean_deg,
+                r.worst_part_deg,
+                r.worst_part.as_deref().unwrap_or(""),
                 r.beyond_limits_deg,
                 joint,
                 r.jump_deg,
@@ -168,10 +199,14 @@ impl MotionTable {
         }
         let _ = writeln!(
             out,
-            "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; beyond limits {:.2} °; jump in one frame \
+            "direction of limbs, mean {:.2} °, of the worst clip {:.2} °; of the trunk {:.2} °, rolls {:.2} °, worst part \
+             {:.2} °; beyond limits {:.2} °; jump in one frame \
              {:.1} °; slide per stride {:.1} mm; under the floor {:.1} mm; {} vertices not finite",
             self.direction_mean_deg,
             self.direction_worst_clip_mean_deg,
+            self.trunk_worst_clip_mean_deg,
+            self.rolls_worst_clip_mean_deg,
+            self.worst_part_deg,
             self.beyond_limits_deg,
             self.jump_deg,
             self.slide_mm,

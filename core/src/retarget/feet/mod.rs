@@ -12,6 +12,7 @@ mod contacts;
 mod hold;
 mod plant;
 mod roll;
+mod shape;
 mod soles;
 
 use glam::Vec3;
@@ -126,7 +127,7 @@ pub fn measure(clip: &Clip, contacts: &Contacts) -> Result<FeetMeasure> {
     let mut out = FeetMeasure::default();
     let tracks = soles::tracks(clip, &legs, contacts.floor);
     for (foot, track) in tracks.iter().enumerate() {
-        let steps = roll::steps(clip, &legs[foot], &contacts.feet[foot]);
+        let steps = roll::steps(clip, &legs[foot], &contacts.feet[foot])?;
         let slides: Vec<f32> = steps.iter().map(|steps| drift(steps)).collect();
         out.contacts[foot] = slides.len();
         out.worst_slide[foot] = slides.iter().copied().fold(0.0, f32::max);

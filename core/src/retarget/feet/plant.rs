@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::contacts::{Contact, Contacts, contacts};
 use super::hold::{Correction, bridged, corrections, ramped};
-use super::roll::slips;
+use super::roll::{RoundSole, slips};
 use super::soles;
 use super::{FeetOptions, FeetReport, for_each_pose, measure};
 use crate::Result;
@@ -89,7 +89,9 @@ fn planted(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetRe
     // legs keep their bend.
     let floor = found.floor - common_rise(clip, &legs, &found, &corrected(found.floor));
     let mut feet = corrected(floor);
+    let [left, right] = legs.each_ref().map(|leg| RoundSole::of(rest, leg));
     let planter = Planter {
+        soles: [left?, right?],
         joints: with_ancestors(rest.parents(), legs.iter().map(|leg| leg.ball)),
         legs,
         rest,
@@ -100,7 +102,7 @@ fn planted(clip: &Clip, options: &FeetOptions) -> Result<(Clip, Contacts, FeetRe
     let (mut planted, mut drops) = planter.run(clip, &feet, pelvis, blend)?;
     for _ in 0..SLIDE_ITERATIONS {
         for (foot, corrections) in feet.iter_mut().enumerate() {
-            let slips = slips(&planted, &planter.legs[foot], &found.feet[foot]);
+            let slips = slips(&planted, &planter.legs[foot], &found.feet[foot])?;
             for (correction, slip) in corrections.iter_mut().zip(bridged(&slips, blend)) {
                 correction.shift -= slip;
             }
@@ -132,6 +134,7 @@ fn common_rise(clip: &Clip, legs: &[Leg; 2], found: &Contacts, feet: &[Vec<Corre
 /// What planting the frames of a clip depends on.
 struct Planter<'a> {
     legs: [Leg; 2],
+    soles: [RoundSole; 2],
     /// The legs' joints and all above them.
     joints: Vec<usize>,
     rest: &'a Skeleton,
@@ -177,19 +180,26 @@ impl Planter<'_> {
     }
 
     /// The goal of a foot, `model_from_joint`, before the pelvis is lowered: corrected and lifted out of the floor.
-    fn goal(&self, leg: &Leg, model: &[RigidTransform], correction: &Correction) -> RigidTransform {
-        let (foot, ball) = (self.above_floor(model[leg.limb.end]), self.above_floor(model[leg.ball]));
-        let sole = leg.points(foot, ball);
-        let moved = correction.apply(foot.translation, sole.joint);
-        let rise = moved.y - foot.translation.y;
+    fn goal(&self, foot: usize, model: &[RigidTransform], correction: &Correction) -> RigidTransform {
+        let leg = &self.legs[foot];
+        let (foot_joint, ball_joint) =
+            (self.above_floor(model[leg.limb.end]), self.above_floor(model[leg.ball]));
+        let sole = leg.points(foot_joint, ball_joint);
+        let moved = correction.apply(foot_joint.translation, sole.joint);
+        let rise = moved.y - foot_joint.translation.y;
         let ignored = rise.clamp(-IGNORED_RISE, IGNORED_RISE);
         let (heel, ball) = (correction.apply(sole.heel, sole.joint).y, sole.ball.y + correction.shift.y);
-        let tilt = libm::fabsf((correction.rotation() * foot.rotation * Vec3::X).y);
+        let corrected = |joint: RigidTransform| RigidTransform {
+            rotation: (correction.rotation() * joint.rotation).normalize(),
+            translation: correction.apply(joint.translation, sole.joint),
+        };
+        let rim = self.soles[foot].lowest(&[corrected(foot_joint), corrected(ball_joint)]) + EDGE_DEPTH;
+        let tilt = libm::fabsf((corrected(foot_joint).rotation * Vec3::X).y);
         let edges = leg.half_widths.map(|half| tilt * half - EDGE_DEPTH).map(|drop| drop.max(0.0));
-        let lowest = (heel - edges[0]).min(ball - edges[1]) - ignored;
+        let lowest = (heel - edges[0]).min(ball - edges[1]).min(rim) - ignored;
         let lift = (-self.options.depth - lowest).max(0.0);
         RigidTransform {
-            rotation: (correction.rotation() * foot.rotation).normalize(),
+            rotation: corrected(foot_joint).rotation,
             translation: moved + Vec3::Y * (lift - ignored),
         }
     }
@@ -202,8 +212,8 @@ impl Planter<'_> {
     fn pelvis_drops(&self, clip: &Clip, feet: &[Vec<Correction>; 2], blend: usize) -> Vec<f32> {
         let mut needed = vec![0.0_f32; clip.frame_count()];
         for_each_pose(clip, &self.legs, |frame, pose, model| {
-            for (leg, corrections) in self.legs.iter().zip(feet) {
-                let goal = self.goal(leg, model, &corrections[frame]).translation;
+            for (foot, leg) in self.legs.iter().enumerate() {
+                let goal = self.goal(foot, model, &feet[foot][frame]).translation;
                 let hip = self.above_floor(model[leg.limb.upper]).translation;
                 let reach = leg.limb.length(pose) * (1.0 - SOFTNESS);
                 let level = (goal - hip).with_y(0.0).length();
@@ -231,8 +241,7 @@ impl Planter<'_> {
     ) -> [f32; 2] {
         let parents = self.rest.parents();
         model_from_some_joints(parents, &pose.locals, &self.joints, model);
-        let goals: [RigidTransform; 2] =
-            std::array::from_fn(|f| self.goal(&self.legs[f], model, &corrections[f]));
+        let goals: [RigidTransform; 2] = std::array::from_fn(|f| self.goal(f, model, &corrections[f]));
         let parent = parents[pelvis].map_or(Rotation::IDENTITY, |p| model[p as usize].rotation);
         pose.locals[pelvis].translation -= parent.conjugate() * (Vec3::Y * (drop + self.floor));
         model_from_some_joints(parents, &pose.locals, &self.joints, model);
@@ -271,8 +280,10 @@ impl Planter<'_> {
     fn toe_bend(&self, leg: &Leg, pose: &Pose, parent: RigidTransform) -> f32 {
         let [_, _, foot] = leg.limb.model_from_joints(pose, parent);
         let ball = foot.then(pose.locals[leg.ball]);
-        let wanted = leg.clearance[1] - ball.translation.y - self.options.depth;
         let (axis, toes) = (ball.rotation * Vec3::X, ball.rotation * leg.tip);
+        // The lower side of toes on a foot that rolls aside.
+        let edge = (libm::fabsf(axis.y) * leg.half_widths[1] - EDGE_DEPTH).max(0.0);
+        let wanted = leg.clearance[1] - ball.translation.y - self.options.depth + edge;
         // The rising solution of toes.y · cos + (axis × toes).y · sin = wanted. The axis is level but for the foot's roll.
         let (cos, sin) = (toes.y, axis.cross(toes).y);
         let most = libm::sqrtf(cos * cos + sin * sin);

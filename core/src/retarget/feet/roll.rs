@@ -1,9 +1,7 @@
 //! Sliding of a sole that rolls over the floor.
 //!
 //! As a standing foot tilts, the contact area moves over the round heel, and over the ball to the toes. A foot slides when
-//! the skin in the contact area moves, not when some fixed point of the sole does. The shapes are fitted to the skin of 24
-//! random bodies, tilted by up to 35° along and 22° across: the centre of the contact area is off by 3 mm on average, as
-//! much as bodies differ.
+//! the skin in the contact area moves, not when some fixed point of the sole does.
 
 use std::slice;
 
@@ -11,27 +9,15 @@ use glam::Vec3;
 
 use super::contacts::{Contact, FootPoint, runs};
 use super::for_each_pose;
+use super::shape::{SoleVertex, sole_skin};
+use crate::Result;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::pose::Leg;
+use crate::skeleton::Skeleton;
 
-/// The heel is the underside of an ellipsoid. Its lowest point in a flat foot, ahead of the ankle and to the outer side, as
-/// shares of the distance from ankle to ball along the floor; bodies differ by 0.035.
-const HEEL_AT: [f32; 2] = [-0.135, 0.035];
-/// Half the ellipsoid's length, width and height as shares of that distance.
-const HEEL_AXES: [f32; 3] = [0.18, 0.16, 0.08];
-/// The pad of the ball is a round patch. How far its lowest point is ahead of the ball joint in a flat foot, metres.
-const PAD_AHEAD: f32 = 0.003;
-/// Radius of the patch, metres.
-const PAD_RADIUS: f32 = 0.03;
-/// Radii of its curvature along the foot and across, metres.
-const PAD_CURVATURE: [f32; 2] = [0.055, 0.3];
-/// Sample points along the pad's diameter.
-const PAD_SAMPLES: usize = 9;
-/// Height above its lowest point up to which the pad touches the floor, metres, as skin yields.
+/// Height above its lowest point up to which a sole touches the floor, metres, as skin yields.
 const TOUCHING: f32 = 0.005;
-/// Distances ahead of the ball joint between which the skin blends from the foot to the toes, metres.
-const TOE_BLEND: [f32; 2] = [0.0, 0.04];
 
 /// A point of the sole, skinned to foot and toes.
 #[derive(Clone, Copy, Debug)]
@@ -42,75 +28,47 @@ struct SolePoint {
     ball_weight: f32,
 }
 
-/// The parts of a sole that touch the floor: an ellipsoid at the heel and a pad at the ball.
+/// The parts of a sole that touch the floor: under the heel and under the ball.
 #[derive(Clone, Debug)]
-struct RoundSole {
-    /// Centre of the heel's ellipsoid in the foot's space.
-    heel: Vec3,
-    /// Its half axes in the foot's space.
-    axes: [Vec3; 3],
-    /// Points of the pad.
-    ball: Vec<SolePoint>,
+pub(super) struct RoundSole {
+    /// Under the heel and under the ball.
+    parts: [Vec<SolePoint>; 2],
+    /// The outline, without toes.
+    rim: Vec<SolePoint>,
 }
 
 impl RoundSole {
-    fn of(leg: &Leg, model: &[RigidTransform]) -> Self {
+    /// The sole of a leg.
+    ///
+    /// # Errors
+    /// As [`sole_skin`].
+    pub(super) fn of(rest: &Skeleton, leg: &Leg) -> Result<Self> {
+        let model = rest.model_from_joints();
         let [foot, ball] = [model[leg.limb.end], model[leg.ball]];
-        let forward = (ball.translation - foot.translation).with_y(0.0);
-        let length = forward.length();
-        let ahead = forward.normalize_or_zero();
-        let across = Vec3::Y.cross(ahead);
-        // Left feet are at +X.
-        let outwards = across * foot.translation.x.signum();
-        let line = |i: usize| PAD_RADIUS * (2.0 * i as f32 / (PAD_SAMPLES - 1) as f32 - 1.0);
-        let grid = (0..PAD_SAMPLES * PAD_SAMPLES).map(|i| (line(i % PAD_SAMPLES), line(i / PAD_SAMPLES)));
-        let pad = grid.filter(|(x, z)| x * x + z * z <= PAD_RADIUS * PAD_RADIUS * 1.001).map(|(x, z)| {
-            let [along, aside] = PAD_CURVATURE;
-            let up = 0.5 * (z * z / along + x * x / aside);
-            let z = z + PAD_AHEAD;
-            let point = (ball.translation + across * x + ahead * z).with_y(up);
-            SolePoint {
-                in_foot: foot.rotation.conjugate() * (point - foot.translation),
-                in_ball: ball.rotation.conjugate() * (point - ball.translation),
-                ball_weight: ((z - TOE_BLEND[0]) / (TOE_BLEND[1] - TOE_BLEND[0])).clamp(0.0, 1.0),
-            }
-        });
-        let [to_front, to_side] = HEEL_AT;
-        let low = foot.translation.with_y(0.0) + (ahead * to_front + outwards * to_side) * length;
-        let [long, wide, high] = HEEL_AXES.map(|axis| axis * length);
-        let into_foot = |v: Vec3| foot.rotation.conjugate() * v;
-        Self {
-            heel: into_foot(low + Vec3::Y * high - foot.translation),
-            axes: [into_foot(ahead * long), into_foot(across * wide), into_foot(Vec3::Y * high)],
-            ball: pad.collect(),
-        }
+        let point = |vertex: &SoleVertex| SolePoint {
+            in_foot: foot.rotation.conjugate() * (vertex.position - foot.translation),
+            in_ball: ball.rotation.conjugate() * (vertex.position - ball.translation),
+            ball_weight: vertex.ball_weight,
+        };
+        let skin = sole_skin(rest, leg, &model)?;
+        let points = |vertices: &Vec<SoleVertex>| vertices.iter().map(point).collect();
+        Ok(Self { parts: skin.parts.each_ref().map(points), rim: points(&skin.rim) })
+    }
+
+    /// Height of the lowest point of the outline, from `model_from_joint` of foot and ball, metres.
+    pub(super) fn lowest(&self, joints: &[RigidTransform; 2]) -> f32 {
+        self.rim.iter().map(|point| point.at(joints).y).fold(f32::INFINITY, f32::min)
     }
 
     /// Displacement along the floor of the contact area from one frame to the next, from `model_from_joint` of foot and ball.
     fn step(&self, point: FootPoint, before: &[RigidTransform; 2], now: &[RigidTransform; 2]) -> Vec3 {
-        let step = match point {
-            FootPoint::Heel => {
-                let low = self.lowest_of_heel(before[0]);
-                at(now[0], low) - at(before[0], low)
-            }
-            FootPoint::Ball => {
-                let positions: Vec<Vec3> = self.ball.iter().map(|point| point.at(before)).collect();
-                let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
-                let touching = self.ball.iter().zip(&positions).filter(|(_, p)| p.y < lowest + TOUCHING);
-                let steps = touching.map(|(point, position)| point.at(now) - *position);
-                let (sum, count) = steps.fold((Vec3::ZERO, 0), |(sum, count), s| (sum + s, count + 1));
-                sum / count.max(1) as f32
-            }
-        };
-        step.with_y(0.0)
-    }
-
-    /// The lowest point of the heel, in the foot's space. The point of an ellipsoid with half axes aᵢ that is farthest in the
-    /// direction d is Σ aᵢ (aᵢ·d) / √Σ (aᵢ·d)² from its centre.
-    fn lowest_of_heel(&self, foot: RigidTransform) -> Vec3 {
-        let down = foot.rotation.conjugate() * Vec3::NEG_Y;
-        let far: Vec3 = self.axes.iter().map(|axis| *axis * axis.dot(down)).sum();
-        self.heel + far / libm::sqrtf(far.dot(down)).max(f32::MIN_POSITIVE)
+        let part = &self.parts[point as usize];
+        let positions: Vec<Vec3> = part.iter().map(|point| point.at(before)).collect();
+        let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let touching = part.iter().zip(&positions).filter(|(_, p)| p.y < lowest + TOUCHING);
+        let steps = touching.map(|(point, position)| point.at(now) - *position);
+        let (sum, count) = steps.fold((Vec3::ZERO, 0), |(sum, count), step| (sum + step, count + 1));
+        (sum / count.max(1) as f32).with_y(0.0)
     }
 }
 
@@ -125,8 +83,11 @@ fn at(joint: RigidTransform, point: Vec3) -> Vec3 {
 }
 
 /// Displacements of the contact area along the floor in each contact, from each of its frames to the next; metres.
-pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Vec<Vec3>> {
-    let sole = RoundSole::of(leg, &clip.skeleton().model_from_joints());
+///
+/// # Errors
+/// As [`sole_skin`].
+pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Result<Vec<Vec<Vec3>>> {
+    let sole = RoundSole::of(clip.skeleton(), leg)?;
     let mut joints = Vec::with_capacity(clip.frame_count());
     for_each_pose(clip, slice::from_ref(leg), |_, _, model| {
         joints.push([model[leg.limb.end], model[leg.ball]]);
@@ -135,17 +96,20 @@ pub(super) fn steps(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Vec<Vec
         let frames = joints.get(contact.start..contact.end).unwrap_or_default();
         frames.windows(2).map(|pair| sole.step(contact.point, &pair[0], &pair[1])).collect()
     };
-    contacts.iter().map(of_contact).collect()
+    Ok(contacts.iter().map(of_contact).collect())
 }
 
 /// How far a foot has slid along the floor in each frame, metres, relative to the mean over the frames in which it stays on
 /// the floor; `None` in frames in which neither heel nor ball touches.
-pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<Vec3>> {
+///
+/// # Errors
+/// As [`sole_skin`].
+pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Result<Vec<Option<Vec3>>> {
     let count = clip.frame_count();
     let mut touches = vec![false; count];
     // Sums and counts of the steps that lead to each frame.
     let mut sums = vec![(Vec3::ZERO, 0.0); count];
-    for (contact, steps) in contacts.iter().zip(steps(clip, leg, contacts)) {
+    for (contact, steps) in contacts.iter().zip(steps(clip, leg, contacts)?) {
         touches[contact.start..contact.end].fill(true);
         for ((sum, count), step) in sums[contact.start..].iter_mut().skip(1).zip(steps) {
             *sum += step;
@@ -162,7 +126,7 @@ pub(super) fn slips(clip: &Clip, leg: &Leg, contacts: &[Contact]) -> Vec<Option<
         let mean = path.iter().sum::<Vec3>() / path.len() as f32;
         slips[start..end].iter_mut().zip(path).for_each(|(slip, position)| *slip = Some(position - mean));
     }
-    slips
+    Ok(slips)
 }
 
 #[cfg(test)]
@@ -174,9 +138,17 @@ mod tests {
 
     const POINTS: [FootPoint; 2] = [FootPoint::Heel, FootPoint::Ball];
 
-    fn left(rest: &crate::skeleton::Skeleton) -> (RoundSole, [RigidTransform; 2]) {
+    fn left(rest: &Skeleton) -> (RoundSole, [RigidTransform; 2]) {
         let (leg, model) = (Leg::both(rest).unwrap()[0], rest.model_from_joints());
-        (RoundSole::of(&leg, &model), [model[leg.limb.end], model[leg.ball]])
+        (RoundSole::of(rest, &leg).unwrap(), [model[leg.limb.end], model[leg.ball]])
+    }
+
+    /// The middle of what touches the floor.
+    fn touching(sole: &RoundSole, point: FootPoint, joints: &[RigidTransform; 2]) -> Vec3 {
+        let positions: Vec<Vec3> = sole.parts[point as usize].iter().map(|p| p.at(joints)).collect();
+        let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let low: Vec<Vec3> = positions.into_iter().filter(|p| p.y < lowest + TOUCHING).collect();
+        low.iter().sum::<Vec3>() / low.len() as f32
     }
 
     fn rotated(joints: &[RigidTransform; 2], by: Rotation, about: Vec3) -> [RigidTransform; 2] {
@@ -199,7 +171,7 @@ mod tests {
                     let step = sole.step(point, &standing, &moved);
                     assert!(step.distance(by) < 1e-5, "{body} {point:?}: {step}");
                 }
-                let heel = at(standing[0], sole.lowest_of_heel(standing[0]));
+                let heel = touching(&sole, FootPoint::Heel, &standing);
                 let pivoted = rotated(&standing, Rotation::from_rotation_y(0.3), heel);
                 let [heel, ball] = POINTS.map(|point| sole.step(point, &standing, &pivoted).length());
                 assert!(heel < 1e-5 && ball > 0.03, "{body}: {heel} {ball}");
@@ -208,26 +180,24 @@ mod tests {
     }
 
     #[test]
-    fn the_heel_touches_at_the_lowest_point_of_its_ellipsoid() {
-        let (_, rest) = bodies().remove(0);
-        let (sole, flat) = left(&rest);
-        for (pitch, roll) in [(0.0_f32, 0.0_f32), (-0.3, 0.0), (0.1, 0.2), (-0.1, -0.3)] {
-            let foot = rotated(
-                &flat,
-                Rotation::from_rotation_x(pitch) * Rotation::from_rotation_z(roll),
-                Vec3::ZERO,
-            )[0];
-            let lowest = at(foot, sole.lowest_of_heel(foot));
-            let sphere = (0..200).flat_map(|i| (0..200).map(move |j| (i as f32 * 0.0315, j as f32 * 0.0158)));
-            let surface = sphere.map(|(u, v)| {
-                let [a, b, c] = sole.axes;
-                at(foot, sole.heel + a * u.cos() * v.sin() + b * u.sin() * v.sin() + c * v.cos())
-            });
-            let sampled = surface.min_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
-            assert!(lowest.y <= sampled.y + 1e-6 && lowest.distance(sampled) < 5e-4, "{lowest} {sampled}");
+    fn a_foot_that_rolls_back_or_forwards_stands_on_the_back_of_the_heel_or_the_front_of_the_ball() {
+        for (body, rest) in bodies() {
+            let (sole, flat) = left(&rest);
+            let rolled = |degrees: f32, point: FootPoint| {
+                let tilt = Rotation::from_rotation_x(degrees.to_radians());
+                let tilted = rotated(&flat, tilt, flat[0].translation);
+                let at = tilt.conjugate() * (touching(&sole, point, &tilted) - flat[0].translation);
+                flat[0].translation + at
+            };
+            let [flat_heel, back] = [0.0, -20.0].map(|tilt| rolled(tilt, FootPoint::Heel));
+            let [flat_ball, front] = [0.0, 20.0].map(|tilt| rolled(tilt, FootPoint::Ball));
+            assert!(back.z < flat_heel.z - 0.003, "{body}: {back} behind {flat_heel}");
+            assert!(front.z > flat_ball.z + 0.003, "{body}: {front} ahead of {flat_ball}");
+            assert!(flat_heel.z < flat[0].translation.z, "{body}: {flat_heel} behind the ankle");
+            assert!(
+                flat_heel.y.abs() < 0.006 && flat_ball.y.abs() < 0.006,
+                "{body}: {flat_heel} {flat_ball}"
+            );
         }
-        // In a flat foot that point is on the floor and behind the ankle.
-        let lowest = at(flat[0], sole.lowest_of_heel(flat[0]));
-        assert!(lowest.y.abs() < 1e-5 && lowest.z < flat[0].translation.z, "{lowest}");
     }
 }

@@ -8,8 +8,9 @@ use super::confidence::{Confidence, LEAST_CONFIDENCE};
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
 use super::reference_pose::{self, ReferenceFrame};
-use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error, worst_jump};
+use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error_from, worst_jump};
 use crate::clip::{Clip, in_place, looped, resample};
+use crate::math::RigidTransform;
 use crate::pose::limits::{JointLimits, TwistHistory};
 use crate::skeleton::Skeleton;
 use crate::{Error, Result};
@@ -62,7 +63,7 @@ pub struct ClipReport {
     pub frames: usize,
     /// Frames per second.
     pub frames_per_second: f64,
-    /// Angles between bones of the motion and of the body.
+    /// Angles between parts of the body in the motion and on the body.
     pub direction: DirectionError,
     /// Largest excess of a joint beyond its limits, degrees.
     pub beyond_limits: f64,
@@ -154,6 +155,8 @@ struct Pipeline<'a> {
     target: &'a Arc<Skeleton>,
     options: &'a RetargetOptions,
     map: JointMap,
+    /// The pose in which the motion's skeleton stands, `model_from_joint`.
+    standing: Vec<RigidTransform>,
     retargeter: Retargeter,
     limits: JointLimits,
     /// Of the clips so far.
@@ -167,6 +170,7 @@ impl<'a> Pipeline<'a> {
         let reference = reference_pose::find(&map, sources, options.force)?;
         let (source, target_rest) = (sources[0].skeleton(), target.clone());
         let confidence = Confidence::of(&map, source, &reference);
+        let standing = reference.model.clone();
         let retargeter =
             Retargeter::with_reference(source, reference.model, target_rest, &map, &options.transfer)?;
         let limits = JointLimits::of_rig(target);
@@ -177,11 +181,11 @@ impl<'a> Pipeline<'a> {
             reference: reference.frame,
             clips: Vec::new(),
         };
-        Ok(Self { target, options, map, retargeter, limits, report })
+        Ok(Self { target, options, map, standing, retargeter, limits, report })
     }
 
     fn run(&mut self, source: &Clip) -> Result<Clip> {
-        let Self { target, options, map, retargeter, limits, report } = self;
+        let Self { target, options, map, standing, retargeter, limits, report } = self;
         let resampled = options.frames_per_second.map(|rate| resample(source, rate)).transpose()?;
         let source = resampled.as_ref().unwrap_or(source);
         let mut twists = TwistHistory::new(limits, source.frames_per_second());
@@ -197,7 +201,7 @@ impl<'a> Pipeline<'a> {
             (clip, feet) = (planted, Some(found));
         }
         // Both compare with the source, so they are measured before looping changes the clip.
-        let direction = direction_error(source, &clip, map);
+        let direction = direction_error_from(source, standing.clone(), &clip, map);
         report.confidence.compare(source.name(), &direction);
         let jump = worst_jump(source, &clip, map);
         if let Some(unplanted) = unplanted {

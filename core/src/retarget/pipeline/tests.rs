@@ -5,8 +5,10 @@ use glam::Vec3;
 use super::*;
 use crate::clip::builtin;
 use crate::math::{RigidTransform, Rotation};
+use crate::random::Random;
 use crate::retarget::feet::measure;
 use crate::testing::bodies::bodies;
+use crate::testing::person::{motion, person};
 
 /// Position of a joint along the floor, frame by frame.
 fn path(clip: &Clip, joint: &str) -> Vec<Vec3> {
@@ -141,4 +143,68 @@ fn without_planting_feet_slide() {
     let worst = |pair: [f32; 2]| pair[0].max(pair[1]);
     assert!(worst(feet.before.worst_slide) > worst(feet.after.worst_slide), "{feet:?}");
     assert!(held != free);
+}
+
+/// The same motion in the world on a skeleton whose joints have axes that are turned at random.
+fn with_other_axes(clip: &Clip, seed: u64) -> Clip {
+    let skeleton = clip.skeleton();
+    let mut random = Random::new(seed, 3);
+    let turns: Vec<Rotation> = (0..skeleton.len())
+        .map(|_| {
+            let [x, y, z, w] = std::array::from_fn(|_| random.normal() as f32);
+            Rotation::from_xyzw(x, y, z, w).normalize()
+        })
+        .collect();
+    let of_parent = |joint: usize| {
+        skeleton.parents()[joint].map_or(Rotation::IDENTITY, |parent| turns[parent as usize].conjugate())
+    };
+    let turned = |(joint, rotation): (usize, &Rotation)| of_parent(joint) * *rotation * turns[joint];
+    let rest = skeleton.rest_pose().locals.iter().enumerate().map(|(joint, local)| RigidTransform {
+        rotation: turned((joint, &local.rotation)),
+        translation: of_parent(joint) * local.translation,
+    });
+    let ends = skeleton.ends().iter().zip(&turns).map(|(end, turn)| end.map(|end| turn.conjugate() * end));
+    let (names, parents) = (skeleton.names().to_vec(), skeleton.parents().to_vec());
+    let other = Skeleton::new(names, parents, rest.collect(), ends.collect()).unwrap();
+    let frames = 0..clip.frame_count();
+    let rotations = frames.flat_map(|frame| clip.rotations(frame).iter().enumerate().map(turned)).collect();
+    let mut tracks = clip.translations().to_vec();
+    for track in &mut tracks {
+        let turn = of_parent(track.joint as usize);
+        track.values.iter_mut().for_each(|value| *value = turn * *value);
+    }
+    Clip::new(clip.name().into(), Arc::new(other), clip.frames_per_second(), rotations, tracks).unwrap()
+}
+
+#[test]
+fn axes_of_the_source_change_neither_poses_nor_measures() {
+    let clip = motion(&person(), 40);
+    let target = bodies().remove(1).1;
+    let (expected, report) = run(&clip, &target, &RetargetOptions::default());
+    let groups = |report: &ClipReport| {
+        let DirectionError { limbs, ends, trunk, rolls, .. } = report.direction.clone();
+        [limbs, ends, trunk, rolls].concat()
+    };
+    let parts: Vec<String> = groups(&report).into_iter().map(|part| part.bone).collect();
+    for part in ["upperarm_l", "hips", "shoulders", "spine", "neck_01", "head", "sole_l", "sole_r"] {
+        assert!(parts.iter().any(|name| name == part), "{part} of {parts:?}");
+    }
+    for seed in 0..8 {
+        let (found, other) = run(&with_other_axes(&clip, seed), &target, &RetargetOptions::default());
+        for frame in 0..expected.frame_count() {
+            for (joint, (a, b)) in expected.rotations(frame).iter().zip(found.rotations(frame)).enumerate() {
+                let degrees = a.angle_between(*b).to_degrees();
+                assert!(degrees < 0.5, "{seed} {frame} {}: {degrees}", target.names()[joint]);
+            }
+        }
+        let others = groups(&other);
+        assert_eq!(parts.len(), others.len());
+        for (a, b) in groups(&report).iter().zip(&others) {
+            assert_eq!(a.bone, b.bone);
+            assert!((a.mean - b.mean).abs() < 0.5 && (a.max - b.max).abs() < 0.5, "{seed}: {a:?} {b:?}");
+        }
+        // Left and right may be equally bad.
+        let [a, b] = [&report, &other].map(|report| report.direction.worst.as_ref().unwrap().mean);
+        assert!((a - b).abs() < 0.5, "{seed}: {a} {b}");
+    }
 }

@@ -19,6 +19,7 @@ mod twist;
 use std::str::FromStr;
 use std::sync::Arc;
 
+pub(super) use direction::direction_error_from;
 pub use direction::{BoneError, DirectionError, direction_error};
 use hinge::{HingedLimb, MeanHingeAngle};
 pub use jump::{Jump, worst_jump};

@@ -47,7 +47,7 @@ fn feet_are_planted_and_lifted_out_of_the_floor() {
             assert!(report.after.deepest[foot] < 0.01, "{body}: {report:?}");
             let leg = &Leg::both(&rest).unwrap()[foot];
             let [before, after] = [&clip, &planted].map(|clip| {
-                let slips = roll::slips(clip, leg, &report.contacts.feet[foot]);
+                let slips = roll::slips(clip, leg, &report.contacts.feet[foot]).unwrap();
                 slips.iter().flatten().map(|slip| slip.length()).fold(0.0, f32::max)
             });
             assert!(before > 0.005 && after < 0.001, "{body}: rolls with slips of {before}, then {after}");
