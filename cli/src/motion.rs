@@ -80,8 +80,9 @@ pub(crate) struct MotionArguments {
 }
 
 impl MotionArguments {
-    /// Refuses contradictory options before any work is done.
-    pub(crate) fn check(&self, output: &Path) -> Result<()> {
+    /// Refuses contradictory options before any work is done. `posed_by` is the clip or file that a static pose is a frame of,
+    /// which options of motion files apply to as well.
+    pub(crate) fn check(&self, output: &Path, posed_by: Option<&str>) -> Result<()> {
         let extension = extension(output);
         if !self.clips.is_empty() && !files::holds_motion(output) {
             let moving: Vec<_> = Format::serving(Purpose::WriteScene).filter(|f| f.holds().clips).collect();
@@ -92,17 +93,22 @@ impl MotionArguments {
                 "--clip: a .{extension} holds no motion, expected {expected}"
             )));
         }
-        if self.clips.is_empty() {
-            let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);
-            return match given {
-                Some((option, _)) => Err(Failure::usage(format!("{option}: expected together with --clip"))),
-                None => Ok(()),
-            };
+        self.check_sources(posed_by)
+    }
+
+    /// Refuses options that apply to none of the clips.
+    pub(crate) fn check_sources(&self, posed_by: Option<&str>) -> Result<()> {
+        let of_files = posed_by.is_none().then(|| self.of_files()).into_iter().flatten();
+        if self.clips.is_empty()
+            && let Some((option, _)) = of_files.chain(self.of_all()).find(|(_, given)| *given)
+        {
+            return Err(Failure::usage(format!("{option}: expected together with --clip")));
         }
-        if self.clips.iter().all(|clip| BUILTIN.contains(&clip.as_str())) {
+        let sources: Vec<&str> = self.clips.iter().map(String::as_str).chain(posed_by).collect();
+        if sources.iter().all(|source| BUILTIN.contains(source)) {
             let given = self.of_files().into_iter().find(|(_, given)| *given);
             if let Some((option, _)) = given {
-                let clips = self.clips.join(", ");
+                let clips = sources.join(", ");
                 let message = format!(
                     "{option}: applies to motion files only, expected one with --clip, got the built-in {clips}"
                 );
@@ -179,8 +185,19 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     files::write_text(path, &(text + "\n"))
 }
 
-/// The clips of one `--clip`, retargeted to the skeleton, with their report.
+/// The clips of one source, retargeted to the skeleton, with their report.
 fn load(
+    source: &str,
+    skeleton: &Arc<Skeleton>,
+    arguments: &MotionArguments,
+) -> Result<(Vec<Clip>, serde_json::Value)> {
+    load_with("--clip", source, skeleton, arguments)
+}
+
+/// The clips of a motion file or the built-in clip that an option names, or a pose file's, retargeted to the skeleton, with
+/// their report.
+pub(crate) fn load_with(
+    option: &str,
     source: &str,
     skeleton: &Arc<Skeleton>,
     arguments: &MotionArguments,
@@ -205,9 +222,10 @@ fn load(
     let path = Path::new(source);
     if path.extension().is_none() && !path.exists() {
         let known = BUILTIN.join(", ");
-        return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
+        return Err(Failure::usage(format!("{option} {source}: no such file, and not one of {known}")));
     }
-    let motion = format::read_motion(path, &read_options(arguments))?;
+    let read = if option == "--pose" { format::read_pose } else { format::read_motion };
+    let motion = read(path, &read_options(arguments))?;
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }
