@@ -133,4 +133,5 @@ def main(path, picture=None):
     cases.exit()
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("-o", &arguments.output, &extensions(Purpose::WriteScene))?;
-    arguments.motion.check(&arguments.output)?;
+    arguments.motion.check(&arguments.output, None)?;
     if arguments.motion.clips.is_empty() {
         return Err(Failure::usage("--clip: expected at least one clip, got none"));
     }

@@ -9,7 +9,7 @@ use clap::Args;
 use crate::choice;
 use crate::failure::Result;
 use crate::file_set::FileSet;
-use crate::files::{check_extension, extensions, holds_meshes, holds_motion, write_scene};
+use crate::files::{check_extension, extension, extensions, holds_meshes, holds_motion, write_scene};
 use crate::motion::rename_joints;
 
 /// Convert a character file to another format, with its skin, joints, materials and clips.
@@ -48,6 +48,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             arguments.output.display()
         );
         scene.clear_clips();
+    }
+    if scene.pose.is_some() && ["vrm", "vrma"].contains(&extension(&arguments.output).as_str()) {
+        eprintln!(
+            "warning: {}: the format demands the T-pose, the pose is left out",
+            arguments.output.display()
+        );
+        scene.pose = None;
     }
     if !holds_meshes(&arguments.output) {
         eprintln!("warning: {}: the format holds no meshes, they are left out", arguments.output.display());

@@ -34,6 +34,9 @@ pub(crate) enum Failure {
     /// A picture could not be written as PNG.
     #[error("cannot encode the PNG: {0}")]
     Png(#[from] png::EncodingError),
+    /// Pictures could not be written as GIF.
+    #[error("cannot encode the GIF: {0}")]
+    Gif(#[from] gif::EncodingError),
 }
 
 impl Failure {

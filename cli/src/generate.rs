@@ -16,6 +16,7 @@ use crate::failure::{Failure, InvalidValue, Result};
 use crate::file_set::FileSet;
 use crate::files::{check_extension, extensions, write_scene, write_text};
 use crate::motion::{MotionArguments, add_clips};
+use crate::pose::PoseArguments;
 use crate::request::{RequestArguments, read_request};
 use anthronet::format::Purpose;
 
@@ -29,6 +30,8 @@ use anthronet::format::Purpose;
     anthronet generate -m height=6ft1in -m chest_circumference=40in --joint-names mixamo -o bob.glb\n  \
     anthronet generate --sex male --fill sample --seed 7 --lod 1 -o someone.obj --report -\n  \
     anthronet generate --sex female -m height=170cm --clip walk --clip dance.bvh -o moves.glb\n  \
+    anthronet generate --sex male -m height=182cm --pose sitting -o sitting.glb\n  \
+    anthronet generate -m height=168cm --pose dance.bvh@1.5 --ground -o moment.obj\n  \
     anthronet generate --request slim.json --interpolate heavy.json --at 0.5 -o between.glb")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -57,6 +60,9 @@ pub(crate) struct Arguments {
     /// Skin colour: 1 (light) to 10 (dark) on the Monk scale, or #rrggbb.
     #[arg(long, value_name = "TONE", value_parser = parse_skin_tone, help_heading = "File")]
     skin_tone: Option<SkinTone>,
+
+    #[command(flatten)]
+    pose: PoseArguments,
 
     #[command(flatten)]
     motion: MotionArguments,
@@ -93,7 +99,8 @@ fn parse_skin_tone(text: &str) -> std::result::Result<SkinTone, InvalidValue> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("-o", &arguments.output, &extensions(Purpose::WriteScene))?;
-    arguments.motion.check(&arguments.output)?;
+    arguments.motion.check(&arguments.output, arguments.pose.moving_source())?;
+    arguments.pose.check(&arguments.output)?;
     arguments.files().check()?;
     let request = arguments.request.to_request()?;
     let second = arguments.interpolate.as_deref().map(read_request).transpose()?;
@@ -110,6 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     };
     let mut scene = Scene::from_body(&body, &arguments.scene_options())?;
+    scene.pose = arguments.pose.of(&scene, &arguments.motion)?;
     add_clips(&mut scene, &arguments.motion)?;
     write_scene(&scene, &arguments.output, arguments.compress)?;
     let report = body.report();
@@ -138,7 +146,7 @@ impl Arguments {
             .reads("--interpolate", self.interpolate.as_deref())
             .writes_scene("-o", &self.output)
             .writes("--report", self.report.as_deref());
-        self.motion.add_files(files)
+        self.pose.add_files(self.motion.add_files(files))
     }
 
     /// The body of a request, or of an interpolation between two.

@@ -1,7 +1,7 @@
 //! The `anthronet` command: tape measures in, a rigged character file out.
 //!
 //! One file per command; the others hold what commands share: `request` reads a request from the options, `motion` adds
-//! clips to a scene, `figure` and `render` make pictures, `file_set` keeps files apart, `files` and `terminal` read and
+//! clips to a scene, `pose` reads static poses, `figure` and `render` make pictures, `file_set` keeps files apart, `files` and `terminal` read and
 //! write, `length` and `units` read
 //! lengths and picture sizes.
 //! Exit codes: 0 done, 1 failed, 2 bad usage. Files appear whole or not at all.
@@ -20,6 +20,7 @@ mod info;
 mod length;
 mod measure;
 mod motion;
+mod pose;
 mod preview;
 mod render;
 mod request;

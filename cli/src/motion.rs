@@ -84,8 +84,9 @@ pub(crate) struct MotionArguments {
 }
 
 impl MotionArguments {
-    /// Refuses contradictory options before any work is done.
-    pub(crate) fn check(&self, output: &Path) -> Result<()> {
+    /// Refuses contradictory options before any work is done. `posed_by` is the clip or file that a static pose is a frame of,
+    /// which options of motion files apply to as well.
+    pub(crate) fn check(&self, output: &Path, posed_by: Option<&str>) -> Result<()> {
         let extension = extension(output);
         if !self.clips.is_empty() && !files::holds_motion(output) {
             let moving: Vec<_> = Format::serving(Purpose::WriteScene).filter(|f| f.holds().clips).collect();
@@ -96,17 +97,22 @@ impl MotionArguments {
                 "--clip: a .{extension} holds no motion, expected {expected}"
             )));
         }
-        if self.clips.is_empty() {
-            let given = self.of_files().into_iter().chain(self.of_all()).find(|(_, given)| *given);
-            return match given {
-                Some((option, _)) => Err(Failure::usage(format!("{option}: expected together with --clip"))),
-                None => Ok(()),
-            };
+        self.check_sources(posed_by)
+    }
+
+    /// Refuses options that apply to none of the clips.
+    pub(crate) fn check_sources(&self, posed_by: Option<&str>) -> Result<()> {
+        let of_files = posed_by.is_none().then(|| self.of_files()).into_iter().flatten();
+        if self.clips.is_empty()
+            && let Some((option, _)) = of_files.chain(self.of_all()).find(|(_, given)| *given)
+        {
+            return Err(Failure::usage(format!("{option}: expected together with --clip")));
         }
-        if self.clips.iter().all(|clip| BUILTIN.contains(&clip.as_str())) {
+        let sources: Vec<&str> = self.clips.iter().map(String::as_str).chain(posed_by).collect();
+        if sources.iter().all(|source| BUILTIN.contains(source)) {
             let given = self.of_files().into_iter().find(|(_, given)| *given);
             if let Some((option, _)) = given {
-                let clips = self.clips.join(", ");
+                let clips = sources.join(", ");
                 let message = format!(
                     "{option}: applies to motion files only, expected one with --clip, got the built-in {clips}"
                 );
@@ -175,7 +181,7 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     let skeleton = Arc::new(scene.skeleton_with_ends(|name| native_name(name).into_owned())?);
     let (mut reports, mut accepted) = (Vec::new(), Ok(()));
     for source in &arguments.clips {
-        let loaded = load(source, &skeleton, arguments)?;
+        let loaded = load("--clip", source, &skeleton, arguments)?;
         loaded.clips.into_iter().for_each(|clip| scene.add_clip(clip));
         reports.push(loaded.report);
         accepted = loaded.accepted;
@@ -190,15 +196,21 @@ pub(crate) fn add_clips(scene: &mut Scene, arguments: &MotionArguments) -> Resul
     accepted
 }
 
-/// The clips of one `--clip`, retargeted to the skeleton.
-struct Loaded {
-    clips: Vec<Clip>,
+/// The clips of one source, retargeted to the skeleton.
+pub(crate) struct Loaded {
+    pub(crate) clips: Vec<Clip>,
     report: serde_json::Value,
     /// An error for a motion that seems to be no person's: its report helps to name the joints.
-    accepted: Result<()>,
+    pub(crate) accepted: Result<()>,
 }
 
-fn load(source: &str, skeleton: &Arc<Skeleton>, arguments: &MotionArguments) -> Result<Loaded> {
+/// The clips of a motion file or the built-in clip that an option names, or a pose file's, retargeted to the skeleton.
+pub(crate) fn load(
+    option: &str,
+    source: &str,
+    skeleton: &Arc<Skeleton>,
+    arguments: &MotionArguments,
+) -> Result<Loaded> {
     if BUILTIN.contains(&source) {
         let clip = clip::builtin(source, skeleton)?;
         let clip = match arguments.fps {
@@ -219,9 +231,10 @@ fn load(source: &str, skeleton: &Arc<Skeleton>, arguments: &MotionArguments) -> 
     let path = Path::new(source);
     if path.extension().is_none() && !path.exists() {
         let known = BUILTIN.join(", ");
-        return Err(Failure::usage(format!("--clip {source}: no such file, and not one of {known}")));
+        return Err(Failure::usage(format!("{option} {source}: no such file, and not one of {known}")));
     }
-    let motion = format::read_motion(path, &read_options(arguments))?;
+    let read = if option == "--pose" { format::read_pose } else { format::read_motion };
+    let motion = read(path, &read_options(arguments))?;
     for warning in &motion.report.warnings {
         eprintln!("warning: {source}: {warning}");
     }

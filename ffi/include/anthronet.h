@@ -598,6 +598,11 @@ typedef struct anthronet_export_options {
     uint32_t clip_count;
     // Clips of this body or one of the same rig that go into the file; NULL for none. Their names are unique.
     const struct anthronet_clip *const *clips;
+    // Name of the pose in which the file stands, UTF-8: `t-pose`, `a-pose`, `standing` or `sitting`; NULL for the T-pose, the
+    // only one of a .vrm. Files with joints stay bound in the T-pose.
+    const char *pose;
+    // Bytes of `pose`.
+    uint64_t pose_length;
 } anthronet_export_options;
 
 #ifdef __cplusplus

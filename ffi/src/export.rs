@@ -4,6 +4,7 @@ use std::ffi::c_char;
 use std::path::Path;
 
 use anthronet::format::{Format, GltfOptions, WriteOptions, write_scene, write_scene_to_bytes};
+use anthronet::pose::POSES;
 use anthronet::scene::Scene;
 
 use crate::body::anthronet_body;
@@ -36,9 +37,14 @@ pub struct anthronet_export_options {
     pub clip_count: u32,
     /// Clips of this body or one of the same rig that go into the file; NULL for none. Their names are unique.
     pub clips: *const *const anthronet_clip,
+    /// Name of the pose in which the file stands, UTF-8: `t-pose`, `a-pose`, `standing` or `sitting`; NULL for the T-pose, the
+    /// only one of a .vrm. Files with joints stay bound in the T-pose.
+    pub pose: *const c_char,
+    /// Bytes of `pose`.
+    pub pose_length: u64,
 }
 
-// SAFETY: numbers and a pointer that may be NULL, the size first.
+// SAFETY: numbers and pointers that may be NULL, the size first.
 unsafe impl Descriptor for anthronet_export_options {}
 
 /// Writes a body to a file in the format of its extension: .glb, .gltf (and .bin beside it), .vrm, .usda, .usdc, .usdz
@@ -87,6 +93,10 @@ fn scene(
         scene_options(asked.lod, asked.influences, asked.joint_names, asked.body_only, asked.skin_tone)?;
     let gltf = GltfOptions { compress: flag(asked.compress, "compress")? };
     let mut scene = Scene::from_body(&body.body, &looks)?;
+    if !asked.pose.is_null() {
+        let name = text(asked.pose, asked.pose_length, "pose")?;
+        scene.pose = (name != POSES[0]).then(|| scene.named_pose(name)).transpose()?;
+    }
     for clip in list(asked.clips, asked.clip_count, "clips")? {
         scene.add_clip(read(*clip, "clip")?.0.clone());
     }

@@ -194,6 +194,7 @@ class Body(Owner):
         compress: bool = False,
         skin_tone: int = 0,
         body_only: bool = False,
+        pose: str = "t-pose",
     ) -> None:
         """Writes the body to a file, completely or not at all, in the format of its extension: .glb, .gltf (and .bin
         beside it), .vrm, .usda, .usdc, .usdz or .obj.
@@ -207,13 +208,15 @@ class Body(Owner):
             compress: EXT_meshopt_compression, for .glb and .gltf.
             skin_tone: step of the Monk scale, 1 to 10; 0 for the default.
             body_only: leaves out eyes, teeth, tongue and lashes.
+            pose: the pose in which the file stands: `"t-pose"`, `"a-pose"`, `"standing"` or `"sitting"`. Files with joints
+                stay bound in the T-pose, the only one of a .vrm; an .obj has the posed surface.
 
         Raises:
             FileError, IoError: the extension is unknown, or the system does not let it be written.
             ArgumentError, InvalidError, TypeError, ValueError: an argument does not fit.
         """
         encoded = _arguments.path(path)
-        options, kept = _export_options(lod, influences, joint_names, clips, compress, skin_tone, body_only)
+        options, kept = _export_options(lod, influences, joint_names, clips, compress, skin_tone, body_only, pose)
         call(lib.anthronet_export_path, self._open, ctypes.byref(options), encoded, len(encoded))
         del kept
 
@@ -227,6 +230,7 @@ class Body(Owner):
         compress: bool = False,
         skin_tone: int = 0,
         body_only: bool = False,
+        pose: str = "t-pose",
     ) -> bytes:
         """The file that `save` writes, as bytes.
 
@@ -234,7 +238,7 @@ class Body(Owner):
             format: `"glb"`, `"vrm"`, `"usda"`, `"usdc"`, `"usdz"` or `"obj"`; the rest as of `save`.
         """
         encoded = _arguments.text(format, "format")
-        options, kept = _export_options(lod, influences, joint_names, clips, compress, skin_tone, body_only)
+        options, kept = _export_options(lod, influences, joint_names, clips, compress, skin_tone, body_only, pose)
         result = bytes_of(lib.anthronet_export_memory, self._open, ctypes.byref(options), encoded, len(encoded))
         del kept
         return result
@@ -251,11 +255,14 @@ def _export_options(
     compress: bool,
     skin_tone: int,
     body_only: bool,
+    pose: str,
 ) -> Tuple[Any, Optional[Any]]:
     """The options, and what has to live as long as they do."""
     if isinstance(clips, Clip):
         raise TypeError("clips: expected a list of clips, got one clip: put it into a list")
     handles = [_arguments.instance(clip, Clip, "clips")._open for clip in clips]
+    name = _arguments.text(pose, "pose")
+    text = ctypes.create_string_buffer(name, len(name) + 1)
     addresses = (ctypes.c_void_p * len(handles))(*[handle.value for handle in handles])
     options = described(
         _native.ExportOptions,
@@ -267,5 +274,7 @@ def _export_options(
         compress=_arguments.flag(compress, "compress"),
         clip_count=len(handles),
         clips=ctypes.addressof(addresses) if handles else None,
+        pose=ctypes.addressof(text),
+        pose_length=len(name),
     )
-    return options, (handles, addresses)
+    return options, (handles, addresses, text)

@@ -301,6 +301,8 @@ class ExportOptions(Structure):
         ("compress", c_uint32),
         ("clip_count", c_uint32),
         ("clips", c_void_p),
+        ("pose", c_void_p),
+        ("pose_length", c_uint64),
     ]
 
 

@@ -50,6 +50,14 @@ void test_export_memory(const fixture *f) {
     OK(anthronet_bytes_data(bytes, &data, &length, &fault));
     CHECK(length < plain * 3 / 4, "%lu bytes become %lu when compressed", (unsigned long)plain, (unsigned long)length);
     CHECK(contains_freed(bytes, "mixamorig:LeftArm"), "not Mixamo's names");
+    options.pose = "sitting!";
+    options.pose_length = 7;
+    OK(anthronet_export_memory(f->body, &options, TEXT("glb"), &bytes, &fault));
+    CHECK(contains_freed(bytes, "\"posed\":true"), "not in the pose");
+    options.clip_count = 0;
+    REFUSED_OUT(ANTHRONET_ERROR_INVALID, bytes, anthronet_export_memory(f->body, &options, TEXT("vrm"), &bytes, &fault));
+    options.pose_length = 8;
+    REFUSED_OUT(ANTHRONET_ERROR_REQUEST, bytes, anthronet_export_memory(f->body, &options, TEXT("glb"), &bytes, &fault));
 }
 
 void test_export_path(const fixture *f) {

@@ -33,9 +33,15 @@ fn pictures() -> Result<()> {
     }
     let person = scratch.join("person.glb");
     tools::run(Command::new(&anthronet).arg("generate").args(requests::README).arg("-o").arg(&person))?;
-    let person = person.to_string_lossy();
-    let pictures: [(&[&str], &str); 3] = [
+    // Small figures need no more than the cage.
+    let small = scratch.join("small.glb");
+    let lod = [requests::README, &["--lod", "1"]].concat();
+    tools::run(Command::new(&anthronet).arg("generate").args(lod).arg("-o").arg(&small))?;
+    let (person, small) = (person.to_string_lossy(), small.to_string_lossy());
+    let pictures: [(&[&str], &str); 5] = [
         (&["preview", &person], "docs/preview.png"),
+        (&["preview", &small, "--pose", "sitting", "--size", "900x420"], "docs/sitting.png"),
+        (&["preview", &small, "--clip", "walk", "--views", "side", "--size", "960x560"], "docs/walk.png"),
         (&["contact-sheet"], "docs/people.png"),
         (&["contact-sheet", "--close", "--count", "10", "--columns", "1"], "docs/closeups.png"),
     ];

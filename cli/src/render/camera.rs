@@ -1,4 +1,4 @@
-//! Views and the camera: a long lens seven metres away whose axis stays level, as on an architect's shift camera,
+//! Views and the camera: a long lens seven metres away, or more for motions that need the room, whose axis stays level, as on an architect's shift camera,
 //! so that uprights stay upright and the same person has the same height in every view.
 
 use glam::{Mat3, Vec2, Vec3};
@@ -51,10 +51,10 @@ impl View {
     }
 }
 
-/// Distance from the camera to the plane z = 0, in metres.
+/// Distance from the camera to the plane z = 0 for a single figure, in metres.
 pub(super) const DISTANCE: f32 = 7.0;
 
-/// A level camera in view space at (x, height, 7 m) that looks along -Z.
+/// A level camera in view space at (x, height, distance) that looks along -Z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
     /// Where the optical axis meets the plane z = 0, metres.
@@ -63,13 +63,15 @@ pub(crate) struct Camera {
     pub(crate) centre: Vec2,
     /// Pixels per metre in the plane z = 0.
     pub(crate) scale: f32,
+    /// Distance to the plane z = 0, metres.
+    pub(crate) distance: f32,
 }
 
 impl Camera {
     /// Pixel and distance along the axis (metres, smaller is nearer) of a point in view space.
     pub(crate) fn project(&self, p: Vec3) -> Vec3 {
-        let distance = (DISTANCE - p.z).max(0.1);
-        let zoom = self.scale * DISTANCE / distance;
+        let distance = (self.distance - p.z).max(0.1);
+        let zoom = self.scale * self.distance / distance;
         Vec3::new(
             self.centre.x + zoom * (p.x - self.axis.x),
             self.centre.y - zoom * (p.y - self.axis.y),
@@ -79,7 +81,7 @@ impl Camera {
 
     /// The camera's place in view space.
     pub(crate) fn eye(&self) -> Vec3 {
-        self.axis.extend(DISTANCE)
+        self.axis.extend(self.distance)
     }
 
     /// The point of the ground, (x, z) in view space, that a pixel shows, if it looks below the horizon.
@@ -88,9 +90,9 @@ impl Camera {
         if down <= 0.0 || self.axis.y <= 0.0 {
             return None;
         }
-        let distance = self.scale * DISTANCE * self.axis.y / down;
-        let x = self.axis.x + (pixel.x - self.centre.x) * distance / (self.scale * DISTANCE);
-        Some(Vec2::new(x, DISTANCE - distance))
+        let distance = self.scale * self.distance * self.axis.y / down;
+        let x = self.axis.x + (pixel.x - self.centre.x) * distance / (self.scale * self.distance);
+        Some(Vec2::new(x, self.distance - distance))
     }
 }
 
@@ -113,7 +115,12 @@ mod tests {
 
     #[test]
     fn ground_inverts_projection() {
-        let camera = Camera { axis: Vec2::new(0.1, 1.0), centre: Vec2::new(200.0, 150.0), scale: 300.0 };
+        let camera = Camera {
+            axis: Vec2::new(0.1, 1.0),
+            centre: Vec2::new(200.0, 150.0),
+            scale: 300.0,
+            distance: 9.0,
+        };
         let pixel = camera.project(Vec3::new(-0.4, 0.0, 0.7));
         let ground = camera.ground(pixel.truncate()).unwrap();
         assert!((ground - Vec2::new(-0.4, 0.7)).length() < 1e-4);

@@ -8,8 +8,10 @@
 //! Only exactly rounded operations of the standard library and the `libm` crate are used, so that a picture has the
 //! same bytes on every host, whatever the number of threads.
 
+mod animation;
 mod camera;
 mod figure;
+mod floor;
 mod font;
 mod ground;
 mod image;
@@ -20,15 +22,19 @@ mod palette;
 mod parallel;
 mod picture;
 mod raster;
+mod stage;
 mod tile;
 mod views;
 mod visibility;
 
+pub(crate) use animation::Animation;
 pub(crate) use camera::View;
 pub(crate) use figure::{Figure, Material, Part};
+pub(crate) use floor::{Floor, Mark};
 pub(crate) use font::{draw_text, text_width};
 pub(crate) use image::Image;
 pub(crate) use lit_figure::LitFigure;
 pub(crate) use picture::Picture;
+pub(crate) use stage::Stage;
 pub(crate) use tile::Tile;
 pub(crate) use views::draw_views;

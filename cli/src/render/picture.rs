@@ -41,6 +41,7 @@ impl Picture {
             axis: tile.camera.axis,
             centre: tile.camera.centre * fine,
             scale: tile.camera.scale * fine,
+            distance: tile.camera.distance,
         };
         let parts = (0..figure.figure.parts.len()).map(|part| {
             let varyings = figure.varyings(part, tile.view, &studio);
@@ -106,8 +107,13 @@ impl Drawing<'_> {
                 let share = 1.0 / (fine * fine) as f32;
                 let mut colour = sum * share;
                 let empty = 1.0 - covered * share;
+                let floor = self.tile.floor.as_ref().map(|floor| floor.seen(self.tile, x as f32 + 0.5, row));
                 if empty > 0.0 {
-                    colour += behind * (self.shadow(x, row) * empty);
+                    let line = floor.as_ref().map_or(1.0, |seen| seen.line);
+                    colour += behind * (self.shadow(x, row) * line * empty);
+                }
+                if let Some((mark, share)) = floor.and_then(|seen| seen.mark) {
+                    colour = colour.lerp(mark, share);
                 }
                 let grain = dither(x, first + y);
                 out.extend(colour.to_array().map(|c| srgb_from_linear(c, grain)));

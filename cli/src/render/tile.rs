@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::camera::{Camera, DISTANCE, View};
+use super::floor::Floor;
 
 /// What a rectangle of a picture shows of a figure.
 pub(crate) struct Tile {
@@ -12,6 +13,8 @@ pub(crate) struct Tile {
     pub(super) camera: Camera,
     /// Whether the shadow on the ground shows.
     pub(super) grounded: bool,
+    /// What is drawn on the ground, if anything.
+    pub(super) floor: Option<Floor>,
 }
 
 impl Tile {
@@ -26,7 +29,7 @@ impl Tile {
         middle: f32,
     ) -> Self {
         let camera = body_camera(width, height, scale, foot, middle);
-        Self { width, height, view, camera, grounded: true }
+        Self { width, height, view, camera, grounded: true, floor: None }
     }
 
     /// A square tile that shows `span` metres around a place of the figure.
@@ -35,8 +38,9 @@ impl Tile {
         // What lies nearer to the lens is shown larger: the span is that at the place.
         let scale = size as f32 / span * (DISTANCE - seen.z) / DISTANCE;
         // The axis goes through the place itself, so that it stays in the middle.
-        let camera = Camera { axis: seen.truncate(), centre: Vec2::splat(size as f32 * 0.5), scale };
-        Self { width: size, height: size, view, camera, grounded: false }
+        let centre = Vec2::splat(size as f32 * 0.5);
+        let camera = Camera { axis: seen.truncate(), centre, scale, distance: DISTANCE };
+        Self { width: size, height: size, view, camera, grounded: false, floor: None }
     }
 }
 
@@ -44,5 +48,6 @@ impl Tile {
 pub(super) fn body_camera(width: usize, height: usize, scale: f32, foot: f32, middle: f32) -> Camera {
     const EYE_HEIGHT: f32 = 1.1;
     let horizon = height as f32 - foot - EYE_HEIGHT * scale;
-    Camera { axis: Vec2::new(middle, EYE_HEIGHT), centre: Vec2::new(width as f32 * 0.5, horizon), scale }
+    let centre = Vec2::new(width as f32 * 0.5, horizon);
+    Camera { axis: Vec2::new(middle, EYE_HEIGHT), centre, scale, distance: DISTANCE }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::camera::{Camera, View};
+use super::camera::{Camera, DISTANCE, View};
 use super::figure::bounds;
 use super::image::Image;
 use super::lit_figure::LitFigure;
@@ -34,7 +34,7 @@ pub(crate) fn draw_views(figure: &LitFigure, views: &[View], width: usize, heigh
             continue;
         }
         let camera = layout.camera(frame, x1 - x0);
-        let tile = Tile { width: x1 - x0, height, view: frame.view, camera, grounded: true };
+        let tile = Tile { width: x1 - x0, height, view: frame.view, camera, grounded: true, floor: None };
         image.paste(&picture.draw(figure, &tile), x0, 0);
     }
     image
@@ -107,7 +107,8 @@ impl Layout {
         let span = frame.top - frame.bottom + 0.05;
         let scale = (self.height as f32 / span).min(width as f32 / (frame.right - frame.left + 0.03));
         let axis = Vec2::new(middle, (frame.top + frame.bottom) * 0.5 + 0.005);
-        Camera { axis, centre: Vec2::new(width as f32 * 0.5, self.height as f32 * 0.5), scale }
+        let centre = Vec2::new(width as f32 * 0.5, self.height as f32 * 0.5);
+        Camera { axis, centre, scale, distance: DISTANCE }
     }
 }
 

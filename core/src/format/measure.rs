@@ -15,11 +15,15 @@ use crate::{Error, Result};
 /// [`MeasuredMesh::warnings`] says how it was read.
 ///
 /// # Errors
-/// As [`read_meshes`](super::read_meshes); [`Error::File`] for a file without a mesh, or whose first mesh is not a body in
+/// As [`read_meshes`](super::read_meshes); [`Error::File`] for a file without a mesh, an `.obj` of ours in a pose, or one whose first mesh is not a body in
 /// the model's vertex order, is mirrored, or of a unit or axes that cannot be told.
 pub fn measure_file(model: &Model, path: impl AsRef<Path>) -> Result<MeasuredMesh> {
     let path = path.as_ref();
     let scene = super::read_meshes(path)?;
+    if scene.has_posed_surface() {
+        let found = "a posed surface, of which measures would be wrong";
+        return Err(Error::file(path, Fault::unexpected("a body in the T-pose", found)));
+    }
     let mesh = scene.meshes.first().ok_or_else(|| Error::file(path, Fault::missing("mesh")))?;
     let vertices: Vec<Vec3> = mesh.positions.iter().copied().map(Vec3::from_array).collect();
     model.measure_foreign_mesh(&vertices).map_err(|error| Error::file(path, Box::new(error)))

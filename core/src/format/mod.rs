@@ -47,7 +47,7 @@ pub use kind::{Format, Holds, Purpose};
 pub use measure::measure_file;
 pub use motion::{Found, Motion, ReadOptions, ReadReport};
 pub use read::{
-    read_meshes, read_meshes_from_bytes, read_motion, read_motion_from_bytes, read_scene,
+    read_meshes, read_meshes_from_bytes, read_motion, read_motion_from_bytes, read_pose, read_scene,
     read_scene_from_bytes,
 };
 pub use vrm::VrmMeta;

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::disk;
 use super::kind::{Format, able};
 use super::motion::{Motion, ReadOptions, units_and_axes};
+use super::npz;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
@@ -89,6 +90,23 @@ pub fn read_motion_from_bytes(bytes: &[u8], path: impl AsRef<Path>, options: &Re
         return Err(Error::request("person", message));
     }
     let raw = read(bytes, path, options)?;
+    units_and_axes::resolve(raw, options).map_err(|error| Error::file(path, Box::new(error)))
+}
+
+/// Reads the motion that a static pose is a frame of: every file of [`read_motion`], and poses of the SMPL body models alone, as
+/// a `.npy` array, a `.json` of numbers, or an `.npz` of arrays without an axis of frames and a rate: 66, 72, 156, 159 or 165
+/// numbers, or a root of 3 and a body of 63 or 69.
+///
+/// # Errors
+/// As [`read_motion`].
+pub fn read_pose(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Motion> {
+    let path = path.as_ref();
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if !["npy", "json", "npz"].iter().any(|known| extension.eq_ignore_ascii_case(known)) {
+        return read_motion(path, options);
+    }
+    options.check()?;
+    let raw = npz::read_pose(&disk::read(path)?, path, options)?;
     units_and_axes::resolve(raw, options).map_err(|error| Error::file(path, Box::new(error)))
 }
 

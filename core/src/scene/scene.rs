@@ -13,7 +13,7 @@ use super::morph::{MorphTarget, MorphTrack, validate_targets};
 use super::titles::Titles;
 use crate::clip::Clip;
 use crate::scene::SkinTone;
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
 
 /// Tolerance on the sum of one vertex's weights: the rounding of a sum of eight `f32`, with a margin.
@@ -31,9 +31,13 @@ const REST_TOLERANCE: f32 = 1e-4;
 pub struct Scene {
     /// Name of the character.
     pub name: String,
-    /// The joints in the bind pose, which is the rest pose of every written file; the first joint is the only root. `None` for
-    /// meshes without a skin.
+    /// The joints in the bind pose, which is the rest pose of every written file unless there is a [`pose`](Scene::pose); the
+    /// first joint is the only root. `None` for meshes without a skin.
     pub skeleton: Option<Arc<Skeleton>>,
+    /// The pose in which a written file stands, one `parent_from_joint` per joint, metres; `None` for the bind pose. Meshes,
+    /// joints and clips do not depend on it: files store it as the transforms of the joints, beside the bind pose of the skin,
+    /// and formats without joints get the skinned vertices.
+    pub pose: Option<Pose>,
     /// The meshes, the body first.
     pub meshes: Vec<SceneMesh>,
     /// The materials that meshes refer to.
@@ -174,7 +178,7 @@ pub fn flip_v([u, v]: [f32; 2]) -> [f32; 2] {
 
 impl Scene {
     /// Checks what the writers rely on: every index in range, every number finite, names unique, parents first
-    /// with one root, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1,
+    /// with one root, a pose of all joints, rotations without scale, normals of unit length, weights sorted, non-negative and summing to 1,
     /// morph targets with one row per vertex, morph tracks with one weight per frame of their clip.
     ///
     /// # Errors
@@ -184,6 +188,7 @@ impl Scene {
             return Err(Error::invalid("scene", "extras must be an object or null"));
         }
         self.validate_joints()?;
+        self.pose.as_ref().map_or(Ok(()), |pose| self.validate_pose(pose))?;
         self.validate_materials()?;
         if self.meshes.is_empty() {
             return Err(Error::invalid("scene", "expected at least one mesh, got none"));
@@ -240,10 +245,11 @@ impl Scene {
         Skeleton::from_bind(skeleton.tree().clone(), skeleton.bind().to_vec(), lengths)
     }
 
-    /// Removes the skeleton and the meshes' influences: still meshes in the bind pose remain. Clips and their morph tracks, which
+    /// Removes the skeleton, the pose and the meshes' influences: still meshes in the bind pose remain. Clips and their morph tracks, which
     /// move the skeleton, are the caller's to remove.
     pub(crate) fn remove_skin(&mut self) {
         self.skeleton = None;
+        self.pose = None;
         for mesh in &mut self.meshes {
             mesh.influences_per_vertex = 0;
             mesh.joint_indices.clear();
@@ -441,7 +447,22 @@ mod tests {
     use glam::Affine3A;
 
     use super::*;
+    use crate::math::{RigidTransform, Rotation};
     use crate::testing::scene::{arm, bent, edit, rename};
+
+    /// The rest pose without its last joint.
+    fn short(scene: &Scene) -> Pose {
+        let mut pose = scene.skeleton.as_ref().unwrap().rest_pose().clone();
+        pose.locals.pop();
+        pose
+    }
+
+    /// The rest pose with another second joint.
+    fn spoilt(scene: &Scene, rotation: Rotation, translation: Vec3) -> Pose {
+        let mut pose = scene.skeleton.as_ref().unwrap().rest_pose().clone();
+        pose.locals[1] = RigidTransform { rotation, translation };
+        pose
+    }
 
     #[test]
     fn the_synthetic_arm_is_valid() {
@@ -498,6 +519,11 @@ mod tests {
             }),
             ("two are called `bent`", |s| s.clips = vec![bent(s); 2]),
             ("4 influences per vertex in a scene of 0 joints", |s| s.skeleton = None),
+            ("expected 3 joints, got 2", |s| s.pose = Some(short(s))),
+            ("`lower` is not finite", |s| s.pose = Some(spoilt(s, Rotation::IDENTITY, Vec3::NAN))),
+            ("`lower`: expected a rotation of unit length", |s| {
+                s.pose = Some(spoilt(s, Rotation::from_xyzw(0.0, 0.0, 0.0, 0.5), Vec3::ZERO));
+            }),
         ];
         for (expected, spoil) in cases {
             let mut scene = arm(4);

@@ -31,6 +31,9 @@ def test_options(woman, clips, tmp_path):
     assert len(woman.to_bytes("glb", lod=3, body_only=True)) < len(woman.to_bytes("glb", lod=3))
     assert len(woman.to_bytes("glb", lod=3, influences=8)) > len(woman.to_bytes("glb", lod=3))
     assert woman.to_bytes("glb", lod=3, skin_tone=9) != woman.to_bytes("glb", lod=3)
+    assert b'"posed":true' in woman.to_bytes("glb", lod=3, pose="sitting", clips=clips)
+    assert woman.to_bytes("obj", lod=3, pose="sitting") != woman.to_bytes("obj", lod=3)
+    assert woman.to_bytes("glb", lod=3, pose="t-pose") == woman.to_bytes("glb", lod=3)
     woman.save(str(tmp_path / "umläut 人.gltf").encode(), lod=3)
     assert (tmp_path / "umläut 人.gltf").is_file() and (tmp_path / "umläut 人.bin").is_file()
 
@@ -39,10 +42,12 @@ def test_refusals(woman, clips, tmp_path):
     """what cannot be written is refused, and no file is left"""
     for bad in (lambda: woman.to_bytes("fbx"), lambda: woman.save(tmp_path / "a.fbx"), lambda: woman.save(tmp_path),
                 lambda: woman.save(tmp_path / "no folder" / "a.glb"),
+                lambda: woman.to_bytes("vrm", lod=3, pose="sitting"), lambda: woman.to_bytes("glb", lod=3, pose="lotus"),
                 lambda: woman.to_bytes("glb", influences=3), lambda: woman.save(tmp_path / "a\0b.glb")):
         assert isinstance(raised_by(bad), anthronet.Error), bad
     raises(TypeError, lambda: woman.to_bytes("glb", clips=clips[0]), "clips", "list")
     raises(TypeError, lambda: woman.to_bytes("glb", clips=["walk"]), "clips", "Clip")
+    raises(TypeError, lambda: woman.to_bytes("glb", pose=1), "pose")
     raises(TypeError, lambda: woman.save(None), "path")
     raises(ValueError, lambda: woman.save("a.glb", joint_names="maya"), "joint_names")
     assert not list(tmp_path.iterdir())

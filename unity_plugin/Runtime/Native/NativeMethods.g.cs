@@ -1625,6 +1625,15 @@ namespace Anthronet.Native
         ///  Clips of this body or one of the same rig that go into the file; NULL for none. Their names are unique.
         /// </summary>
         public anthronet_clip** clips;
+        /// <summary>
+        ///  Name of the pose in which the file stands, UTF-8: `t-pose`, `a-pose`, `standing` or `sitting`; NULL for the T-pose, the
+        ///  only one of a .vrm. Files with joints stay bound in the T-pose.
+        /// </summary>
+        public byte* pose;
+        /// <summary>
+        ///  Bytes of `pose`.
+        /// </summary>
+        public ulong pose_length;
     }
 
 

@@ -10,6 +10,7 @@ mod c;
 mod cpp;
 mod morph;
 mod motion;
+mod pose;
 mod python;
 mod skin;
 mod tally;
@@ -41,6 +42,7 @@ pub(crate) fn run() -> Result<()> {
     skin::run(&environment, &folder, &mut tally)?;
     animation::run(&anthronet, &environment, &folder, &mut tally)?;
     usd::run(&anthronet, &environment, &folder, &mut tally)?;
+    pose::run(&anthronet, &environment, &folder, &mut tally)?;
     morph::run(&environment, &folder, &mut tally)?;
     motion::run(&anthronet, &mut tally);
     c::run(&environment.c, &folder, &mut tally)?;

@@ -19,7 +19,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("skin", &["math", "mesh", "pose", "skeleton"]),
     ("clip", &["math", "pose", "skeleton"]),
     ("retarget", &["clip", "math", "pose", "skeleton"]),
-    ("scene", &["body", "clip", "math", "measure", "mesh", "model", "skeleton", "space"]),
+    ("scene", &["body", "clip", "math", "measure", "mesh", "model", "pose", "skeleton", "skin", "space"]),
     (
         "format",
         &["clip", "math", "measure", "mesh", "model", "pose", "retarget", "scene", "skeleton", "space"],

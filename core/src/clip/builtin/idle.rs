@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::RATE;
-use super::figure::{Arm, Figure, Stance};
+use crate::pose::figure::{Arm, Figure, Stance};
 use crate::skeleton::Pose;
 
 const SECONDS: f32 = 8.0;

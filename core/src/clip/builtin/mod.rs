@@ -3,7 +3,6 @@
 //! Lengths scale with the body: stride and speed with the leg, stance with the hips. Feet stand on the floor, joints stay
 //! within their limits, and every clip loops.
 
-mod figure;
 mod idle;
 mod range_of_motion;
 mod squat;
@@ -15,9 +14,9 @@ use std::sync::Arc;
 use super::Clip;
 use super::edit::clip_of_poses;
 use crate::math::smoothstep;
+use crate::pose::figure::Figure;
 use crate::skeleton::{Pose, Skeleton};
 use crate::{Error, Result};
-use figure::Figure;
 
 /// Names of the clips, as [`builtin`] takes them.
 pub const BUILTIN: [&str; 5] = ["idle", "walk", "wave", "squat", "range_of_motion"];

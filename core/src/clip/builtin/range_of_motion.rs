@@ -1,9 +1,9 @@
 //! Joint after joint is taken through much of its range, from the T-pose.
 
 use super::RATE;
-use super::figure::Figure;
 use crate::Side;
 use crate::math::smoothstep;
+use crate::pose::figure::Figure;
 use crate::skeleton::{Pose, RigJoint, SidedJoint};
 
 /// Seconds from one key to the next.

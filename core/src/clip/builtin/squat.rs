@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::figure::{Arm, Figure, Stance};
 use super::{RATE, keyed};
+use crate::pose::figure::{Arm, Figure, Stance};
 use crate::skeleton::Pose;
 
 const SECONDS: f32 = 3.6;

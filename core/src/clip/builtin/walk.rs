@@ -8,9 +8,9 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::figure::{Arm, Figure, Foot, Stance};
 use super::{RATE, keyed};
 use crate::math::smoothstep;
+use crate::pose::figure::{Arm, Figure, Foot, Stance};
 use crate::skeleton::Pose;
 
 /// Stride over leg length.
@@ -60,7 +60,7 @@ fn stance(figure: &Figure, phase: f32, stride: f32) -> Stance {
         let along = stride * (OVER_ANKLE - own + smoothstep(swing));
         let lift = 0.045 * figure.leg_length * libm::powf(libm::sinf(0.5 * TAU * swing), 2.0);
         let shift = standing[side].shift + Vec3::new(0.0, if swing > 0.0 { lift } else { 0.0 }, along);
-        Foot { shift, roll: keyed(&ROLL, own), toe_out: 3.0 }
+        Foot { shift, roll: keyed(&ROLL, own), toe_out: 3.0, ..Foot::default() }
     };
     // An arm is forward when the opposite heel strikes.
     let arm = |side: f32| {

@@ -4,8 +4,8 @@ use std::f32::consts::TAU;
 
 use glam::Vec2;
 
-use super::figure::{Arm, Figure};
 use super::{RATE, idle, keyed};
+use crate::pose::figure::{Arm, Figure};
 use crate::skeleton::Pose;
 
 const SECONDS: f32 = 4.0;

@@ -1,6 +1,7 @@
 //! Arrays of a numpy archive, in C order, as `f64`. A few bytes of such a file can demand any amount of memory or recursion
 //! depth; therefore headers are checked before the `npyz` crate parses them, and data is read up to a limit.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{Cursor, Read};
 
@@ -19,6 +20,7 @@ const MAX_HEADER: usize = 1024;
 const LISTED: usize = 20;
 
 /// An array in memory.
+#[derive(Clone)]
 pub(super) struct Array {
     /// Lengths of its axes.
     pub(super) shape: Vec<u64>,
@@ -42,19 +44,25 @@ impl fmt::Display for Array {
 }
 
 /// An open archive.
-pub(super) struct Archive<'a> {
-    zip: NpzArchive<Cursor<&'a [u8]>>,
+pub(super) enum Archive<'a> {
+    /// A file.
+    Zip(NpzArchive<Cursor<&'a [u8]>>),
+    /// Arrays that have been read already, by name.
+    Memory(BTreeMap<String, Array>),
 }
 
 impl<'a> Archive<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         let zip = NpzArchive::new(Cursor::new(bytes));
-        Ok(Self { zip: zip.map_err(|e| refused("is not a zip archive, or truncated", e))? })
+        Ok(Self::Zip(zip.map_err(|e| refused("is not a zip archive, or truncated", e))?))
     }
 
     /// The names of its arrays, in order.
     pub(super) fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = self.zip.array_names().map(str::to_owned).collect();
+        let mut names: Vec<String> = match self {
+            Self::Zip(zip) => zip.array_names().map(str::to_owned).collect(),
+            Self::Memory(arrays) => arrays.keys().cloned().collect(),
+        };
         names.sort_unstable();
         names
     }
@@ -73,6 +81,9 @@ impl<'a> Archive<'a> {
 
     /// Shape and type of an array, in brackets, for messages.
     fn outline(&mut self, name: &str) -> String {
+        if let Self::Memory(arrays) = self {
+            return arrays.get(name).map_or_else(String::new, |array| format!("({array})"));
+        }
         let mut header = Vec::new();
         let read = self.read(name, &mut header, MAX_HEADER as u64 + 12);
         let outline = read.and_then(|()| check_header(&header)).and_then(|()| {
@@ -84,6 +95,11 @@ impl<'a> Archive<'a> {
 
     /// The array of this name.
     pub(super) fn array(&mut self, name: &str) -> Result<Array> {
+        if let Self::Memory(arrays) = self
+            && let Some(array) = arrays.get(name)
+        {
+            return Ok(array.clone());
+        }
         let mut bytes = Vec::new();
         let read = self.read(name, &mut bytes, MAX_BYTES + 1).and_then(|()| {
             if bytes.len() as u64 > MAX_BYTES {
@@ -96,7 +112,8 @@ impl<'a> Archive<'a> {
 
     /// Unpacks up to `most` bytes of an array.
     fn read(&mut self, name: &str, into: &mut Vec<u8>, most: u64) -> Result<()> {
-        let file = self.zip.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name));
+        let Self::Zip(zip) = self else { return Err(Fault::missing(name).into()) };
+        let file = zip.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name));
         let file = file.map_err(|e| refused("cannot be unpacked", e))?;
         file.take(most).read_to_end(into).map_err(|e| refused("cannot be unpacked", e))?;
         Ok(())
@@ -104,7 +121,7 @@ impl<'a> Archive<'a> {
 }
 
 /// The error for bytes that a parser crate refuses.
-fn refused(what: &str, error: impl fmt::Display) -> ParserError {
+pub(super) fn refused(what: &str, error: impl fmt::Display) -> ParserError {
     ParserError::refused(format_args!("{what}: {error}"))
 }
 

@@ -17,6 +17,7 @@
 mod array;
 mod motion;
 mod names;
+mod pose;
 mod poses;
 mod smpl;
 #[cfg(test)]
@@ -24,6 +25,8 @@ mod tests;
 
 use super::kind::{Description, Holds};
 use crate::error::NpzError;
+
+pub(super) use pose::read as read_pose;
 
 type Result<T> = std::result::Result<T, NpzError>;
 

@@ -21,18 +21,27 @@ pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> crate::R
 }
 
 fn motion(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<RawMotion> {
+    motion_of(&mut open(bytes)?, name, options)
+}
+
+/// Opens the bytes of an archive.
+pub(super) fn open(bytes: &[u8]) -> Result<Archive<'_>> {
     check_start(bytes, &[b"PK\x03\x04", b"PK\x05\x06"], "a zip archive")?;
-    let mut archive = Archive::open(bytes)?;
+    Archive::open(bytes)
+}
+
+/// The motion of an open archive.
+pub(super) fn motion_of(archive: &mut Archive, name: &str, options: &ReadOptions) -> Result<RawMotion> {
     let mut warnings = vec![
         "the file has no skeleton: lengths of bones are assumed, those of a person of 1.70 m".to_owned(),
     ];
     let mut arrays: Vec<Named> = archive.names().iter().filter_map(|name| names::named(name)).collect();
     let asked = choose_person(&mut arrays, options.person, &mut warnings)?;
-    let mut poses = poses::read(&mut archive, &arrays, asked)?;
+    let mut poses = poses::read(archive, &arrays, asked)?;
     warnings.append(&mut poses.warnings);
     let BodyModel { name: model, skeleton } = smpl::body_model(poses.joints)?;
-    let places = read_places(&mut archive, &arrays, &poses, &mut warnings)?;
-    let (rate, rate_found) = read_rate(&mut archive, options)?;
+    let places = read_places(archive, &arrays, &poses, &mut warnings)?;
+    let (rate, rate_found) = read_rate(archive, options)?;
 
     let mut recorder = Recorder::new(skeleton.len());
     let rest = &skeleton.rest_pose().locals;
@@ -125,14 +134,16 @@ fn read_places(
     Ok(Some((key.clone(), places)))
 }
 
+/// Names of the array of frames per second.
+pub(super) const RATES: [&str; 5] = ["mocap_framerate", "mocap_frame_rate", "fps", "framerate", "frame_rate"];
+
 /// Frames per second: as asked, or as the file says.
 fn read_rate(archive: &mut Archive, options: &ReadOptions) -> Result<(f64, Found)> {
     if let Some(rate) = options.frames_per_second {
         return Ok((rate, Found::Asked));
     }
-    let known = ["mocap_framerate", "mocap_frame_rate", "fps", "framerate", "frame_rate"];
     let names = archive.names();
-    let Some(key) = known.into_iter().find(|known| names.iter().any(|name| name == known)) else {
+    let Some(key) = RATES.into_iter().find(|known| names.iter().any(|name| name == known)) else {
         return Err(archive.missing("mocap_framerate"));
     };
     match archive.array(key)?.values.as_slice() {

@@ -6,11 +6,13 @@
 use std::{collections::BTreeMap, path::Path};
 
 use glam::Vec3;
+use serde_json::{Value, json};
 
-use super::write::COUNTS;
+use super::write::{COUNTS, POSED};
 use crate::Error;
 use crate::error::{Fault, ObjError};
 use crate::format::limits::MAX_ELEMENTS;
+use crate::scene::POSED_SURFACE;
 use crate::scene::titles::Titles;
 use crate::scene::{Corners, Scene, SceneMaterial, SceneMesh};
 use crate::text;
@@ -52,6 +54,8 @@ struct Reader {
     sections: Vec<Section>,
     /// Numbers of vertices and faces stated in the header of our own files.
     announced: Option<(usize, usize)>,
+    /// Whether the header of our own files says that the surface is posed.
+    posed: bool,
 }
 
 impl Reader {
@@ -91,6 +95,8 @@ impl Reader {
                         return Err(Fault::unexpected("two counts", "something else"));
                     };
                     self.announced = Some((vertices, faces));
+                } else if line == POSED {
+                    self.posed = true;
                 } else if !keyword.starts_with('#')
                     && !keyword.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
                 {
@@ -158,7 +164,8 @@ impl Reader {
         let meshes =
             sections.map(|section| SceneMesh { name: names.unique(&section.name), ..self.mesh(section) });
         let materials = vec![SceneMaterial::dielectric("Material", [1.0; 4], 0.5)];
-        Ok(Scene { meshes: meshes.collect(), materials, ..Scene::default() })
+        let extras = if self.posed { json!({"anthronet": {"posed": POSED_SURFACE}}) } else { Value::Null };
+        Ok(Scene { meshes: meshes.collect(), materials, extras, ..Scene::default() })
     }
 
     fn mesh(&self, section: &Section) -> SceneMesh {

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: the bind pose for programs without skeletons.
+//! Wavefront OBJ: the bind pose, or the scene's pose, for programs without skeletons.
 //!
 //! One `o` object per mesh, the body first with its vertices in the scene's order and unsplit, quads kept, texture
 //! coordinates with v upwards as in OBJ. Metres. Numbers have enough digits to restore the exact `f32`. Colours are
@@ -25,19 +25,26 @@ struct Offsets {
 /// [`crate::Error::Invalid`] if the scene does not [validate](Scene::validate).
 pub fn to_obj(scene: &Scene) -> Result<Vec<u8>> {
     scene.validate()?;
-    let count = |of: fn(&SceneMesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
+    let meshes = scene.standing_meshes()?;
+    let count = |of: fn(&SceneMesh) -> usize| meshes.iter().map(of).sum::<usize>();
     let vertices = count(|m| m.positions.len());
     let faces = count(|m| faces(m).count());
     let mut text = String::with_capacity(80 * vertices + 60 * faces);
     // Writing to a string cannot fail.
     let _ = writeln!(text, "# anthronet {}, metres, +Y up, +Z forward", env!("CARGO_PKG_VERSION"));
     let _ = writeln!(text, "{COUNTS} {vertices} {faces}");
+    if scene.pose.is_some() {
+        let _ = writeln!(text, "{POSED}");
+    }
     let mut offsets = Offsets::default();
-    for mesh in &scene.meshes {
+    for mesh in meshes.iter() {
         let _ = push_mesh(&mut text, mesh, &mut offsets);
     }
     Ok(text.into_bytes())
 }
+
+/// Comment in a file whose surface is posed, of which measures cannot be taken.
+pub(crate) const POSED: &str = "# anthronet posed";
 
 /// Comment before the numbers of `v` and `f` lines.
 pub(crate) const COUNTS: &str = "# anthronet counts v f:";
@@ -115,6 +122,20 @@ mod tests {
         assert_eq!(lines(&text, "o"), [["Sleeve"], ["Nail"]]);
         assert_eq!(lines(&text, "vt")[7], ["0.2", "0.5"], "v upwards again");
         assert!(text.contains("# anthronet counts v f: 18 11\n"));
+    }
+
+    #[test]
+    fn a_scene_in_a_pose_has_the_posed_vertices_and_says_so() {
+        let mut scene = arm(4);
+        let mut pose = scene.skeleton.as_ref().unwrap().rest_pose().clone();
+        pose.locals[0].translation.y += 0.5;
+        scene.pose = Some(pose);
+        let text = String::from_utf8(to_obj(&scene).unwrap()).unwrap();
+        assert!(text.contains("\n# anthronet posed\n"));
+        for (line, mesh) in lines(&text, "v").iter().zip(&scene.meshes[0].positions) {
+            let height: f32 = line[1].parse().unwrap();
+            assert!((height - mesh[1] - 0.5).abs() < 1e-5, "{line:?} of {mesh:?}");
+        }
     }
 
     #[test]

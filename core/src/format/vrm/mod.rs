@@ -1,7 +1,7 @@
 //! VRM 1.0: a `.vrm` is a `.glb` with the extension VRMC_vrm, which states the author of the character and the nodes that
 //! are the bones of a humanoid (github.com/vrm-c/vrm-specification, `VRMC_vrm-1.0`).
 //!
-//! Our bind pose is the T-pose facing +Z that the specification requires. Models contain no animation: a scene with clips
+//! Our bind pose is the T-pose facing +Z that the specification requires, so a scene with a pose is refused. Models contain no animation: a scene with clips
 //! is refused, as motion belongs in a separate `.vrma` (`VRMC_vrm_animation-1.0`): skeleton and clips with the same table of
 //! bones, without meshes. Motion of a `.vrm` is read all the same, as other programs leave animations in it.
 
@@ -70,9 +70,10 @@ impl Default for VrmMeta {
 /// [`JointNames`](crate::skeleton::humanoid::JointNames).
 ///
 /// # Errors
-/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips or without a bone that VRM
-/// requires; for a character without an author or with an empty name.
+/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene with clips, with a pose or without a bone
+/// that VRM requires; for a character without an author or with an empty name.
 pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
+    refuse_pose(scene, "vrm")?;
     if let Some(clip) = scene.clips.first() {
         let message = format!("`{}`: a .vrm holds no motion, write it to a .glb", clip.name());
         return Err(Error::invalid("clip", message));
@@ -93,9 +94,10 @@ pub fn to_vrm(scene: &Scene, meta: &VrmMeta) -> Result<Vec<u8>> {
 /// vocabulary of [`JointNames`](crate::skeleton::humanoid::JointNames).
 ///
 /// # Errors
-/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene without a clip or without a bone that VRM
-/// requires.
+/// [`Error::Invalid`] as for [`to_glb`](crate::format::gltf::to_glb); for a scene without a clip, with a pose or without a bone
+/// that VRM requires.
 pub fn to_vrma(scene: &Scene) -> Result<Vec<u8>> {
+    refuse_pose(scene, "vrma")?;
     if scene.clips.is_empty() {
         return Err(Error::invalid("clip", "a .vrma holds a motion, expected at least one clip, got none"));
     }
@@ -105,6 +107,18 @@ pub fn to_vrma(scene: &Scene) -> Result<Vec<u8>> {
     builder.root.extensions = Some(extensions::Root { others });
     builder.root.extensions_used.push(ANIMATION.into());
     glb(finished(builder, &GltfOptions::default(), None)?)
+}
+
+/// Both specifications demand that the joints rest in the T-pose.
+fn refuse_pose(scene: &Scene, extension: &str) -> Result<()> {
+    match scene.pose {
+        Some(_) => {
+            let message =
+                format!("a .{extension} must rest in the T-pose, write the posed character to a .glb");
+            Err(Error::invalid("pose", message))
+        }
+        None => Ok(()),
+    }
 }
 
 fn meta_json(scene: &Scene, meta: &VrmMeta) -> Result<Value> {

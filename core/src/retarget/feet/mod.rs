@@ -21,7 +21,7 @@ use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::pose::Leg;
 use crate::skeleton::{Pose, model_from_some_joints, with_ancestors};
-use crate::{Error, Result};
+use crate::{Error, Result, Side};
 
 pub use contacts::{Contact, Contacts, FootPoint, contacts};
 
@@ -145,6 +145,36 @@ fn drift(steps: &[Vec3]) -> f32 {
         Some(place.length())
     });
     places.fold(0.0, f32::max)
+}
+
+/// A point of a sole that stands on the floor in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Of which foot.
+    pub side: Side,
+    /// The point of the sole.
+    pub point: FootPoint,
+    /// Where it is in this frame, model space, metres.
+    pub at: Vec3,
+}
+
+/// For every frame of a clip, the points that stand on the floor according to contacts that were found in it.
+///
+/// # Errors
+/// [`Error::Invalid`] when a joint of the legs is missing.
+pub fn standing_points(clip: &Clip, contacts: &Contacts) -> Result<Vec<Vec<Standing>>> {
+    let legs = Leg::both(clip.skeleton())?;
+    let tracks = soles::tracks(clip, &legs, 0.0);
+    let mut frames = vec![Vec::new(); clip.frame_count()];
+    for (side, (track, contacts)) in Side::ALL.into_iter().zip(tracks.iter().zip(&contacts.feet)) {
+        for contact in contacts {
+            let range = contact.start..contact.end.min(track.len());
+            for (points, sole) in frames[range.clone()].iter_mut().zip(&track[range]) {
+                points.push(Standing { side, point: contact.point, at: contact.point.of(sole) });
+            }
+        }
+    }
+    Ok(frames)
 }
 
 /// Visits the frames of a clip in order: pose and `model_from_joint`, both of the legs and the joints above them alone.

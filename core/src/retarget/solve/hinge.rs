@@ -16,10 +16,10 @@
 use glam::{Vec2, Vec3};
 
 use super::bones::Bone;
-use super::twist::wrapped;
 use super::{Joints, Reference};
 use crate::Side;
 use crate::math::{RigidTransform, Rotation, smoothstep};
+use crate::pose::twist::wrapped;
 use crate::skeleton::SidedJoint;
 
 /// Bends from which a frame's own hinge angle begins to count and counts fully, radians (15° and 40°).

@@ -14,7 +14,6 @@ mod reference;
 mod root;
 #[cfg(test)]
 mod tests;
-mod twist;
 
 use std::str::FromStr;
 use std::sync::Arc;
@@ -25,11 +24,11 @@ use hinge::{HingedLimb, MeanHingeAngle};
 pub use jump::{Jump, worst_jump};
 use reference::Reference;
 use root::PelvisMotion;
-use twist::Twist;
 
 use super::JointMap;
 use crate::clip::{Clip, TranslationTrack};
 use crate::math::{RigidTransform, Rotation};
+use crate::pose::twist::{self, Twist};
 use crate::skeleton::{Pose, SidedJoint, Skeleton};
 use crate::{Error, Result, Side};
 
@@ -206,7 +205,7 @@ impl Retargeter {
             limbs.extend(HingedLimb::of(&reference, [SidedJoint::Thigh, SidedJoint::Calf], side, -1.0));
         }
         let drivers = drivers::drivers(&reference, options);
-        let twists = twist::find(&joints);
+        let twists = twist::find(joints.target);
         Ok(Self { source: source.clone(), drivers, limbs, twists, pelvis, options: *options, target })
     }
 

@@ -15,6 +15,7 @@ use super::meshes::{Part, attribute, merge_copies, normalize_normals, parts, pla
 use crate::error::{Fault, Within};
 use crate::format::gltf::Result;
 use crate::scene::{MorphTrack, Scene, SceneMesh};
+use crate::skeleton::Pose;
 
 /// How far from 1 weights may sum before they are normalised.
 const SUM_TOLERANCE: f64 = 1e-6;
@@ -41,6 +42,7 @@ pub(super) fn scene(document: &Document) -> Result<Scene> {
             scene.clips.push(read.clip);
             add_morph_tracks(&mut scene, clip, read.weights, &nodes);
         }
+        scene.pose = scene.read_as_posed().then_some(Pose { locals: skeleton.nodes });
         scene.skeleton = Some(skeleton.skeleton);
     }
     scene.validate().map_err(Box::new)?;

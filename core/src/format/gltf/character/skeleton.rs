@@ -28,6 +28,8 @@ pub(super) struct JointNodes {
     pub(super) skeleton: Arc<Skeleton>,
     /// `parent_from_joint` of each in the bind pose, as exact as the file.
     pub(super) locals: Vec<RigidTransform>,
+    /// `parent_from_joint` of each as the nodes stand.
+    pub(super) nodes: Vec<RigidTransform>,
     /// For each joint, the nodes from its parent joint (excluded), or from the top of the scene, to its own.
     pub(super) chains: Vec<Vec<usize>>,
     /// Node index of a joint to its index in `skeleton`.
@@ -97,6 +99,7 @@ impl JointNodes {
             joint_names.push(names.unique(&name));
             lengths.push(bone_length(&root.nodes[*node]).within(named(document, *node))?);
         }
+        let standing = locals.clone();
         let mut model: Vec<Affine3A> = rest.iter().map(rounded).collect();
         let bind: Vec<DAffine3> = nodes.iter().filter_map(|n| binds.get(n)).copied().collect();
         let same = |(bind, rest): (&DAffine3, &Affine3A)| rounded(bind).abs_diff_eq(*rest, BIND_TOLERANCE);
@@ -105,7 +108,7 @@ impl JointNodes {
         }
         let tree = Arc::new(JointTree::new(joint_names, parents).map_err(Box::new)?);
         let skeleton = Arc::new(Skeleton::from_bind(tree, model, lengths).map_err(Box::new)?);
-        Ok(Some(Self { skeleton, locals, chains, places }))
+        Ok(Some(Self { skeleton, locals, nodes: standing, chains, places }))
     }
 }
 

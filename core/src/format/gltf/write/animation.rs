@@ -20,22 +20,20 @@ use crate::Result;
 use crate::clip::Clip;
 use crate::math::RigidTransform;
 use crate::scene::Scene;
-use crate::skeleton::written::WrittenJoint;
 
 /// Largest difference from the rest pose, per quaternion component and in metres per translation component, for a joint
 /// to count as at rest: the rounding of a pose computed another way, a thousandth of a millimetre at arm's length.
-const REST_TOLERANCE: f32 = 5e-7;
+pub(super) const REST_TOLERANCE: f32 = 5e-7;
 
-/// Appends a clip of the scene. Nodes `0..joints` are the joints, followed by one node per mesh.
+/// Appends a clip of the scene. Nodes `0..joints` are the joints, with the transforms `rests`, followed by one node per mesh.
 pub(super) fn push(
     builder: &mut DocumentBuilder,
     scene: &Scene,
     place: usize,
-    transforms: &[WrittenJoint],
+    rests: &[RigidTransform],
 ) -> Result<()> {
     let clip = &scene.clips[place];
     let (frames, rate) = (clip.frame_count(), clip.frames_per_second());
-    let rests: Vec<RigidTransform> = transforms.iter().map(|t| t.parent_from_joint).collect();
     let mut rotations: Vec<Vec<[f32; 4]>> = (0..rests.len()).map(|j| joint_rotations(clip, j)).collect();
     let mut translations: Vec<Vec<[f32; 3]>> =
         (0..rests.len()).map(|j| joint_translations(clip, j)).collect();

@@ -7,13 +7,15 @@
 //! - **Faces.** Quads become two triangles along the diagonal from corner 0 to corner 2, in order.
 //! - **Skeleton.** Nodes `0..joints` are the joint tree, in the scene's order, followed by one node per mesh at the
 //!   root of the scene, without a transform, the body first. All meshes share one skin whose `skeleton` is the root
-//!   joint. The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms.
+//!   joint. The rest pose is the bind pose: inverse bind matrices are inverses of the *written* node transforms. In a scene
+//!   with a pose the nodes of the joints have that instead, the inverse bind matrices stay those of the bind pose, and
+//!   `extras.anthronet.posed` is true.
 //! - **Morph targets** are dense, and copies at texture seams move with their originals. Their names are in
 //!   `mesh.extras.targetNames`; the default weights are all 0.
 //! - **Weights** are exact `f32`, adjusted to sum to 1 within `f32` precision; unused slots hold joint 0, weight 0.
 //! - **Clips** are animations of the joint nodes, with all keys on frames; see `animation.rs`.
 //! - The same scene gives the same bytes, and so does the scene that [`read_scene`](crate::format::read_scene) reads
-//!   from a file that is not compressed.
+//!   from a file that is neither compressed nor posed.
 
 mod accessor;
 mod animation;
@@ -127,13 +129,14 @@ fn document_of(scene: &Scene) -> Result<DocumentBuilder> {
         generator: Some(concat!("anthronet ", env!("CARGO_PKG_VERSION")).into()),
         ..Asset::default()
     };
-    let (transforms, skin) = match &scene.skeleton {
+    let (nodes, skin) = match &scene.skeleton {
         None => (Vec::new(), None),
         Some(skeleton) => {
             let joints = skeleton.parents().iter().copied().zip(skeleton.bind().iter().copied());
             let transforms = written_joints(joints);
-            let skin = skeleton::push(&mut builder, (&scene.name, skeleton), &transforms)?;
-            (transforms, Some(skin))
+            let nodes = skeleton::nodes(&transforms, scene.pose.as_ref());
+            let skin = skeleton::push(&mut builder, (&scene.name, skeleton), &transforms, &nodes)?;
+            (nodes, Some(skin))
         }
     };
     let joints = builder.root.nodes.len() as u32;
@@ -143,7 +146,7 @@ fn document_of(scene: &Scene) -> Result<DocumentBuilder> {
         builder.root.push(Node { name, mesh: Some(mesh), skin, ..Node::default() });
     }
     for clip in 0..scene.clips.len() {
-        animation::push(&mut builder, scene, clip, &transforms)?;
+        animation::push(&mut builder, scene, clip, &nodes)?;
     }
     builder.root.materials = scene.materials.iter().map(material::material).collect();
     builder.root.extensions_used = material::extensions_used(&scene.materials);
@@ -176,7 +179,10 @@ pub(crate) fn finished(
 
 /// The scene's extras with `anthronet.version` and `anthronet.vertices` (of the body) added.
 fn document_extras(scene: &Scene) -> Result<Extras> {
-    let mut extras = scene.extras.as_object().cloned().unwrap_or_default();
+    let mut extras = match scene.written_extras() {
+        Value::Object(extras) => extras,
+        _ => serde_json::Map::new(),
+    };
     let ours = extras.entry("anthronet").or_insert_with(|| json!({}));
     let Value::Object(ours) = ours else {
         return Err(Error::invalid("scene", "extras.anthronet must be an object"));

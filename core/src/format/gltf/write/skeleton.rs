@@ -1,14 +1,39 @@
 //! The joint tree as nodes, and the skin over them (glTF 2.0, sections 3.5 and 3.7.3).
 
+use glam::Vec3;
 use gltf_json::{Index, Node, Skin, scene::UnitQuaternion};
 use serde_json::json;
 
 use super::accessor::{DocumentBuilder, Usage};
+use super::animation::REST_TOLERANCE;
 use super::raw;
 use crate::Result;
-use crate::math::{RigidTransform, Rotation};
-use crate::skeleton::Skeleton;
+use crate::math::{RigidTransform, Rotation, unit};
 use crate::skeleton::written::{WrittenJoint, plain};
+use crate::skeleton::{Pose, Skeleton};
+
+/// The transforms of the joint nodes: those of the bind pose, or of the pose where it moves a joint.
+pub(super) fn nodes(transforms: &[WrittenJoint], pose: Option<&Pose>) -> Vec<RigidTransform> {
+    let bind = transforms.iter().map(|written| written.parent_from_joint);
+    let Some(pose) = pose else { return bind.collect() };
+    let unmoved = |bind: &RigidTransform, posed: &RigidTransform| {
+        bind.translation.abs_diff_eq(posed.translation, REST_TOLERANCE)
+            && (bind.rotation.abs_diff_eq(posed.rotation, REST_TOLERANCE)
+                || bind.rotation.abs_diff_eq(-posed.rotation, REST_TOLERANCE))
+    };
+    bind.zip(&pose.locals)
+        .map(|(bind, posed)| if unmoved(&bind, posed) { bind } else { normalized(posed) })
+        .collect()
+}
+
+/// With a rotation of unit length to the last digit, and without negative zeros.
+fn normalized(transform: &RigidTransform) -> RigidTransform {
+    let plain = |v: f32| v + 0.0;
+    RigidTransform {
+        rotation: Rotation::from_array(unit(transform.rotation).to_array().map(plain)),
+        translation: Vec3::from_array(transform.translation.to_array().map(plain)),
+    }
+}
 
 /// Appends the joint nodes, which become nodes `0..joints`, and the skin over them. A node's `extras.anthronet` holds
 /// the length of the joint's bone, for which glTF has no field.
@@ -16,6 +41,7 @@ pub(super) fn push(
     builder: &mut DocumentBuilder,
     (name, skeleton): (&str, &Skeleton),
     transforms: &[WrittenJoint],
+    nodes: &[RigidTransform],
 ) -> Result<Index<Skin>> {
     let mut children = vec![Vec::new(); skeleton.len()];
     for (i, parent) in (0u32..).zip(skeleton.parents()) {
@@ -23,9 +49,9 @@ pub(super) fn push(
             siblings.push(Index::new(i));
         }
     }
-    let joints = skeleton.names().iter().zip(transforms).zip(children);
-    for (joint, ((name, written), children)) in joints.enumerate() {
-        let RigidTransform { translation, rotation } = written.parent_from_joint;
+    let joints = skeleton.names().iter().zip(nodes).zip(children);
+    for (joint, ((name, node), children)) in joints.enumerate() {
+        let RigidTransform { translation, rotation } = *node;
         let length = |metres: f32| json!({"anthronet": {"bone_length": f64::from(metres)}});
         builder.root.push(Node {
             name: Some(name.clone()),

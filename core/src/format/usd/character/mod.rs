@@ -28,8 +28,8 @@ use crate::format::motion::raw::WeightTrack;
 use crate::format::motion::{ReadOptions, clip_name, units_and_axes};
 use crate::scene::titles::Titles;
 use crate::scene::{MorphTrack, Scene};
-use crate::skeleton::JointTree;
 use crate::skeleton::written::rounded;
+use crate::skeleton::{JointTree, Pose};
 use crate::space::{Axis, Unit};
 
 /// A joint whose rest position is farther than this from its bind position, metres, gets a translation track.
@@ -139,6 +139,7 @@ fn still(
             let bind = joints.bind_pose(layer, prim, &above)?;
             let lengths = bone_lengths(layer, prim, joints)?;
             scene.skeleton = Some(Arc::new(scene_skeleton(joints, &bind, lengths).map_err(Box::new)?));
+            scene.pose = scene.read_as_posed().then(|| Pose { locals: joints.locals(&above) });
             Some(mesh::Skin { skeleton, above })
         }
     };

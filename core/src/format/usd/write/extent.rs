@@ -57,7 +57,8 @@ pub(super) fn of_mesh(mesh: &SceneMesh) -> Value {
 /// Writes the extent of the whole character: at rest, and over the frames of its first clip.
 pub(super) fn write(layer: &mut Layer, root: &str, scene: &Scene) -> Result<()> {
     let mut rest = Bounds::EMPTY;
-    scene.meshes.iter().flat_map(|m| &m.positions).for_each(|p| rest.add(Vec3A::from_array(*p)));
+    let meshes = scene.standing_meshes()?;
+    meshes.iter().flat_map(|m| &m.positions).for_each(|p| rest.add(Vec3A::from_array(*p)));
     let extent = layer.attribute(root, "extent", "float3[]", rest.value())?;
     let Some(clip) = scene.clips.first() else { return Ok(()) };
 

@@ -14,7 +14,8 @@
 //!
 //! Names that are not USD identifiers are converted to such, and the original is kept: of prims in `displayName`, of joints
 //! in the skeleton's `jointNames`. Bone lengths are in its `anthronet:boneLengths`. The scene's extras are JSON text in the
-//! root's `customData`, under `anthronetExtras`. A character without joints is an `Xform` with meshes only.
+//! root's `customData`, under `anthronetExtras`. The rest transforms of a scene with a pose are that pose, which viewers show
+//! unless an animation is bound, and the extras say so. A character without joints is an `Xform` with meshes only.
 //!
 //! Time codes are frames of the first clip; further clips with another rate keep their duration. The bytes depend only on
 //! the scene: no file contains a timestamp.
@@ -84,8 +85,9 @@ fn layer(scene: &Scene) -> Result<Layer> {
     let skinned = scene.skeleton.is_some();
     layer.prim(&root, &scene.name, if skinned { "SkelRoot" } else { "Xform" })?;
     layer.set(&root, FieldKey::Kind, Value::token("component"))?;
-    if !scene.extras.is_null() {
-        let extras = Value::String(scene.extras.to_string());
+    let extras = scene.written_extras();
+    if !extras.is_null() {
+        let extras = Value::String(extras.to_string());
         layer.set(
             &root,
             FieldKey::CustomData,

@@ -25,10 +25,14 @@ pub(super) fn write(
     layer.prim(path, "Skel", "Skeleton")?;
     let joints = joint_tokens(skeleton.tree());
     let bind: Vec<DAffine3> = skeleton.bind().iter().map(in_double).collect();
-    let rest = skeleton.parents().iter().zip(&bind).map(|(parent, model_from_joint)| {
+    let bind_rest = skeleton.parents().iter().zip(&bind).map(|(parent, model_from_joint)| {
         let parent = parent.map(|p| bind[p as usize]);
         parent.map_or(*model_from_joint, |parent| parent.inverse() * *model_from_joint)
     });
+    let rest: Vec<DAffine3> = match &scene.pose {
+        Some(pose) => pose.locals.iter().map(|local| local.to_affine_f64()).collect(),
+        None => bind_rest.collect(),
+    };
     layer.uniform(path, "joints", "token[]", joints.clone())?;
     let names = skeleton.names().iter().map(String::as_str);
     layer.uniform(path, "jointNames", "token[]", Value::token_vec(names))?;
@@ -39,7 +43,7 @@ pub(super) fn write(
         layer.custom(path, BONE_LENGTHS, "float[]", Value::FloatVec(lengths))?;
     }
     layer.uniform(path, "bindTransforms", "matrix4d[]", matrices(bind.iter().copied()))?;
-    layer.uniform(path, "restTransforms", "matrix4d[]", matrices(rest))?;
+    layer.uniform(path, "restTransforms", "matrix4d[]", matrices(rest.into_iter()))?;
 
     let Some(first) = scene.clips.first() else { return Ok(()) };
     let time_codes_per_second = first.frames_per_second();

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::Leg;
+use super::ik::{Bend, Limb, Reach};
 use crate::math::{RigidTransform, Rotation};
-use crate::pose::Leg;
-use crate::pose::ik::Reach;
 use crate::skeleton::{Finger, Pose, RigJoint, SidedJoint, Skeleton, model_from_joints};
 use crate::{Error, Result, Side};
 
@@ -15,26 +15,26 @@ const STRETCH: f32 = 0.992;
 
 /// Parameters of an arm, degrees. All zero is the T-pose.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Arm {
+pub(crate) struct Arm {
     /// Down from horizontal; 90 hangs.
-    pub(super) lowered: f32,
+    pub(crate) lowered: f32,
     /// Then forwards about the axis through both shoulders.
-    pub(super) forward: f32,
+    pub(crate) forward: f32,
     /// Before both, outward rotation about the bone, which lifts a bent forearm.
-    pub(super) outward: f32,
+    pub(crate) outward: f32,
     /// Elbow flexion.
-    pub(super) elbow: f32,
+    pub(crate) elbow: f32,
     /// Wrist: radial deviation, flexion.
-    pub(super) wrist: Vec2,
+    pub(crate) wrist: Vec2,
     /// Curl of each finger joint beyond rest.
-    pub(super) curl: f32,
+    pub(crate) curl: f32,
     /// Clavicle, upwards.
-    pub(super) shrug: f32,
+    pub(crate) shrug: f32,
 }
 
 impl Arm {
     /// At the side, elbow slightly bent, fingers relaxed.
-    pub(super) const HANGING: Self = Self {
+    pub(crate) const HANGING: Self = Self {
         lowered: 79.0,
         forward: 3.0,
         outward: 0.0,
@@ -47,32 +47,34 @@ impl Arm {
 
 /// Parameters of a foot, relative to rest.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Foot {
+pub(crate) struct Foot {
     /// Displacement from rest in model space, metres.
-    pub(super) shift: Vec3,
+    pub(crate) shift: Vec3,
     /// Degrees: positive raises the heel about the ball with the toes flat, negative raises the toes about the heel.
-    pub(super) roll: f32,
+    pub(crate) roll: f32,
     /// Outward rotation of the foot about the vertical, degrees.
-    pub(super) toe_out: f32,
+    pub(crate) toe_out: f32,
+    /// Where the knee points, in model space; `None` leaves it to the hinge.
+    pub(crate) knee: Option<Vec3>,
 }
 
 /// Parameters of a whole body, angles in degrees; arms and feet are left, right.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Stance {
+pub(crate) struct Stance {
     /// Translation of the root, metres.
-    pub(super) root: Vec3,
+    pub(crate) root: Vec3,
     /// Displacement of the pelvis from rest, metres.
-    pub(super) pelvis: Vec3,
+    pub(crate) pelvis: Vec3,
     /// Outward rotation of the thighs, with the knees.
-    pub(super) knees_out: f32,
+    pub(crate) knees_out: f32,
     /// Rotation of the pelvis about X (forward lean), Y (to the left), Z (lean to the right) in model space.
-    pub(super) pelvis_rotation: Vec3,
+    pub(crate) pelvis_rotation: Vec3,
     /// The same for the spine, divided among its joints.
-    pub(super) spine: Vec3,
+    pub(crate) spine: Vec3,
     /// The same for neck and head, divided among them.
-    pub(super) head: Vec3,
-    pub(super) arms: [Arm; 2],
-    pub(super) feet: [Foot; 2],
+    pub(crate) head: Vec3,
+    pub(crate) arms: [Arm; 2],
+    pub(crate) feet: [Foot; 2],
 }
 
 struct ArmJoints {
@@ -86,8 +88,8 @@ struct ArmJoints {
 }
 
 /// A skeleton with the indices of its joints and its proportions.
-pub(super) struct Figure {
-    pub(super) rest: Arc<Skeleton>,
+pub(crate) struct Figure {
+    pub(crate) rest: Arc<Skeleton>,
     model: Vec<RigidTransform>,
     root: usize,
     pelvis: usize,
@@ -96,13 +98,13 @@ pub(super) struct Figure {
     arms: [ArmJoints; 2],
     legs: [Leg; 2],
     /// Length of a leg from hip to ankle, metres.
-    pub(super) leg_length: f32,
+    pub(crate) leg_length: f32,
     /// Lengths of thigh and shin, metres.
-    pub(super) leg_bones: [f32; 2],
+    pub(crate) leg_bones: [f32; 2],
 }
 
 impl Figure {
-    pub(super) fn new(rest: &Arc<Skeleton>) -> Result<Self> {
+    pub(crate) fn new(rest: &Arc<Skeleton>) -> Result<Self> {
         let joint = |joint: RigJoint| rest.require_rig_joint(joint);
         let arm = |side: Side| -> Result<ArmJoints> {
             let of = |part: SidedJoint| joint(part.on(side));
@@ -148,16 +150,34 @@ impl Figure {
     }
 
     /// Both feet flat on the floor, at `share` of the way from below the hip (0) to their rest position (1).
-    pub(super) fn standing(&self, share: f32) -> [Foot; 2] {
+    pub(crate) fn standing(&self, share: f32) -> [Foot; 2] {
         self.legs.map(|leg| {
             let [hip, ankle] = [leg.limb.upper, leg.limb.end].map(|j| self.model[j].translation.x);
-            Foot { shift: Vec3::X * ((hip - ankle) * (1.0 - share)), roll: 0.0, toe_out: 0.0 }
+            Foot { shift: Vec3::X * ((hip - ankle) * (1.0 - share)), ..Foot::default() }
         })
+    }
+
+    /// Feet flat on the floor with upright shins and level thighs, and how the pelvis has to move for that, metres; the pelvis
+    /// stays over the origin. `apart` is the distance between the ankles as a share of that between the hips.
+    pub(crate) fn seated(&self, apart: f32, toe_out: f32) -> ([Foot; 2], Vec3) {
+        let mut sink = 0.0;
+        let mut feet = [Foot { toe_out, knee: Some(Vec3::Y), ..Foot::default() }; 2];
+        for (f, leg) in self.legs.iter().enumerate() {
+            let hip = self.model[leg.limb.upper].translation;
+            let [thigh, shin] = [leg.limb.lower, leg.limb.end]
+                .map(|joint| self.rest.rest_pose().locals[joint].translation.length());
+            let flat = self.foot_goal(f, &feet[f]).translation;
+            let aside = hip.x * (apart - 1.0);
+            let ahead = libm::sqrtf((thigh * thigh - aside * aside).max(0.0));
+            feet[f].shift = Vec3::new(hip.x + aside, flat.y, hip.z + ahead) - flat;
+            sink += 0.5 * (flat.y + shin - hip.y);
+        }
+        (feet, Vec3::Y * sink)
     }
 
     /// How far the pelvis has to come down for the legs of `feet` to reach the floor without locking a knee, metres; negative
     /// when they reach.
-    pub(super) fn required_drop(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
+    pub(crate) fn required_drop(&self, stance: &Stance, feet: impl Iterator<Item = usize>) -> f32 {
         let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
         let mut model = Vec::new();
@@ -174,18 +194,16 @@ impl Figure {
     }
 
     /// Lowers the pelvis as far as both legs need to reach their feet.
-    pub(super) fn within_reach(&self, mut stance: Stance) -> Stance {
+    pub(crate) fn within_reach(&self, mut stance: Stance) -> Stance {
         stance.pelvis.y -= self.required_drop(&stance, 0..2).max(0.0);
         stance
     }
 
     /// The pose of a stance.
-    pub(super) fn pose(&self, stance: &Stance) -> Pose {
+    pub(crate) fn pose(&self, stance: &Stance) -> Pose {
         let mut pose = self.rest.rest_pose().clone();
         self.set_trunk(stance, &mut pose);
-        for (f, side) in Side::ALL.into_iter().enumerate() {
-            self.set_arm(&self.arms[f], &stance.arms[f], side, &mut pose);
-        }
+        self.set_arms(&stance.arms, &mut pose);
         let mut model = Vec::new();
         model_from_joints(self.rest.parents(), &pose.locals, &mut model);
         for (f, leg) in self.legs.iter().enumerate() {
@@ -195,7 +213,8 @@ impl Figure {
             let outwards = -Side::ALL[f].sign() * stance.knees_out.to_radians();
             pose.locals[leg.limb.upper].rotation *= Rotation::from_rotation_y(outwards);
             pose.locals[leg.limb.lower].rotation *= Rotation::from_rotation_x(-0.5);
-            leg.limb.reach(&mut pose, leg.model_from_parent(&model), &Reach::to(target));
+            let reach = Reach { pole: stance.feet[f].knee, ..Reach::to(target) };
+            leg.limb.reach(&mut pose, leg.model_from_parent(&model), &reach);
             let toes = Rotation::from_rotation_x(stance.feet[f].roll.max(0.0).to_radians());
             pose.locals[leg.ball].rotation *= toes;
         }
@@ -218,7 +237,31 @@ impl Figure {
         }
     }
 
-    fn set_arm(&self, joints: &ArmJoints, arm: &Arm, side: Side, pose: &mut Pose) {
+    /// Rotates the joints of both arms from rest; left, right.
+    pub(crate) fn set_arms(&self, arms: &[Arm; 2], pose: &mut Pose) {
+        for ((joints, arm), side) in self.arms.iter().zip(arms).zip(Side::ALL) {
+            Self::set_arm(joints, arm, side, pose);
+        }
+    }
+
+    /// Shoulder, elbow and wrist.
+    pub(crate) fn arm(&self, side: Side) -> Limb {
+        let joints = &self.arms[side.index()];
+        Limb { upper: joints.upper, lower: joints.lower, end: joints.hand, bend: Bend::Backwards }
+    }
+
+    /// The joints of hip and knee.
+    pub(crate) fn thigh(&self, side: Side) -> [usize; 2] {
+        let leg = self.legs[side.index()].limb;
+        [leg.upper, leg.lower]
+    }
+
+    /// `model_from_joint` of a joint at rest.
+    pub(crate) fn at_rest(&self, joint: usize) -> RigidTransform {
+        self.model[joint]
+    }
+
+    fn set_arm(joints: &ArmJoints, arm: &Arm, side: Side, pose: &mut Pose) {
         let x = |degrees: f32| Rotation::from_rotation_x(degrees.to_radians());
         let y = |degrees: f32| Rotation::from_rotation_y(side.sign() * degrees.to_radians());
         let z = |degrees: f32| Rotation::from_rotation_z(side.sign() * degrees.to_radians());
@@ -253,7 +296,7 @@ impl Figure {
     }
 
     /// Rotates a joint about its own axes, degrees, as for the left; right joints are mirrored.
-    pub(super) fn rotate(&self, pose: &mut Pose, joint: RigJoint, x: f32, y: f32, z: f32) {
+    pub(crate) fn rotate(&self, pose: &mut Pose, joint: RigJoint, x: f32, y: f32, z: f32) {
         let sign = joint.side().map_or(1.0, Side::sign);
         if let Some(joint) = self.rest.rig_joint(joint) {
             pose.locals[joint].rotation *= euler(Vec3::new(x, sign * y, sign * z));

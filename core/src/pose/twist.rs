@@ -7,15 +7,13 @@
 
 use std::f32::consts::{PI, TAU};
 
+use super::SwingTwist;
 use crate::math::Rotation;
-
-use super::Joints;
-use crate::pose::SwingTwist;
-use crate::skeleton::{RigJoint, SidedJoint};
+use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 
 /// A twist joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Twist {
+pub(crate) struct Twist {
     joint: usize,
     /// The joint of whose roll it takes a part.
     of: usize,
@@ -30,9 +28,9 @@ pub(super) struct Twist {
     rest_of: Rotation,
 }
 
-/// The twist joints of the target.
-pub(super) fn find(joints: &Joints) -> Vec<Twist> {
-    let rest = joints.target.rest_pose();
+/// The twist joints of a body's skeleton.
+pub(crate) fn find(skeleton: &Skeleton) -> Vec<Twist> {
+    let rest = skeleton.rest_pose();
     let twist = |(joint, ours): (usize, Option<RigJoint>)| {
         let RigJoint::Sided(helper, side) = ours.filter(|ours| ours.is_twist())? else { return None };
         let limb = helper.main_joint();
@@ -42,8 +40,8 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
             SidedJoint::Calf => SidedJoint::Foot,
             _ => limb,
         };
-        let of = joints.target.rig_joint(of.on(side))?;
-        let length = joints.target.rig_joint(limb.on(side)).and_then(|j| joints.target.ends()[j])?.y;
+        let of = skeleton.rig_joint(of.on(side))?;
+        let length = skeleton.rig_joint(limb.on(side)).and_then(|j| skeleton.ends()[j])?.y;
         let position = (rest.locals[joint].translation.y / length.max(1e-6)).clamp(0.0, 1.0);
         let part = if own { position - 1.0 } else { position };
         Some(Twist {
@@ -55,11 +53,11 @@ pub(super) fn find(joints: &Joints) -> Vec<Twist> {
             rest_of: rest.locals[of].rotation,
         })
     };
-    joints.target.rig_joints().enumerate().filter_map(twist).collect()
+    skeleton.rig_joints().enumerate().filter_map(twist).collect()
 }
 
 /// Sets the rotations of twist joints. `before` are the rolls in the previous frame and are updated; `None` at the start.
-pub(super) fn apply(twists: &[Twist], locals: &mut [Rotation], before: &mut [Option<f32>]) {
+pub(crate) fn apply(twists: &[Twist], locals: &mut [Rotation], before: &mut [Option<f32>]) {
     for (twist, before) in twists.iter().zip(before) {
         let local = locals[twist.of];
         let from_rest =
@@ -71,7 +69,7 @@ pub(super) fn apply(twists: &[Twist], locals: &mut [Rotation], before: &mut [Opt
 }
 
 /// The equivalent angle in −π..=π.
-pub(super) fn wrapped(angle: f32) -> f32 {
+pub(crate) fn wrapped(angle: f32) -> f32 {
     angle - TAU * libm::roundf(angle / TAU)
 }
 
