@@ -2,6 +2,7 @@
 
 pub(crate) mod bodies;
 pub(crate) mod clips;
+pub(crate) mod fuzz;
 pub(crate) mod memory;
 pub(crate) mod person;
 pub(crate) mod scene;

@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::super::test_prior::ranges;
 use super::*;
+use crate::testing::fuzz::{Input, fuzz};
 
 fn message(request: &Request) -> String {
     request.check(&ranges(), 10).unwrap_err().to_string()
@@ -124,6 +125,17 @@ fn a_plausible_request_passes() {
         with("height", 1.70).with("arm_length", 0.33).unwrap().with("waist_circumference", 0.7).unwrap();
     request.check(&ranges(), 10).unwrap();
     Request::default().check(&ranges(), 10).unwrap();
+}
+
+#[test]
+fn mutated_requests_are_read_or_refused() {
+    let json = r#"{"sex": "female", "measures": {"height": 1.7, "arm_length": 0.7, "arm_length_left": 0.71,
+        "waist_circumference": null}, "seed": 7, "z": [0.5, -1e-3], "fill": "sample", "nearest": true}"#;
+    fuzz(vec![Input::plain("request.json", json)], |bytes, _| {
+        let Ok(text) = std::str::from_utf8(bytes) else { return false };
+        let request = Request::from_json(text);
+        request.is_ok_and(|request| Request::from_json(&request.to_json()).unwrap() == request)
+    });
 }
 
 proptest! {

@@ -1,5 +1,4 @@
-//! Small valid files of every format, in parts: what is inside a container is changed, and the container made anew around it,
-//! as otherwise its lengths and checksums would refuse everything.
+//! Small valid files of every format, in parts.
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -9,60 +8,47 @@ use openusd::usdz::ArchiveWriter;
 use crate::clip::{builtin, resample};
 use crate::format::{Format, WriteOptions, write_scene_to_bytes};
 use crate::scene::Scene;
+use crate::testing::fuzz::Input;
 use crate::testing::{bodies::bodies, scene};
 
-/// A file of a format: its parts, and the file that they make.
-pub(super) struct Input {
-    pub(super) path: &'static str,
-    pub(super) parts: Vec<Vec<u8>>,
-    pub(super) whole: fn(&[Vec<u8>]) -> Vec<u8>,
+/// A binary glTF by its JSON and its buffer.
+pub(super) fn glb(path: &'static str, bytes: &[u8]) -> Input {
+    let json = 20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let whole = |parts: &[Vec<u8>]| {
+        let mut chunks = Vec::new();
+        for (part, kind) in parts.iter().zip([b"JSON", b"BIN\0"]) {
+            let length = part.len().next_multiple_of(4);
+            chunks.extend((length as u32).to_le_bytes());
+            chunks.extend(kind);
+            chunks.extend(part);
+            chunks.resize(chunks.len() + length - part.len(), b' ');
+        }
+        let head = [b"glTF".to_vec(), 2_u32.to_le_bytes().to_vec()].concat();
+        let length = (12 + chunks.len() as u32).to_le_bytes().to_vec();
+        [head, length, chunks].concat()
+    };
+    Input { path, parts: vec![bytes[20..json].to_vec(), bytes[json + 8..].to_vec()], whole }
 }
 
-impl Input {
-    /// A file that is not taken apart.
-    pub(super) fn plain(path: &'static str, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { path, parts: vec![bytes.into()], whole: |parts| parts.concat() }
-    }
+/// A package by the crate file in it.
+pub(super) fn usdz(layer: Vec<u8>) -> Input {
+    let whole = |parts: &[Vec<u8>]| {
+        let mut archive = ArchiveWriter::new(Cursor::new(Vec::new()));
+        archive.add_layer("layer.usdc", &parts[0]).unwrap();
+        archive.finish().unwrap().into_inner()
+    };
+    Input { path: "a.usdz", parts: vec![layer], whole }
+}
 
-    /// A binary glTF by its JSON and its buffer.
-    pub(super) fn glb(path: &'static str, bytes: &[u8]) -> Self {
-        let json = 20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-        let whole = |parts: &[Vec<u8>]| {
-            let mut chunks = Vec::new();
-            for (part, kind) in parts.iter().zip([b"JSON", b"BIN\0"]) {
-                let length = part.len().next_multiple_of(4);
-                chunks.extend((length as u32).to_le_bytes());
-                chunks.extend(kind);
-                chunks.extend(part);
-                chunks.resize(chunks.len() + length - part.len(), b' ');
-            }
-            let head = [b"glTF".to_vec(), 2_u32.to_le_bytes().to_vec()].concat();
-            let length = (12 + chunks.len() as u32).to_le_bytes().to_vec();
-            [head, length, chunks].concat()
-        };
-        Self { path, parts: vec![bytes[20..json].to_vec(), bytes[json + 8..].to_vec()], whole }
-    }
-
-    /// A package by the crate file in it.
-    pub(super) fn usdz(layer: Vec<u8>) -> Self {
-        let whole = |parts: &[Vec<u8>]| {
-            let mut archive = ArchiveWriter::new(Cursor::new(Vec::new()));
-            archive.add_layer("layer.usdc", &parts[0]).unwrap();
-            archive.finish().unwrap().into_inner()
-        };
-        Self { path: "a.usdz", parts: vec![layer], whole }
-    }
-
-    /// An archive of arrays by its arrays: `poses` and `trans`.
-    pub(super) fn npz() -> Self {
-        let mut poses = vec![0.0_f32; 2 * 66];
-        poses[0] = 1.5;
-        poses[66] = 1.5;
-        poses[66 + 12] = 1.0;
-        let places = [0.0_f32, 0.0, 0.95, 0.1, 0.2, 0.95];
-        let parts = vec![array("(2, 66)", &poses), array("(2, 3)", &places), array("()", &[60.0])];
-        Self { path: "a.npz", parts, whole: |parts| zip(&["poses", "trans", "fps"], parts) }
-    }
+/// An archive of arrays by its arrays: `poses` and `trans`.
+pub(super) fn npz_of_a_motion() -> Input {
+    let mut poses = vec![0.0_f32; 2 * 66];
+    poses[0] = 1.5;
+    poses[66] = 1.5;
+    poses[66 + 12] = 1.0;
+    let places = [0.0_f32, 0.0, 0.95, 0.1, 0.2, 0.95];
+    let parts = vec![array("(2, 66)", &poses), array("(2, 3)", &places), array("()", &[60.0])];
+    Input { path: "a.npz", parts, whole: |parts| zip(&["poses", "trans", "fps"], parts) }
 }
 
 fn array(shape: &str, values: &[f32]) -> Vec<u8> {

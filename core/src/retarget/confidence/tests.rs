@@ -163,7 +163,7 @@ fn proportions_and_directions_tell_too() {
     let off = |degrees: [f64; 2]| {
         let bone = |(bone, mean): (&str, f64)| BoneError { bone: bone.to_owned(), mean, max: 180.0 };
         let limbs = ["calf_l", "calf_r"].into_iter().zip(degrees).map(bone).collect();
-        DirectionError { limbs, ends: Vec::new() }
+        DirectionError { limbs, ..DirectionError::default() }
     };
     confidence.compare("walk", &off([2.0, 29.0]));
     assert_eq!(confidence.value, 1.0);
