@@ -259,9 +259,8 @@ fn tell(source: &str, report: &RetargetReport) {
             "warning: {source}: the rest pose is no standing person: frame {frame} of `{clip}`, which stands, was taken for it"
         );
     }
-    if !report.joints.unmatched.is_empty() {
-        let joints = report.joints.unmatched.join(", ");
-        eprintln!("note: {source}: unmatched joints: {joints}");
+    for note in report.notes() {
+        eprintln!("note: {source}: {note}");
     }
 }
 

@@ -323,8 +323,8 @@ pub unsafe extern "C" fn anthronet_motion_retarget(
         if let Some(warning) = report.confidence.warning() {
             crate::log::warning(&warning);
         }
-        if !report.joints.unmatched.is_empty() {
-            crate::log::info(&format!("unmatched joints: {}", report.joints.unmatched.join(", ")));
+        for note in report.notes() {
+            crate::log::info(&note);
         }
         out.give(anthronet_clip(clip));
         if let Some(out) = out_report {

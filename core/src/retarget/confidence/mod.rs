@@ -37,7 +37,7 @@ const ALIKE: f32 = 0.1;
 /// Mean angle between the bones of motion and result above which these are different movements, degrees.
 const MOST_OFF: f64 = 20.0;
 /// The same for a single bone.
-const MOST_BONE_OFF: f64 = 30.0;
+pub(super) const MOST_BONE_OFF: f64 = 30.0;
 /// An animal's legs are farther from its middle than this part of their length; its tail is nearer.
 const ASIDE: f32 = 0.05;
 
@@ -96,7 +96,7 @@ impl Confidence {
         if degrees > MOST_OFF {
             return self.doubt(OFF, format!("bones of `{clip}` are {degrees:.0}° off on average"));
         }
-        let worst = direction.limbs.iter().max_by(|a, b| a.mean.total_cmp(&b.mean));
+        let worst = direction.limbs.iter().chain(&direction.trunk).max_by(|a, b| a.mean.total_cmp(&b.mean));
         if let Some(BoneError { bone, mean, .. }) = worst.filter(|worst| worst.mean > MOST_BONE_OFF) {
             self.doubt(BONE_OFF, format!("`{bone}` of `{clip}` is {mean:.0}° off on average"));
         }

@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::confidence::{Confidence, LEAST_CONFIDENCE};
+use super::confidence::{Confidence, LEAST_CONFIDENCE, MOST_BONE_OFF};
 use super::feet::{FeetOptions, FeetReport, plant, plant_loop};
 use super::joint_map::{JointMap, JointMapReport, Overrides};
 use super::reference_pose::{self, ReferenceFrame};
-use super::solve::{DirectionError, Jump, Retargeter, TransferOptions, direction_error_from, worst_jump};
+use super::solve::{
+    BoneError, DirectionError, Jump, Retargeter, TransferOptions, direction_error_from, worst_jump,
+};
 use crate::clip::{Clip, in_place, looped, resample};
 use crate::math::RigidTransform;
 use crate::pose::limits::{JointLimits, TwistHistory};
@@ -92,6 +94,22 @@ pub struct RetargetReport {
 }
 
 impl RetargetReport {
+    /// What a user may want to know of a motion that was accepted, one sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if !self.joints.unmatched.is_empty() {
+            notes.push(format!("unmatched joints: {}", self.joints.unmatched.join(", ")));
+        }
+        for clip in &self.clips {
+            // Hands and feet say nothing of whose motion it is, as joint limits and the floor hold them back.
+            let parts = clip.direction.ends.iter().chain(&clip.direction.rolls);
+            for BoneError { bone, mean, .. } in parts.filter(|part| part.mean > MOST_BONE_OFF) {
+                notes.push(format!("`{bone}` of `{}` is {mean:.0}° off on average", clip.name));
+            }
+        }
+        notes
+    }
+
     /// Refuses a motion that is more likely no person's, unless these options force it or name joints. Retargeting does not do so
     /// by itself, as the report says what was found.
     ///

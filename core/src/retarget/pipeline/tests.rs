@@ -104,21 +104,39 @@ fn in_place_the_body_stays_where_it_starts() {
     }
 }
 
-#[test]
-fn without_limits_a_wrist_bends_as_far_as_the_source() {
-    let (motion, target) = limp();
-    let source = &motion;
-    let hand = source.skeleton().find("hand_l").unwrap();
+/// The clip with another rotation of a joint on top.
+fn bent(source: &Clip, joint: &str, by: Rotation) -> Clip {
+    let joint = source.skeleton().find(joint).unwrap();
     let rotations = (0..source.frame_count())
         .flat_map(|frame| {
             let mut pose = source.pose(frame);
-            pose.locals[hand].rotation *= Rotation::from_rotation_z(2.4);
+            pose.locals[joint].rotation *= by;
             pose.locals.into_iter().map(|local| local.rotation)
         })
         .collect();
     let tracks = source.translations().to_vec();
-    let bent = Clip::new("bent".into(), source.skeleton().clone(), 30.0, rotations, tracks).unwrap();
-    let motion = bent;
+    Clip::new("bent".into(), source.skeleton().clone(), 30.0, rotations, tracks).unwrap()
+}
+
+#[test]
+fn hands_and_feet_that_limits_hold_back_are_noted() {
+    let (source, target) = limp();
+    let notes = |clip: &Clip, limits: bool| {
+        let options = RetargetOptions { limits, feet: None, ..RetargetOptions::default() };
+        retarget(std::slice::from_ref(clip), &target, &options).unwrap().1.notes()
+    };
+    assert_eq!(notes(&source, true), Vec::<String>::new());
+    // About the bone, so that the foot points where it pointed.
+    let rolled = bent(&source, "foot_l", Rotation::from_rotation_y(1.5));
+    let told = notes(&rolled, true);
+    assert!(told.len() == 1 && told[0].starts_with("`sole_l` of `bent` is "), "{told:?}");
+    assert_eq!(notes(&rolled, false), Vec::<String>::new());
+}
+
+#[test]
+fn without_limits_a_wrist_bends_as_far_as_the_source() {
+    let (source, target) = limp();
+    let motion = bent(&source, "hand_l", Rotation::from_rotation_z(2.4));
     let (_, kept) = run(&motion, &target, &RetargetOptions::default());
     assert!(kept.beyond_limits < 5.0, "{kept:?}");
     let (clip, free) =
