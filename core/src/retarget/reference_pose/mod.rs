@@ -31,7 +31,8 @@ const ASKEW: f32 = 1.05;
 const SAVED: f32 = 0.0175;
 /// From where on a foot that is turned against such a frame is lifted or lowered, radians (10°).
 const LIFTED: f32 = 0.175;
-/// How much straighter a frame must stand to take the place of a rest pose that is a frame itself, radians (5°).
+/// How much straighter a frame must stand to take the place of a rest pose that is a frame itself, radians (5°); twice as much
+/// in trunk and head where somebody stands in that.
 const STRAIGHTER: f32 = 0.087;
 /// Mean cosine between the front that names tell and where feet or knees point, from which these contradict each other.
 const BACKWARDS: f32 = -0.4;
@@ -112,9 +113,14 @@ pub(super) fn find(map: &JointMap, sources: &[&Clip], force: bool) -> Result<Ref
         return if is_person || force { Ok(own) } else { Err(no_person(map)) };
     };
     let askew = || is_askew(map, (&own.model, &best.model), at_rest.as_ref());
-    // A motion may well begin in its rest pose: that is doubtful only if nobody stands so.
-    let bent =
-        |stance: &Stance| stance.upright() != Upright::Straight && stance.strain() > best.strain + STRAIGHTER;
+    // A motion may well begin in its rest pose: that is doubtful if nobody stands so, or only somebody who moves.
+    let bent = |stance: &Stance| match stance.upright() {
+        Upright::Straight => {
+            stance.upper_strain() > best.upper_strain + 2.0 * STRAIGHTER
+                && !stance::is_symmetric(map, &own.model)
+        }
+        _ => stance.strain() > best.strain + STRAIGHTER,
+    };
     let saved = || motion.holds_rest && at_rest.as_ref().is_none_or(bent);
     let lifted = motion.lifts_feet && !motion.holds_rest;
     if is_person && !askew() && !saved() && !lifted {
@@ -153,6 +159,7 @@ fn is_askew(
 struct Standing {
     frame: ReferenceFrame,
     strain: f32,
+    upper_strain: f32,
     model: Vec<RigidTransform>,
 }
 
@@ -193,7 +200,8 @@ impl Motion {
                 let better = motion.straightest.as_ref().is_none_or(|best| strain < best.strain - 1e-4);
                 if better && stance.upright() == Upright::Straight {
                     let frame = ReferenceFrame { clip: clip.name().to_owned(), frame };
-                    motion.straightest = Some(Standing { frame, strain, model: model.clone() });
+                    let upper_strain = stance.upper_strain();
+                    motion.straightest = Some(Standing { frame, strain, upper_strain, model: model.clone() });
                 }
             }
         }

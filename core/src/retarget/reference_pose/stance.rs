@@ -10,6 +10,10 @@ use crate::skeleton::{RigJoint, SidedJoint, Skeleton};
 /// Bends of a knee below this do not tell to which side it bends, radians (20°).
 const BENT: f32 = 0.35;
 
+/// Left and right are no mirror images if a joint is farther from where the other would be than this part of the height from
+/// hips to shoulders.
+const ASYMMETRIC: f32 = 0.05;
+
 /// Limits of the angles of a body that stands, radians.
 struct Limits {
     /// Of thighs and calves forwards or backwards.
@@ -97,6 +101,19 @@ pub(super) fn is_person(map: &JointMap, skeleton: &Skeleton, model: &[RigidTrans
         Some(model.iter().map(|joint| righted.then(*joint)).collect::<Vec<_>>())
     };
     stands(model) || lies().is_some_and(|righted| stands(&righted))
+}
+
+/// Whether left and right are mirror images, as in poses that are made to rest in and hardly in frames of a motion.
+pub(super) fn is_symmetric(map: &JointMap, model: &[RigidTransform]) -> bool {
+    use SidedJoint as J;
+    let Some((axes, hips)) = axes(map, model).zip(both(map, model, J::Thigh)) else { return false };
+    let middle = (hips[0] + hips[1]) / 2.0;
+    let Some(height) = top(map, model).map(|top| top.distance(middle)) else { return false };
+    let limbs = [J::Calf, J::Foot, J::Upperarm, J::Lowerarm, J::Hand].into_iter();
+    limbs.filter_map(|joint| both(map, model, joint)).all(|places| {
+        let [left, right] = places.map(|place| axes.conjugate() * (place - middle));
+        left.distance(right * Vec3::new(-1.0, 1.0, 1.0)) < ASYMMETRIC * height
+    })
 }
 
 fn angle(a: Vec3, b: Vec3) -> f32 {
@@ -206,9 +223,13 @@ impl Stance {
     /// How far the body is from standing straight: a mean of its angles, radians. Legs may be apart.
     pub(super) fn strain(&self) -> f32 {
         let forwards = self.legs.iter().flatten().map(|[forwards, _]| *forwards).sum::<f32>();
-        let count = 2.0 * self.legs.len() as f32;
+        forwards / (2.0 * self.legs.len() as f32) + self.upper_strain()
+    }
+
+    /// The part of trunk and head in [`strain`](Self::strain).
+    pub(super) fn upper_strain(&self) -> f32 {
         let tilts = self.tilts.iter().sum::<f32>() / self.tilts.len().max(1) as f32;
-        forwards / count + self.trunk + self.head / 2.0 + tilts + self.wrung / 2.0
+        self.trunk + self.head / 2.0 + tilts + self.wrung / 2.0
     }
 
     /// Cosine between the front by left and right, and where the toes point.

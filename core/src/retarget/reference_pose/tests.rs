@@ -224,3 +224,32 @@ fn a_rest_pose_that_a_clip_goes_through_stays_the_reference() {
         }
     }
 }
+
+/// Somebody who waves and nods meanwhile; the file rests in the middle of it.
+#[test]
+fn a_rest_pose_of_somebody_who_stands_but_nods_gives_way_to_a_straight_frame() {
+    let body = bodies().swap_remove(0).1;
+    let wave = builtin("wave", &body).unwrap();
+    let (head, frames) = (body.find("head").unwrap(), wave.frame_count());
+    let poses: Vec<Vec<RigidTransform>> = (0..frames)
+        .map(|frame| {
+            let mut locals = wave.pose(frame).locals;
+            let share = frame as f32 / (frames - 1) as f32;
+            let nod = 0.7 * libm::sinf(share * std::f32::consts::PI);
+            locals[head].rotation *= Rotation::from_rotation_x(nod);
+            locals
+        })
+        .collect();
+    let resting_in = |rest: Vec<RigidTransform>| {
+        let skeleton = Skeleton::from_rest_pose(body.tree().clone(), rest, body.ends().to_vec()).unwrap();
+        let rotations = poses.iter().flatten().map(|local| local.rotation).collect();
+        let tracks = wave.translations().to_vec();
+        Clip::new("nod".into(), Arc::new(skeleton), wave.frames_per_second(), rotations, tracks).unwrap()
+    };
+    let (wanted, reference) = run(&resting_in(body.rest_pose().locals.clone()), &body);
+    assert_eq!(reference, None);
+    let (found, reference) = run(&resting_in(poses[frames / 2].clone()), &body);
+    assert!(reference.is_some(), "a head that hangs is no rest");
+    let (degrees, joint) = apart(&wanted, &found, &JOINTS);
+    assert!(degrees < 5.0, "{joint} is off by {degrees}°");
+}
