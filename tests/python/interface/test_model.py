@@ -1,6 +1,7 @@
 """Models, requests, the bodies that they make, jobs, and measuring."""
 
 import copy
+import ctypes
 import json
 import math
 import pickle
@@ -9,6 +10,7 @@ import anthronet
 import numpy as np
 import pytest
 from anthronet import _native
+from anthronet._library import call, described, lib
 from support import ROOT, raised_by, raises
 
 
@@ -230,6 +232,10 @@ def test_measuring_files(woman, model, tmp_path):
     found = model.measure_file(file)
     assert found.lod == 0 and abs(found.measures["height"] - 1.70) < 1e-4
     assert found.warnings == () and abs(found.mass_kg - woman.mass_kg) < 0.01
+    metres, numbers = (ctypes.c_double * len(anthronet.MEASURES))(), described(_native.Measured)
+    path = str(file).encode()
+    call(lib.anthronet_measure_file, model._open, path, len(path), metres, len(metres), ctypes.byref(numbers))
+    assert list(metres) == list(found.measures.values()) and numbers.mass_kg == found.mass_kg
     large = tmp_path / "centimetres.obj"
     woman.save(large)
     lines = (line.split() for line in large.read_text(encoding="utf-8").splitlines())
