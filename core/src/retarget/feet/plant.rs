@@ -20,13 +20,13 @@ use crate::pose::limits::JointLimits;
 use crate::skeleton::{Pose, RigJoint, Skeleton, model_from_some_joints, with_ancestors};
 
 /// Softness of inverse kinematics, see [`Reach::softness`]; the pelvis is lowered so that feet on the floor stay out of it.
-const SOFTNESS: f32 = 0.001;
+const SOFTNESS: f32 = 0.0005;
 /// Vertical correction that is left out, metres: to shorten an almost straight leg by 4 mm takes 10° of knee flexion.
 const IGNORED_RISE: f32 = 0.004;
 /// How far ankles and toes may exceed their limits so that a foot stays in place, radians (4°).
 const LIMIT_MARGIN: f32 = 0.07;
-/// Highest speed at which toes bend and straighten, radians per second (600°).
-const TOE_SPEED: f32 = 10.5;
+/// Highest speed at which toes bend and straighten, radians per second (430°).
+const TOE_SPEED: f32 = 7.5;
 /// How much deeper than its middle an edge of the sole may be in the floor, metres, as skin yields.
 const EDGE_DEPTH: f32 = 0.006;
 /// Iterations that take back the remaining slide. The first moves feet by up to 2 cm, which changes how ankle and toes bend,
