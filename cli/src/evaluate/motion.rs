@@ -20,19 +20,6 @@ use super::table::{MotionTable, Row};
 use crate::failure::{Failure, Result};
 use crate::terminal::bar;
 
-/// How contacts are found whose slide is measured: on the motion before feet are planted, and not by the options of planting,
-/// so that the number does not fall because planting overlooks a contact.
-const CONTACTS: feet::FeetOptions = feet::FeetOptions {
-    height: 0.03,
-    speed: 0.25,
-    shortest: 0.1,
-    stray: 0.08,
-    blend: 0.2,
-    depth: 0.005,
-    pelvis_drop: 0.12,
-    find_floor: true,
-};
-
 /// Statures of the bodies, metres: from the first to the last in even steps.
 const STATURES: [f64; 2] = [1.49, 1.99];
 
@@ -94,6 +81,18 @@ fn bodies_of(count: usize) -> Result<Vec<Target>> {
         .collect()
 }
 
+/// How contacts are found whose slide is measured: on the motion before feet are planted, and not by the options of planting,
+/// so that the number does not fall because planting overlooks a contact.
+fn contact_options() -> feet::FeetOptions {
+    feet::FeetOptions {
+        height: 0.03,
+        speed: 0.25,
+        shortest: 0.1,
+        stray: 0.08,
+        ..feet::FeetOptions::default()
+    }
+}
+
 fn row(path: &Path, motion: &Motion, bodies: &[Target]) -> Result<Row> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let mut row = Row::new(name);
@@ -107,7 +106,7 @@ fn row(path: &Path, motion: &Motion, bodies: &[Target]) -> Result<Row> {
         let share = 1.0 / (bodies.len() * report.clips.len()) as f64;
         for ((clip, unplanted), quality) in clips.iter().zip(&unplanted).zip(&report.clips) {
             row.add_quality(quality, share);
-            let contacts = feet::contacts(unplanted, &CONTACTS)?;
+            let contacts = feet::contacts(unplanted, &contact_options())?;
             let before = body.soles.measure(unplanted, &contacts)?;
             let after = body.soles.measure(clip, &feet::Contacts { floor: 0.0, ..contacts.clone() })?;
             row.add_feet(&contacts, &before, &after, share);
@@ -121,7 +120,7 @@ fn builtin_row(name: &str, bodies: &[Target]) -> Result<Row> {
     for Target { skeleton, soles } in bodies {
         let clip = clip::builtin(name, skeleton)?;
         row.frames = clip.frame_count();
-        let options = feet::FeetOptions { find_floor: false, ..CONTACTS };
+        let options = feet::FeetOptions { find_floor: false, ..contact_options() };
         let contacts = feet::contacts(&clip, &options)?;
         let measured = soles.measure(&clip, &contacts)?;
         row.add_feet(&contacts, &measured, &measured, 1.0 / bodies.len() as f64);
