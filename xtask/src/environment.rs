@@ -12,7 +12,7 @@
 //! A stamp in each folder records what it was installed from; while that is unchanged nothing is installed again.
 
 use crate::tools::{self, Available, Missing};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -52,12 +52,10 @@ pub(crate) struct Environment {
     pub(crate) python: Available<PathBuf>,
     /// That Python can `import bpy`.
     pub(crate) blender: Available<()>,
-    /// Folder with `node_modules`, in which scripts have to lie, and the node program.
+    /// Folder with `node_modules` and the scripts, and the node program.
     pub(crate) node: Available<(PathBuf, PathBuf)>,
     /// The headless Godot 3.
     pub(crate) godot: Available<PathBuf>,
-    /// Compilers of C and C++ with sanitizers, valgrind and binutils.
-    pub(crate) c: Available<()>,
 }
 
 impl Environment {
@@ -96,17 +94,11 @@ impl Environment {
     }
 
     /// Node with a script of `tests`, ready for its arguments.
-    pub(crate) fn node_script(&self, script: &str) -> Result<Available<Command>> {
-        let (home, program) = match &self.node {
-            Ok(found) => found,
-            Err(reason) => return Ok(Err(reason.clone())),
-        };
-        // Node looks for packages from the script's own folder upwards.
-        let copy = home.join(script);
-        tools::write(&copy, &tools::read(&tools::root().join("tests").join(script))?)?;
+    pub(crate) fn node_script(&self, script: &str) -> Available<Command> {
+        let (home, program) = self.node.clone()?;
         let mut command = Command::new(program);
-        command.arg(copy);
-        Ok(Ok(command))
+        command.arg(home.join(script));
+        Ok(command)
     }
 }
 
@@ -124,7 +116,6 @@ pub(crate) fn prepare() -> Result<Environment> {
                 blender: Err(reason.clone()),
                 node: Err(reason),
                 godot: godot(),
-                c: c_programs(),
             });
         }
     };
@@ -134,7 +125,7 @@ pub(crate) fn prepare() -> Result<Environment> {
         (major, minor) => Err(Missing(format!("bpy 5.0.1 needs Python 3.11, found {major}.{minor}"))),
     };
     let node = node_packages(&home.join("node"), &python)?;
-    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot(), c: c_programs() })
+    Ok(Environment { python: Ok(python), blender, node: Ok(node), godot: godot() })
 }
 
 /// Python 3.11 if there is one, which Blender needs, else the first new enough for the pinned packages.
@@ -287,7 +278,7 @@ fn godot() -> Available<PathBuf> {
     Ok(program.into())
 }
 
-/// Compilers, valgrind and binutils, installed where that is needed and allowed.
+/// Compilers of C and C++ with sanitizers, valgrind and binutils, installed where that is needed and allowed.
 pub(crate) fn c_programs() -> Available<()> {
     system_programs("the programs in C are built and checked", C_PROGRAMS, C_PACKAGES)
 }
@@ -336,6 +327,19 @@ fn node_packages(folder: &Path, python: &Path) -> Result<(PathBuf, PathBuf)> {
             "--loglevel=error",
         ]))
     })?;
+    // Node looks for packages from the script's own folder upwards.
+    for entry in
+        std::fs::read_dir(&tests).with_context(|| format!("{}: cannot read", tests.display()))?.flatten()
+    {
+        let (script, copy) = (entry.path(), folder.join(entry.file_name()));
+        if script.extension().is_some_and(|extension| extension == "mjs") {
+            let text = tools::read(&script)?;
+            // Parts of the tests run side by side, none of which shall rewrite what another is reading.
+            if std::fs::read_to_string(&copy).ok().as_ref() != Some(&text) {
+                tools::write(&copy, &text)?;
+            }
+        }
+    }
     Ok((folder.to_path_buf(), node))
 }
 

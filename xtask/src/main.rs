@@ -43,6 +43,9 @@ enum Verb {
         /// Only this part
         #[arg(long, value_enum)]
         only: Option<test::Part>,
+        /// What the part uses is there already: `test` runs itself so, for every part of the cross-boundary tests
+        #[arg(long, hide = true, requires = "only")]
+        prepared: bool,
     },
     /// Train model/anthronet.safetensors from scratch; arguments are passed to `anthronet train generator`
     Train {
@@ -75,7 +78,7 @@ enum Verb {
 fn main() -> ExitCode {
     let done = match Arguments::parse().verb {
         Verb::Check => check::run(),
-        Verb::Test { only } => test::run(only),
+        Verb::Test { only, prepared } => test::run(only, prepared),
         Verb::Train { rest } => train::run(&rest),
         Verb::Bench { rest } => bench::run(&rest),
         Verb::Package { kind } => package::run(kind),

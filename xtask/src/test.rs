@@ -3,6 +3,7 @@
 use crate::tools::{self, cargo};
 use crate::{check, hosts};
 use anyhow::{Context as _, Result, anyhow};
+use clap::ValueEnum as _;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -16,6 +17,10 @@ pub(crate) enum Part {
     Rust,
     /// Cross-boundary tests: the files in third-party programs
     Hosts,
+    /// What those use: built as it is released, packed, installed
+    Release,
+    /// Of those, only files of the command: validators, viewers, other tools
+    Files,
     /// Of those, only the programs that use the C ABI
     C,
     /// Of those, only the package for C++
@@ -28,6 +33,13 @@ pub(crate) enum Part {
     Blender,
     /// Of those, only retargeting of motion files to bodies
     Motion,
+}
+
+impl Part {
+    /// The name by which `--only` takes it.
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
 }
 
 /// Runs `cargo test` and counts the tests that print `skipped NAME: why`, which cargo counts as passed.
@@ -56,41 +68,48 @@ fn rust_tests(command: &mut Command) -> Result<()> {
     if status.success() { Ok(()) } else { Err(anyhow!("`cargo test` failed: {status}")) }
 }
 
-/// Runs the parts one after the other, all of them even when one fails.
-pub(crate) fn run(only: Option<Part>) -> Result<()> {
-    let wanted = |part| only.is_none_or(|one| one == part);
-    let mut failures = Vec::new();
-    if wanted(Part::Check) {
-        failures.extend(check::run().err());
+/// All parts, or one. `prepared`: what one of the cross-boundary tests uses is there already.
+pub(crate) fn run(only: Option<Part>, prepared: bool) -> Result<()> {
+    match only {
+        None => all(),
+        Some(Part::Check) => check::run(),
+        Some(Part::Rust) => rust(),
+        Some(Part::Hosts) => hosts::run(),
+        Some(Part::Release) => hosts::release(),
+        Some(part) => hosts::run_part(part, prepared),
     }
-    if wanted(Part::Rust) {
-        // Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that
-        // `cargo test` builds: another choice of targets has other features, and everything would be built twice.
-        let everything = ["--workspace", "--all-features"];
-        let targets = ["--lib", "--bins", "--tests", "--examples"];
-        failures.extend(tools::run(cargo("build").args(everything).args(targets)).err());
-        failures.extend(rust_tests(cargo("test").arg("--no-fail-fast").args(everything)).err());
-    }
-    if wanted(Part::Hosts) {
-        failures.extend(hosts::run().err());
-    }
-    if only == Some(Part::C) {
-        failures.extend(hosts::run_c().err());
-    }
-    if only == Some(Part::Cpp) {
-        failures.extend(hosts::run_cpp().err());
-    }
-    if only == Some(Part::Python) {
-        failures.extend(hosts::run_python().err());
-    }
-    if only == Some(Part::Unity) {
-        failures.extend(hosts::run_unity().err());
-    }
-    if only == Some(Part::Blender) {
-        failures.extend(hosts::run_blender().err());
-    }
-    if only == Some(Part::Motion) {
-        failures.extend(hosts::run_motion().err());
-    }
+}
+
+/// The parts one after the other, all of them even when one fails.
+fn all() -> Result<()> {
+    let (mut failures, mut seconds) = (Vec::new(), Vec::new());
+    let mut keep = |part: Part, run: fn() -> Result<()>| {
+        let start = Instant::now();
+        failures.extend(run().err());
+        seconds.push(format!("{} {:.1} s", part.name(), start.elapsed().as_secs_f64()));
+    };
+    // Cargo builds what is released in a folder of its own. Beside that it leaves a core idle whenever it compiles one large
+    // crate, and again while the last tests run.
+    hosts::beside(Part::Release, || {
+        keep(Part::Check, check::run);
+        keep(Part::Rust, rust);
+    });
+    // If the release failed, this makes it again and says why.
+    keep(Part::Hosts, hosts::run);
+    println!("{}", seconds.join(", "));
     tools::all_succeeded(&failures)
+}
+
+/// Unit, property and integration tests of the workspace.
+fn rust() -> Result<()> {
+    // Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that
+    // `cargo test` builds: another choice of targets has other features, and everything would be built twice.
+    let targets = ["--lib", "--bins", "--tests", "--examples"];
+    let steps = [
+        tools::run(cargo("build").args(tools::EVERYTHING).args(targets)),
+        rust_tests(cargo("test").arg("--no-fail-fast").args(tools::EVERYTHING)),
+        // Built over what `cargo xtask` itself was built over; with the features of all others that would be built twice.
+        rust_tests(cargo("test").arg("--no-fail-fast").args(["--package", "xtask"])),
+    ];
+    tools::all_succeeded(&steps.into_iter().filter_map(Result::err).collect::<Vec<_>>())
 }

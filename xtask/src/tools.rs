@@ -39,6 +39,9 @@ pub(crate) fn target() -> PathBuf {
     }
 }
 
+/// What is tested with cargo, but for `xtask`: with the same features, so that it is built once.
+pub(crate) const EVERYTHING: [&str; 4] = ["--workspace", "--exclude", "xtask", "--all-features"];
+
 /// A cargo command for any supported toolchain that never changes `Cargo.lock`.
 pub(crate) fn cargo(verb: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
@@ -159,6 +162,11 @@ pub(crate) fn copy_except(from: &Path, to: &Path, names: &[&str]) -> Result<()> 
 pub(crate) fn command_line() -> Result<PathBuf> {
     // The same arguments as the alias `cargo anthronet`, so that both share one build.
     run(cargo("build").args(["--release", "--package", "anthronet-cli", "--bin", "anthronet"]))?;
-    let path = target().join("release").join(format!("anthronet{}", std::env::consts::EXE_SUFFIX));
+    let path = command_path();
     if path.is_file() { Ok(path) } else { Err(anyhow!("{}: not there after a build", path.display())) }
+}
+
+/// Where the released command is once it is built.
+pub(crate) fn command_path() -> PathBuf {
+    target().join("release").join(format!("anthronet{}", std::env::consts::EXE_SUFFIX))
 }

@@ -36,13 +36,13 @@ pub(crate) fn run(
     let [plain, compressed, figure] = made.as_slice() else { return Ok(()) };
     same_again(anthronet, plain, tally);
 
-    match environment.node_script("validate.mjs")? {
+    match environment.node_script("validate.mjs") {
         Ok(mut command) => {
             tally.script("Khronos glTF validator, animations", command.args([plain, compressed, figure]));
         }
         Err(reason) => tally.skip("Khronos glTF validator, animations", &reason),
     }
-    match environment.node_script("vrm.mjs")? {
+    match environment.node_script("vrm.mjs") {
         Ok(mut command) => tally.script("three-vrm", command.arg(figure)),
         Err(reason) => tally.skip("three-vrm", &reason),
     }
@@ -75,7 +75,7 @@ fn same_again(anthronet: &Path, file: &Path, tally: &mut Tally) {
 fn in_viewers(environment: &Environment, plain: &Path, compressed: &Path, tally: &mut Tally) -> Result<()> {
     for file in [plain, compressed] {
         let name = format!("three.js plays {}", file.file_name().unwrap_or_default().display());
-        match environment.node_script("animation_threejs.mjs")? {
+        match environment.node_script("animation_threejs.mjs") {
             Ok(mut command) => tally.script(&name, command.arg(file).arg(plain)),
             Err(reason) => tally.skip(&name, &reason),
         }

@@ -2,7 +2,7 @@
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::package::package_blender;
+use crate::package::{package_blender, package_python, wheel};
 use crate::tools::{self, Available};
 use anyhow::Result;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub(crate) fn run(
     folder: &Path,
     tally: &mut Tally,
 ) -> Result<()> {
-    let archive = match package_blender(environment, anthronet)? {
+    let archive = match package_blender(environment, anthronet, |_| wheel())? {
         Ok(archive) => archive,
         Err(reason) => {
             tally.skip("Blender extension", &reason);
@@ -45,7 +45,7 @@ pub(crate) fn picture(
     environment: &Environment,
     folder: &Path,
 ) -> Result<Available<PathBuf>> {
-    let archive = match package_blender(environment, anthronet)? {
+    let archive = match package_blender(environment, anthronet, package_python)? {
         Ok(archive) => archive,
         Err(reason) => return Ok(Err(reason)),
     };

@@ -6,6 +6,7 @@
 use super::Tally;
 use crate::bindings::HEADER;
 use crate::tools::{self, Available, cargo};
+use crate::{environment, package};
 use anyhow::{Error, Result, anyhow, bail};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -54,7 +55,7 @@ const GLIBC: (u32, u32) = (2, 34);
 pub(crate) fn run(programs: &Available<()>, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("c");
     tools::create_folder(&folder)?;
-    library()?;
+    package::library()?;
     tally.case("every function has a test in C", every_function_is_called());
     if let Err(reason) = programs {
         for name in
@@ -67,11 +68,11 @@ pub(crate) fn run(programs: &Available<()>, folder: &Path, tally: &mut Tally) ->
     let bench = Bench { folder, library: tools::target().join("release") };
     exports(&bench, tally);
     // The slow ones first.
-    let mut scripts = abuse(&bench, tally);
+    let mut scripts: Vec<_> = leaks(&bench, tally).into_iter().collect();
+    scripts.extend(abuse(&bench, tally));
     scripts.extend(values(&bench, tally));
     tally.scripts(scripts);
     same_bytes(&bench, tally)?;
-    leaks(&bench, tally);
     if let Some(program) = bench.build(tally, "speed", "gcc", &[&C99[..], &["-O2"]].concat(), &["speed.c"]) {
         tally.script("speed of the C ABI", &mut Command::new(program));
     }
@@ -209,37 +210,37 @@ const VALGRIND: [&str; 6] = [
 ];
 
 /// Many bodies made and freed: the resident set does not grow, and valgrind finds no leak after a few.
-fn leaks(bench: &Bench, tally: &mut Tally) {
+fn leaks(bench: &Bench, tally: &mut Tally) -> Option<(String, Command)> {
     let flags = [&C99[..], &["-O1", "-g"]].concat();
-    let Some(program) = bench.build(tally, "cycles", "gcc", &flags, &["cycles.c"]) else { return };
-    tally.script("generate and free", Command::new(&program).args([CYCLES, GROWTH]));
+    let program = bench.build(tally, "cycles", "gcc", &flags, &["cycles.c"])?;
     let mut few = Command::new(VALGRIND[0]);
     // Valgrind delays the reuse of freed memory, so the resident set is not limited.
     few.args(&VALGRIND[1..]).arg(&program).args(["12", "1000000"]);
     let lost = tools::output(&mut few).map(drop);
     tally.case("valgrind finds nothing lost in 12 cycles of generate and free", lost);
+    let mut many = Command::new(program);
+    many.args([CYCLES, GROWTH]);
+    Some(("generate and free".to_owned(), many))
 }
 
-/// Builds the library as it is released.
-fn library() -> Result<()> {
-    tools::run(cargo("build").args(["--release", "--package", "anthronet-ffi"]))
-}
-
-/// The same requests through the crate and through the library opened by a Rust program. Writes the lists of requests and of
-/// expected hashes for the tests in other languages to `tmp/same_bytes`.
-pub(super) fn byte_lists() -> Result<()> {
-    library()?;
+/// The same requests through the crate and through the library, as it is released, opened by a Rust program. Writes the lists
+/// of requests and of expected hashes for the tests in other languages to `tmp/same_bytes`.
+pub(super) fn byte_lists(tally: &mut Tally) {
+    let name = "same bytes: 200 requests through the crate and through the library";
+    if let Err(reason) = environment::c_programs() {
+        return tally.skip(name, reason);
+    }
     // With the packages, features and profile of the unit tests, which have built it by now; a profile other than the
     // library's makes the test stricter.
     let mut test = cargo("test");
-    test.args(["--workspace", "--all-features", "--test", "same_bytes"]);
-    tools::run(test.env("ANTHRONET_LIBRARY", tools::target().join("release/libanthronet.so")))
+    test.args(tools::EVERYTHING).args(["--test", "same_bytes"]);
+    test.env("ANTHRONET_LIBRARY", tools::target().join("release/libanthronet.so"));
+    tally.case(name, tools::run(&mut test));
 }
 
-/// The same requests through the crate, the library opened by a Rust program, C and C++.
+/// The same requests through the library opened by a Rust program under checkers, C and C++.
 fn same_bytes(bench: &Bench, tally: &mut Tally) -> Result<()> {
     let library = bench.library.join("libanthronet.so");
-    tally.case("same bytes: 200 requests through the crate and through the library", byte_lists());
     // The code is not instrumented; the sanitizer's allocator still finds double frees, leaks, and uses of freed memory by
     // libc.
     let sanitizer = tools::output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
@@ -248,7 +249,8 @@ fn same_bytes(bench: &Bench, tally: &mut Tally) -> Result<()> {
     for (checker, runner) in [("AddressSanitizer's allocator", &sanitized[..]), ("valgrind", &VALGRIND[..])] {
         let runner = runner.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(",");
         let mut test = cargo("test");
-        test.args(["--workspace", "--all-features", "--test", "same_bytes"])
+        test.args(tools::EVERYTHING)
+            .args(["--test", "same_bytes"])
             .args(["--config", &format!("target.'cfg(unix)'.runner=[{runner}]")])
             .env("ANTHRONET_LIBRARY", &library)
             .env("ANTHRONET_REQUESTS", "4");

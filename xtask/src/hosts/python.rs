@@ -23,7 +23,7 @@ pub(crate) fn run(
             return Ok(());
         }
     };
-    let wheel = match package::package_python(python) {
+    let wheel = match package::wheel() {
         Ok(wheel) => wheel,
         Err(why) => {
             tally.case("the Python wheel", Err(why));
@@ -58,7 +58,7 @@ pub(crate) fn run(
         if version == environment::PYTHONS[0] {
             case("declarations", "test_declarations.py", &[]);
             case("files", "test_files.py", &[Path::new("--anthronet"), anthronet]);
-            // Written by the tests of the C ABI, which run first.
+            // Written before the parts run.
             let same_bytes = tools::target().join("tmp/same_bytes");
             case("same bytes", "test_same_bytes.py", &[Path::new("--same-bytes"), &same_bytes]);
             speed = Some(pytest(&clean, "test_speed.py", &folder.join("speed")));

@@ -6,16 +6,14 @@ use std::process::Command;
 
 use super::tally::Tally;
 use crate::environment::Environment;
-use crate::tools::{self, cargo};
+use crate::tools;
 
 pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("skin");
-    // With the packages, features and profile of the unit tests, which have built it by now; results do not depend on it.
-    let build = ["--workspace", "--all-features", "--example", "skin_dump"];
-    let built = tools::run(cargo("build").args(build));
+    // Built before the parts run; results do not depend on the profile.
     let program =
         tools::target().join("debug/examples/skin_dump").with_extension(std::env::consts::EXE_EXTENSION);
-    if let Err(why) = built.and_then(|()| tools::run(Command::new(program).arg(&folder))) {
+    if let Err(why) = tools::run(Command::new(program).arg(&folder)) {
         tally.case("skinned arrays", Err(why));
         return Ok(());
     }
@@ -31,7 +29,7 @@ pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -
     if let Err(reason) = &environment.blender {
         tally.skip("skinning by Blender", reason);
     }
-    match environment.node_script("skin_threejs.mjs")? {
+    match environment.node_script("skin_threejs.mjs") {
         Ok(mut command) => tally.script("skinning by three.js", command.arg(&folder)),
         Err(reason) => tally.skip("skinning by three.js", &reason),
     }

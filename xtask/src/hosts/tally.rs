@@ -1,7 +1,7 @@
 //! Counting of cases, those of scripts included.
 
 use anyhow::{Result, anyhow};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,30 @@ pub(crate) struct Tally {
     pub(crate) skipped: u32,
 }
 
+/// The line that a part ends with.
+impl Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped)
+    }
+}
+
 impl Tally {
+    /// The counts of a line as [`Display`] writes it.
+    pub(crate) fn read(line: &str) -> Option<Self> {
+        let mut words = line.split(", ");
+        let mut number = |unit| words.next()?.strip_suffix(unit)?.parse().ok();
+        let tally =
+            Self { passed: number(" passed")?, failed: number(" failed")?, skipped: number(" skipped")? };
+        words.next().is_none().then_some(tally)
+    }
+
+    /// Adds the counts of a part.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.skipped += other.skipped;
+    }
+
     /// Prints and counts one case.
     pub(crate) fn case(&mut self, name: &str, result: Result<()>) {
         match result {
@@ -111,6 +134,22 @@ impl Tally {
                 self.case(name, Err(anyhow!("ran no case")));
             }
             Ok(_) => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Tally;
+
+    #[test]
+    fn counts_are_read_back() {
+        let tally = Tally { passed: 12, failed: 0, skipped: 3 };
+        let read = Tally::read(&tally.to_string()).unwrap();
+        assert_eq!((read.passed, read.failed, read.skipped), (12, 0, 3));
+        for line in ["98 passed in 2.92s", "1 passed, 0 failed", "1 passed, 0 failed, 2 skipped, 3 slow", ""]
+        {
+            assert!(Tally::read(line).is_none(), "{line}");
         }
     }
 }

@@ -1,6 +1,5 @@
 //! `cargo xtask package blender`: the extension with its wheel, built and validated by Blender's own tool.
 
-use super::python::package_python;
 use crate::environment::Environment;
 use crate::tools::{self, Available};
 use anyhow::{Context as _, Result, bail};
@@ -11,13 +10,17 @@ use std::process::Command;
 const WHEELS: &str = "wheels";
 
 /// Makes `target/dist/anthronet-blender-<version>.zip` from `blender_addon`, the wheel and the measures that the command
-/// lists.
-pub(crate) fn package_blender(environment: &Environment, anthronet: &Path) -> Result<Available<PathBuf>> {
+/// lists. `wheel` makes or finds the wheel, given a Python.
+pub(crate) fn package_blender(
+    environment: &Environment,
+    anthronet: &Path,
+    wheel: impl FnOnce(&Path) -> Result<PathBuf>,
+) -> Result<Available<PathBuf>> {
     let python = match (&environment.python, &environment.blender) {
         (Ok(python), Ok(())) => python,
         (Err(reason), _) | (_, Err(reason)) => return Ok(Err(reason.clone())),
     };
-    let wheel = package_python(python)?;
+    let wheel = wheel(python)?;
     let source = tools::root().join("blender_addon");
     let stage = tools::target().join("dist/stage/anthronet");
     tools::remove_folder(&stage)?;

@@ -17,7 +17,7 @@ use std::process::Stdio;
 
 /// The results of building the crate.
 #[derive(Default)]
-struct Built {
+pub(crate) struct Built {
     archive: PathBuf,
     /// The folder with the generated headers.
     include: PathBuf,
@@ -27,7 +27,7 @@ struct Built {
 
 /// Builds the archive, assembles the package and returns its folder.
 pub(crate) fn package_cpp() -> Result<PathBuf> {
-    let built = build()?;
+    let built = build_cpp()?;
     let source = tools::root().join("cxx");
     let package = tools::target().join("dist/cpp");
     tools::remove_folder(&package)?;
@@ -70,7 +70,8 @@ pub(crate) fn package_cpp() -> Result<PathBuf> {
     Ok(package)
 }
 
-fn build() -> Result<Built> {
+/// Builds the archive.
+pub(crate) fn build_cpp() -> Result<Built> {
     // Cargo reports the paths of its outputs as JSON, and rustc the archive's system libraries in a note; cargo repeats both
     // when everything is up to date.
     let mut command = cargo("rustc");

@@ -6,8 +6,8 @@ mod python;
 mod unity;
 
 pub(crate) use blender::package_blender;
-pub(crate) use cpp::package_cpp;
-pub(crate) use python::{library, package_python};
+pub(crate) use cpp::{build_cpp, package_cpp};
+pub(crate) use python::{library, package_python, wheel};
 pub(crate) use unity::{package_unity, packed_library};
 
 use crate::environment;
@@ -31,7 +31,7 @@ pub(crate) fn run(kind: Kind) -> Result<()> {
     let made = match kind {
         Kind::Python => package_python(&environment::python()?)?,
         Kind::Cpp => package_cpp()?,
-        Kind::Blender => package_blender(&environment::prepare()?, &tools::command_line()?)??,
+        Kind::Blender => package_blender(&environment::prepare()?, &tools::command_line()?, package_python)??,
         Kind::Unity => package_unity()?,
     };
     println!("{}", made.display());

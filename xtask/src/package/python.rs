@@ -17,24 +17,32 @@ pub(crate) fn library() -> Result<PathBuf> {
 pub(crate) fn package_python(python: &Path) -> Result<PathBuf> {
     library()?;
     let dist = tools::target().join("dist");
-    let wheels = || -> Result<Vec<PathBuf>> {
-        let entries = std::fs::read_dir(&dist).into_iter().flatten().flatten().map(|entry| entry.path());
-        let ours = |path: &PathBuf| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with("anthronet-") && name.ends_with(".whl")
-        };
-        Ok(entries.filter(ours).collect())
-    };
     // Wheels of older versions could be mistaken for this one.
-    for old in wheels()? {
+    for old in wheels(&dist) {
         std::fs::remove_file(&old).with_context(|| format!("{}: cannot remove", old.display()))?;
     }
     let pip = ["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--wheel-dir"];
     let mut command = Command::new(python);
     command.env_remove("ANTHRONET_LIBRARY").args(pip).arg(&dist).arg(tools::root().join("python"));
     tools::run(&mut command)?;
-    match wheels()?.as_slice() {
+    wheel()
+}
+
+/// The wheel that has been made.
+pub(crate) fn wheel() -> Result<PathBuf> {
+    let dist = tools::target().join("dist");
+    match wheels(&dist).as_slice() {
         [wheel] => Ok(wheel.clone()),
         found => Err(anyhow!("{}: expected one wheel after pip, found {}", dist.display(), found.len())),
     }
+}
+
+/// Our wheels in a folder.
+fn wheels(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let ours = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("anthronet-") && name.ends_with(".whl")
+    };
+    entries.filter(ours).collect()
 }

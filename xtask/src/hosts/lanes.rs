@@ -1,0 +1,147 @@
+//! Parts of the tests side by side: each in a process of its own, whose output is shown whole when it ends.
+
+use super::tally::Tally;
+use crate::test::Part;
+use crate::tools;
+use anyhow::{Context as _, Result, anyhow};
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How many parts run at a time. Most use one core for most of the time, and those of C and Python all cores for some of it.
+const LANES: usize = 2;
+
+/// How a part ended.
+struct Ended {
+    status: ExitStatus,
+    took: Duration,
+    said: String,
+}
+
+/// Runs these parts in this order, and adds their counts. Their output goes to files in `folder`.
+pub(super) fn run(parts: &[Part], folder: &Path, tally: &mut Tally) -> Result<()> {
+    tools::create_folder(folder)?;
+    let program = std::env::current_exe().context("the path of this program")?;
+    let slots: Vec<_> = parts.iter().map(|_| Mutex::new(None)).collect();
+    let queue = Mutex::new(parts.iter().zip(&slots));
+    let start = Instant::now();
+    let lane = || {
+        loop {
+            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((part, slot)) = next else { break };
+            let name = part.name();
+            println!("== {name} begins; alone: cargo xtask test --only {name}");
+            let ended = run_one(&program, &name, &folder.join(&name).with_extension("txt"));
+            if let Ok(ended) = &ended {
+                show(&name, ended);
+            }
+            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(ended);
+        }
+    };
+    std::thread::scope(|scope| {
+        let lanes: Vec<_> = (0..LANES).map(|_| scope.spawn(lane)).collect();
+        for lane in lanes {
+            // The part at which a lane panics has no outcome, which is a failure; the other lane goes on.
+            let _ = lane.join();
+        }
+    });
+    println!("== all parts: {:.1} s", start.elapsed().as_secs_f64());
+    for (part, slot) in parts.iter().zip(slots) {
+        let ended = slot.into_inner().unwrap_or_else(PoisonError::into_inner);
+        count(&part.name(), ended.unwrap_or_else(|| Err(anyhow!("its lane panicked"))), tally);
+    }
+    Ok(())
+}
+
+/// Does some work while a part runs, and shows that part at the end. Nobody waits for what it makes: whoever needs it makes it
+/// himself if it failed.
+pub(crate) fn beside(part: Part, work: impl FnOnce()) {
+    let name = part.name();
+    println!("== {name} begins, beside what follows; alone: cargo xtask test --only {name}");
+    let file = tools::target().join("test-env").join(&name).with_extension("txt");
+    std::thread::scope(|scope| {
+        let running = scope.spawn(|| {
+            tools::create_folder(file.parent().unwrap_or(&file))?;
+            run_one(&std::env::current_exe()?, &name, &file)
+        });
+        work();
+        match running.join().unwrap_or_else(|_| Err(anyhow!("its thread panicked"))) {
+            Ok(ended) => show(&name, &ended),
+            Err(why) => println!("== {name}: {why:#}"),
+        }
+    });
+}
+
+/// Runs one part; its output and errors go to a file in the order in which it writes them.
+fn run_one(program: &Path, name: &str, file: &PathBuf) -> Result<Ended> {
+    let cannot = || format!("{}: cannot write", file.display());
+    let output = File::create(file).with_context(cannot)?;
+    let errors = output.try_clone().with_context(cannot)?;
+    let start = Instant::now();
+    let mut command = Command::new(program);
+    command.args(["test", "--prepared", "--only", name]);
+    // The threads of numpy's BLAS yield their core in a loop while they wait for each other: beside another part every small
+    // product loses a time slice, and Blender's tests take several times as long.
+    command.env("OPENBLAS_NUM_THREADS", "1");
+    let status = command.stdin(Stdio::null()).stdout(output).stderr(errors).status();
+    let (status, took) = (status.context("did not start")?, start.elapsed());
+    let said = std::fs::read(file).with_context(|| format!("{}: cannot read", file.display()))?;
+    Ok(Ended { status, took, said: String::from_utf8_lossy(&said).into_owned() })
+}
+
+/// Prints all that a part said, in one piece.
+fn show(name: &str, ended: &Ended) {
+    let mut out = std::io::stdout().lock();
+    // As with `println!`, there is nobody to tell if nobody reads it.
+    let _ = writeln!(out, "== {name}, {:.1} s", ended.took.as_secs_f64());
+    let _ = write!(out, "{}", ended.said);
+    let _ = writeln!(out, "== end of {name}");
+}
+
+/// Adds the counts of a part, and tells its seconds and failures again, so that nobody has to search for them.
+fn count(name: &str, ended: Result<Ended>, tally: &mut Tally) {
+    let Ended { status, took, said } = match ended {
+        Ok(ended) => ended,
+        Err(why) => return tally.case(name, Err(why)),
+    };
+    let Some(counts) = said.lines().rev().find_map(Tally::read) else {
+        return tally.case(name, Err(anyhow!("broke off: {status}")));
+    };
+    println!("{name}, {:.1} s: {counts}", took.as_secs_f64());
+    for line in said.lines().filter(|line| line.starts_with("FAILED ")) {
+        println!("  {line}");
+    }
+    tally.add(&counts);
+    if !status.success() && counts.failed == 0 {
+        tally.case(name, Err(anyhow!("{status}")));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ended, Tally, count};
+    use anyhow::anyhow;
+    use std::process::Command;
+    use std::time::Duration;
+
+    #[test]
+    fn parts_without_counts_or_success_are_failed_cases() {
+        let counted = |program: &str, said: &str| {
+            let status = Command::new(program).status().unwrap();
+            let (mut tally, took) = (Tally::default(), Duration::ZERO);
+            count("part", Ok(Ended { status, took, said: said.to_owned() }), &mut tally);
+            (tally.passed, tally.failed, tally.skipped)
+        };
+        assert_eq!(counted("true", "ok a\n5 passed, 0 failed, 1 skipped\n"), (5, 0, 1));
+        assert_eq!(counted("false", "FAILED a\n5 passed, 2 failed, 1 skipped\nxtask: 2 failed\n"), (5, 2, 1));
+        assert_eq!(counted("false", "5 passed, 0 failed, 1 skipped\n"), (5, 1, 1));
+        assert_eq!(counted("false", "ok a\nthread 'main' panicked\n"), (0, 1, 0));
+        assert_eq!(counted("true", ""), (0, 1, 0));
+        let mut tally = Tally::default();
+        count("part", Err(anyhow!("did not start")), &mut tally);
+        assert_eq!((tally.passed, tally.failed), (0, 1));
+    }
+}
