@@ -244,7 +244,10 @@ fn the_shared_library_gives_the_bytes_of_the_crate() {
     assert!((1..COUNT / 4).contains(&refused), "{refused} requests are refused");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("same_bytes");
     std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("requests.jsonl"), list).unwrap();
-    std::fs::write(folder.join("sha256.txt"), hashes).unwrap();
-    std::fs::write(folder.join("unity_sha256.txt"), unity).unwrap();
+    // Whole or not at all: a host may be reading the same list of an earlier run.
+    let partial = folder.join(format!("{}.partial", std::process::id()));
+    for (name, text) in [("requests.jsonl", list), ("sha256.txt", hashes), ("unity_sha256.txt", unity)] {
+        std::fs::write(&partial, text).unwrap();
+        std::fs::rename(&partial, folder.join(name)).unwrap();
+    }
 }

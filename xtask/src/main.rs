@@ -43,7 +43,7 @@ enum Verb {
         /// Only this part
         #[arg(long, value_enum)]
         only: Option<test::Part>,
-        /// What the part uses is there already: `test` runs itself so, for every part of the cross-boundary tests
+        /// What the part uses is there already: `test` runs itself so for every part
         #[arg(long, hide = true, requires = "only")]
         prepared: bool,
     },

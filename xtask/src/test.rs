@@ -68,13 +68,14 @@ fn rust_tests(command: &mut Command) -> Result<()> {
     if status.success() { Ok(()) } else { Err(anyhow!("`cargo test` failed: {status}")) }
 }
 
-/// All parts, or one. `prepared`: what one of the cross-boundary tests uses is there already.
+/// All parts, or one. `prepared`: what the part uses is there already.
 pub(crate) fn run(only: Option<Part>, prepared: bool) -> Result<()> {
     match only {
         None => all(),
         Some(Part::Check) => check::run(),
-        Some(Part::Rust) => rust(),
-        Some(Part::Hosts) => hosts::run(),
+        Some(Part::Rust) if prepared => rust(),
+        Some(Part::Rust) => all_succeeded([build(), rust()]),
+        Some(Part::Hosts) => hosts::run(false),
         Some(Part::Release) => hosts::release(),
         Some(part) => hosts::run_part(part, prepared),
     }
@@ -82,34 +83,42 @@ pub(crate) fn run(only: Option<Part>, prepared: bool) -> Result<()> {
 
 /// The parts one after the other, all of them even when one fails.
 fn all() -> Result<()> {
-    let (mut failures, mut seconds) = (Vec::new(), Vec::new());
-    let mut keep = |part: Part, run: fn() -> Result<()>| {
+    let (mut results, mut seconds) = (Vec::new(), Vec::new());
+    let mut keep = |what: &str, run: &dyn Fn() -> Result<()>| {
         let start = Instant::now();
-        failures.extend(run().err());
-        seconds.push(format!("{} {:.1} s", part.name(), start.elapsed().as_secs_f64()));
+        results.push(run());
+        seconds.push(format!("{what} {:.1} s", start.elapsed().as_secs_f64()));
     };
     // Cargo builds what is released in a folder of its own. Beside that it leaves a core idle whenever it compiles one large
-    // crate, and again while the last tests run.
+    // crate.
     hosts::beside(Part::Release, || {
-        keep(Part::Check, check::run);
-        keep(Part::Rust, rust);
+        keep("check", &check::run);
+        keep("build", &build);
     });
-    // If the release failed, this makes it again and says why.
-    keep(Part::Hosts, hosts::run);
+    // Rust's tests, too, use one core for most of the time. If the release failed, this makes it again and says why.
+    keep("tests", &|| hosts::run(true));
     println!("{}", seconds.join(", "));
-    tools::all_succeeded(&failures)
+    all_succeeded(results)
+}
+
+fn all_succeeded(results: impl IntoIterator<Item = Result<()>>) -> Result<()> {
+    tools::all_succeeded(&results.into_iter().filter_map(Result::err).collect::<Vec<_>>())
+}
+
+/// Builds everything that the Rust tests use.
+///
+/// Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that `cargo
+/// test` builds: another choice of targets has other features, and everything would be built twice.
+fn build() -> Result<()> {
+    let targets = ["--lib", "--bins", "--tests", "--examples"];
+    tools::run(cargo("build").args(tools::EVERYTHING).args(targets))
 }
 
 /// Unit, property and integration tests of the workspace.
 fn rust() -> Result<()> {
-    // Tests open the C library as a file, which `cargo test` does not build. It is built together with everything that
-    // `cargo test` builds: another choice of targets has other features, and everything would be built twice.
-    let targets = ["--lib", "--bins", "--tests", "--examples"];
-    let steps = [
-        tools::run(cargo("build").args(tools::EVERYTHING).args(targets)),
+    all_succeeded([
         rust_tests(cargo("test").arg("--no-fail-fast").args(tools::EVERYTHING)),
         // Built over what `cargo xtask` itself was built over; with the features of all others that would be built twice.
         rust_tests(cargo("test").arg("--no-fail-fast").args(["--package", "xtask"])),
-    ];
-    tools::all_succeeded(&steps.into_iter().filter_map(Result::err).collect::<Vec<_>>())
+    ])
 }

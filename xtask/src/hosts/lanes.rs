@@ -1,4 +1,4 @@
-//! Parts of the tests side by side: each in a process of its own, whose output is shown whole when it ends.
+//! Parts of the tests side by side, each in a process of its own, whose output is shown whole when it ends.
 
 use super::tally::Tally;
 use crate::test::Part;
@@ -51,7 +51,7 @@ pub(super) fn run(parts: &[Part], folder: &Path, tally: &mut Tally) -> Result<()
     println!("== all parts: {:.1} s", start.elapsed().as_secs_f64());
     for (part, slot) in parts.iter().zip(slots) {
         let ended = slot.into_inner().unwrap_or_else(PoisonError::into_inner);
-        count(&part.name(), ended.unwrap_or_else(|| Err(anyhow!("its lane panicked"))), tally);
+        count(*part, ended.unwrap_or_else(|| Err(anyhow!("its lane panicked"))), tally);
     }
     Ok(())
 }
@@ -102,46 +102,61 @@ fn show(name: &str, ended: &Ended) {
 }
 
 /// Adds the counts of a part, and tells its seconds and failures again, so that nobody has to search for them.
-fn count(name: &str, ended: Result<Ended>, tally: &mut Tally) {
+fn count(part: Part, ended: Result<Ended>, tally: &mut Tally) {
+    let name = part.name();
     let Ended { status, took, said } = match ended {
         Ok(ended) => ended,
-        Err(why) => return tally.case(name, Err(why)),
+        Err(why) => return tally.case(&name, Err(why)),
     };
-    let Some(counts) = said.lines().rev().find_map(Tally::read) else {
-        return tally.case(name, Err(anyhow!("broke off: {status}")));
-    };
-    println!("{name}, {:.1} s: {counts}", took.as_secs_f64());
-    for line in said.lines().filter(|line| line.starts_with("FAILED ")) {
+    let counts = said.lines().rev().find_map(Tally::read);
+    let counted = counts.as_ref().map_or_else(String::new, |counts| format!(": {counts}"));
+    println!("{name}, {:.1} s{counted}", took.as_secs_f64());
+    let failed = |line: &str| line.starts_with("FAILED ") || line.ends_with(" ... FAILED");
+    for line in said.lines().filter(|line| failed(line)) {
         println!("  {line}");
     }
-    tally.add(&counts);
-    if !status.success() && counts.failed == 0 {
-        tally.case(name, Err(anyhow!("{status}")));
+    // Cargo counts the Rust tests, and says so in many lines.
+    let ended = status.success() && (counts.is_some() || part == Part::Rust);
+    let told = counts.as_ref().is_some_and(|counts| counts.failed > 0);
+    if let Some(counts) = counts {
+        tally.add(&counts);
+    }
+    if !ended && !told {
+        let last = said.lines().next_back().unwrap_or("it said nothing");
+        tally.case(&name, Err(anyhow!("broke off: {status}: {last}")));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Ended, Tally, count};
+    use super::{Ended, Part, Tally, count};
     use anyhow::anyhow;
     use std::process::Command;
     use std::time::Duration;
 
     #[test]
     fn parts_without_counts_or_success_are_failed_cases() {
-        let counted = |program: &str, said: &str| {
+        let counted = |part, program: &str, said: &str| {
             let status = Command::new(program).status().unwrap();
             let (mut tally, took) = (Tally::default(), Duration::ZERO);
-            count("part", Ok(Ended { status, took, said: said.to_owned() }), &mut tally);
+            count(part, Ok(Ended { status, took, said: said.to_owned() }), &mut tally);
             (tally.passed, tally.failed, tally.skipped)
         };
-        assert_eq!(counted("true", "ok a\n5 passed, 0 failed, 1 skipped\n"), (5, 0, 1));
-        assert_eq!(counted("false", "FAILED a\n5 passed, 2 failed, 1 skipped\nxtask: 2 failed\n"), (5, 2, 1));
-        assert_eq!(counted("false", "5 passed, 0 failed, 1 skipped\n"), (5, 1, 1));
-        assert_eq!(counted("false", "ok a\nthread 'main' panicked\n"), (0, 1, 0));
-        assert_eq!(counted("true", ""), (0, 1, 0));
+        assert_eq!(counted(Part::C, "true", "ok a\n5 passed, 0 failed, 1 skipped\n"), (5, 0, 1));
+        assert_eq!(
+            counted(Part::C, "false", "FAILED a\n5 passed, 2 failed, 1 skipped\nxtask: 2 failed\n"),
+            (5, 2, 1)
+        );
+        assert_eq!(counted(Part::C, "false", "5 passed, 0 failed, 1 skipped\n"), (5, 1, 1));
+        assert_eq!(counted(Part::C, "false", "ok a\nthread 'main' panicked\n"), (0, 1, 0));
+        assert_eq!(counted(Part::C, "true", ""), (0, 1, 0));
+        assert_eq!(counted(Part::Rust, "true", "test result: ok. 5 passed; 0 failed\n"), (0, 0, 0));
+        assert_eq!(
+            counted(Part::Rust, "false", "test a ... FAILED\nxtask: `cargo test` failed\n"),
+            (0, 1, 0)
+        );
         let mut tally = Tally::default();
-        count("part", Err(anyhow!("did not start")), &mut tally);
+        count(Part::C, Err(anyhow!("did not start")), &mut tally);
         assert_eq!((tally.passed, tally.failed), (0, 1));
     }
 }
