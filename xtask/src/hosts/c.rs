@@ -6,7 +6,6 @@
 use super::Tally;
 use crate::bindings::HEADER;
 use crate::tools::{self, Available, cargo};
-use crate::{environment, package};
 use anyhow::{Error, Result, anyhow, bail};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -55,7 +54,6 @@ const GLIBC: (u32, u32) = (2, 34);
 pub(crate) fn run(programs: &Available<()>, folder: &Path, tally: &mut Tally) -> Result<()> {
     let folder = folder.join("c");
     tools::create_folder(&folder)?;
-    package::library()?;
     tally.case("every function has a test in C", every_function_is_called());
     if let Err(reason) = programs {
         for name in
@@ -227,9 +225,6 @@ fn leaks(bench: &Bench, tally: &mut Tally) -> Option<(String, Command)> {
 /// of requests and of expected hashes for the tests in other languages to `tmp/same_bytes`.
 pub(super) fn byte_lists(tally: &mut Tally) {
     let name = "same bytes: 200 requests through the crate and through the library";
-    if let Err(reason) = environment::c_programs() {
-        return tally.skip(name, reason);
-    }
     // With the packages, features and profile of the unit tests, which have built it by now; a profile other than the
     // library's makes the test stricter.
     let mut test = cargo("test");
