@@ -1,6 +1,6 @@
 //! Animated glTF, plain and compressed, and VRM in third-party programs.
 
-use super::Tally;
+use super::{Fixture, Tally};
 use crate::environment::Environment;
 use crate::requests;
 use crate::tools;
@@ -13,12 +13,8 @@ use std::time::{Duration, Instant};
 const GODOT_LIMIT: Duration = Duration::from_secs(120);
 
 /// The Khronos validator, numpy, three.js, three-vrm, Blender and Godot over files of `anthronet`.
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     let mut made = Vec::new();
     let clips = ["--clip", "walk", "--clip", "wave", "--clip", requests::BVH];
     for (name, arguments) in [

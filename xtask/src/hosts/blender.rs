@@ -1,5 +1,6 @@
 //! The Blender extension: packaged, installed and used in every Blender that it supports.
 
+use super::Fixture;
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::{package_blender, package_python, wheel};
@@ -11,12 +12,8 @@ use std::process::Command;
 /// The picture that the tests render into their folder.
 const PICTURE: &str = "blender_people.png";
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     let archive = match package_blender(environment, anthronet, |_| wheel())? {
         Ok(archive) => archive,
         Err(reason) => {

@@ -4,6 +4,7 @@ use anyhow::{Result, anyhow};
 use std::path::Path;
 use std::process::Command;
 
+use super::Fixture;
 use super::tally::Tally;
 use crate::environment::Environment;
 use crate::package::package_cpp;
@@ -13,12 +14,8 @@ use crate::tools;
 const REQUEST: &str =
     r#"{"sex": "male", "measures": {"height": 1.78, "chest_circumference": 1.02}, "seed": 3}"#;
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     tally.case("C++: the README's program is the compiled one", readme_is_compiled());
     let [cmake, ninja] = match ["cmake", "ninja"].map(|name| environment.program(name)) {
         [Ok(cmake), Ok(ninja)] => [cmake, ninja],

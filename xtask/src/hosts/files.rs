@@ -1,24 +1,19 @@
 //! Files of the released command: their bytes against the goldens, and the files in the Khronos validator, numpy and scipy,
 //! three.js and Blender.
 
-use super::{Tally, generate};
-use crate::environment::Environment;
+use super::{Fixture, Tally, generate};
 use crate::requests::PEOPLE;
 use crate::{bless, requests};
 use anyhow::{Context as _, Error, Result, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, folder, .. } = fixture;
     without_networks(anthronet, tally);
     same_bytes(anthronet, folder, tally)?;
     let files = files(anthronet, folder, tally);
-    in_other_programs(anthronet, environment, folder, &files, tally)
+    in_other_programs(fixture, &files, tally)
 }
 
 /// The command as users build it has no networks and says how to get them; the workspace's tests build it with networks.
@@ -97,13 +92,8 @@ fn files(anthronet: &Path, folder: &Path, tally: &mut Tally) -> Vec<PathBuf> {
 }
 
 /// The Khronos validator, numpy and scipy, three.js, Blender.
-fn in_other_programs(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    files: &[PathBuf],
-    tally: &mut Tally,
-) -> Result<()> {
+fn in_other_programs(fixture: Fixture<'_>, files: &[PathBuf], tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     match environment.node_script("validate.mjs") {
         Ok(mut command) => tally.script("Khronos glTF validator", command.args(files)),
         Err(reason) => tally.skip("Khronos glTF validator", &reason),

@@ -22,7 +22,7 @@ mod tally;
 mod unity;
 mod usd;
 
-use crate::environment;
+use crate::environment::{self, Environment};
 use crate::package;
 use crate::test::Part;
 use crate::tools::{self, Available, cargo};
@@ -32,6 +32,17 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 use tally::Tally;
+
+/// What the tests of most parts work with.
+#[derive(Clone, Copy)]
+pub(crate) struct Fixture<'a> {
+    /// The released command.
+    anthronet: &'a Path,
+    /// The other programs.
+    environment: &'a Environment,
+    /// Where to write.
+    folder: &'a Path,
+}
 
 /// The longest first, so that both lanes end at about the same time.
 const PARTS: [Part; 8] =
@@ -57,21 +68,20 @@ pub(crate) fn run_part(part: Part, prepared: bool) -> Result<()> {
         prepare(&[part], &mut tally)?;
     }
     let (anthronet, folder, tally) = (tools::command_path(), folder(), &mut tally);
+    let with = |run: &[fn(Fixture<'_>, &mut Tally) -> Result<()>], tally: &mut Tally| {
+        let environment = environment::prepare()?;
+        let fixture = Fixture { anthronet: &anthronet, environment: &environment, folder: &folder };
+        run.iter().try_for_each(|run| run(fixture, tally))
+    };
     match part {
         Part::Files => {
-            let environment = environment::prepare()?;
-            files::run(&anthronet, &environment, &folder, tally)?;
-            skin::run(&environment, &folder, tally)?;
-            animation::run(&anthronet, &environment, &folder, tally)?;
-            usd::run(&anthronet, &environment, &folder, tally)?;
-            pose::run(&anthronet, &environment, &folder, tally)?;
-            morph::run(&environment, &folder, tally)?;
+            with(&[files::run, skin::run, animation::run, usd::run, pose::run, morph::run], tally)?;
         }
+        Part::Cpp => with(&[cpp::run], tally)?,
+        Part::Python => with(&[python::run], tally)?,
+        Part::Blender => with(&[blender::run], tally)?,
         Part::C => c::run(&environment::c_programs(), &folder, tally)?,
-        Part::Cpp => cpp::run(&anthronet, &environment::prepare()?, &folder, tally)?,
-        Part::Python => python::run(&anthronet, &environment::prepare()?, &folder, tally)?,
         Part::Unity => unity::run(&folder, tally)?,
-        Part::Blender => blender::run(&anthronet, &environment::prepare()?, &folder, tally)?,
         Part::Motion => motion::run(&anthronet, tally),
         Part::Check | Part::Rust | Part::Hosts | Part::Release => {
             bail!("not one of the cross-boundary tests")

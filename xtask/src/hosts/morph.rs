@@ -1,17 +1,17 @@
 //! Morph targets in the Khronos validator, three.js, Pixar's USD and Blender.
 
 use anyhow::Result;
-use std::path::Path;
 use std::process::Command;
 
+use super::Fixture;
 use super::tally::Tally;
-use crate::environment::Environment;
 use crate::tools;
 
 /// Files of the example; no character of the library has morph targets that the command could write.
 const FILES: [&str; 5] = ["morph.glb", "morph_meshopt.glb", "morph.vrm", "morph.usda", "morph.usdc"];
 
-pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { environment, folder, .. } = fixture;
     let folder = folder.join("morph");
     // Built before the parts run.
     let program =

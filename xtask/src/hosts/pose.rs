@@ -1,11 +1,10 @@
 //! Static poses: files with joints in other programs, against the .obj of the same person and pose.
 
 use anyhow::Result;
-use std::path::Path;
 
+use super::Fixture;
 use super::generate;
 use super::tally::Tally;
-use crate::environment::Environment;
 use crate::requests::PEOPLE;
 
 /// Names of people, their poses and the extension of the file.
@@ -16,12 +15,8 @@ const FILES: [(&str, &str, &str); 4] = [
     ("thin_tall_woman", "walk@0.4", "usda"),
 ];
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     for (name, pose, extension) in FILES {
         let person =
             PEOPLE.iter().find(|person| person.name == name).map_or(&[][..], |person| person.arguments);

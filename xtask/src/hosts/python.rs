@@ -5,17 +5,14 @@ use anyhow::Result;
 use std::path::Path;
 use std::process::Command;
 
+use super::Fixture;
 use super::tally::Tally;
-use crate::environment::{self, Environment};
+use crate::environment;
 use crate::package;
 use crate::tools;
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     let python = match &environment.python {
         Ok(python) => python,
         Err(reason) => {

@@ -1,14 +1,14 @@
 //! Skinning against Blender's Armature modifier, UsdSkel, three.js, and its definition in double precision.
 
 use anyhow::Result;
-use std::path::Path;
 use std::process::Command;
 
+use super::Fixture;
 use super::tally::Tally;
-use crate::environment::Environment;
 use crate::tools;
 
-pub(crate) fn run(environment: &Environment, folder: &Path, tally: &mut Tally) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { environment, folder, .. } = fixture;
     let folder = folder.join("skin");
     // Built before the parts run; results do not depend on the profile.
     let program =

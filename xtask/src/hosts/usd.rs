@@ -3,9 +3,9 @@
 use anyhow::{Context as _, Result};
 use std::path::Path;
 
+use super::Fixture;
 use super::generate;
 use super::tally::Tally;
-use crate::environment::Environment;
 use crate::requests::{BVH, README};
 
 /// One file of every extension; quads and triangles, both numbers of influences, several clips.
@@ -15,12 +15,8 @@ const FILES: [(&str, &str, &[&str]); 3] = [
     ("triangles", "usdz", &["--lod", "2", "--clip", "range_of_motion"]),
 ];
 
-pub(crate) fn run(
-    anthronet: &Path,
-    environment: &Environment,
-    folder: &Path,
-    tally: &mut Tally,
-) -> Result<()> {
+pub(crate) fn run(fixture: Fixture<'_>, tally: &mut Tally) -> Result<()> {
+    let Fixture { anthronet, environment, folder } = fixture;
     for (name, extension, arguments) in FILES {
         let arguments = [README, arguments].concat();
         let file = folder.join(format!("usd_{name}.{extension}"));
