@@ -29,7 +29,7 @@ use std::path::Path;
 use anthronet::Body;
 use anthronet::clip::builtin;
 use anthronet::condition::{Fill, Request};
-use anthronet::format::{Format, WriteOptions, write_scene_to_bytes};
+use anthronet::format::{Format, WriteOptions, write_atomic, write_scene_to_bytes};
 use anthronet::measure::{MEASURE_COUNT, MeasureId, Sex};
 use anthronet::mesh::Lod;
 use anthronet::model::Model;
@@ -245,9 +245,7 @@ fn the_shared_library_gives_the_bytes_of_the_crate() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("same_bytes");
     std::fs::create_dir_all(&folder).unwrap();
     // Whole or not at all: a host may be reading the same list of an earlier run.
-    let partial = folder.join(format!("{}.partial", std::process::id()));
     for (name, text) in [("requests.jsonl", list), ("sha256.txt", hashes), ("unity_sha256.txt", unity)] {
-        std::fs::write(&partial, text).unwrap();
-        std::fs::rename(&partial, folder.join(name)).unwrap();
+        write_atomic(folder.join(name), text.as_bytes()).unwrap();
     }
 }

@@ -18,7 +18,7 @@ const LANES: usize = 2;
 struct Ended {
     status: ExitStatus,
     took: Duration,
-    said: String,
+    output: String,
 }
 
 /// Runs these parts in this order, and adds their counts. Their output goes to files in `folder`.
@@ -56,8 +56,8 @@ pub(super) fn run(parts: &[Part], folder: &Path, tally: &mut Tally) -> Result<()
     Ok(())
 }
 
-/// Does some work while a part runs, and shows that part at the end. Nobody waits for what it makes: whoever needs it makes it
-/// himself if it failed.
+/// Does some work while a part runs, and shows that part at the end. Nothing waits for what it makes: what needs it
+/// makes it again if it failed.
 pub(crate) fn beside(part: Part, work: impl FnOnce()) {
     let name = part.name();
     println!("== {name} begins, beside what follows; alone: cargo xtask test --only {name}");
@@ -78,51 +78,51 @@ pub(crate) fn beside(part: Part, work: impl FnOnce()) {
 /// Runs one part; its output and errors go to a file in the order in which it writes them.
 fn run_one(program: &Path, name: &str, file: &PathBuf) -> Result<Ended> {
     let cannot = || format!("{}: cannot write", file.display());
-    let output = File::create(file).with_context(cannot)?;
-    let errors = output.try_clone().with_context(cannot)?;
+    let log = File::create(file).with_context(cannot)?;
+    let errors = log.try_clone().with_context(cannot)?;
     let start = Instant::now();
     let mut command = Command::new(program);
     command.args(["test", "--prepared", "--only", name]);
     // The threads of numpy's BLAS yield their core in a loop while they wait for each other: beside another part every small
     // product loses a time slice, and Blender's tests take several times as long.
     command.env("OPENBLAS_NUM_THREADS", "1");
-    let status = command.stdin(Stdio::null()).stdout(output).stderr(errors).status();
+    let status = command.stdin(Stdio::null()).stdout(log).stderr(errors).status();
     let (status, took) = (status.context("did not start")?, start.elapsed());
-    let said = std::fs::read(file).with_context(|| format!("{}: cannot read", file.display()))?;
-    Ok(Ended { status, took, said: String::from_utf8_lossy(&said).into_owned() })
+    let output = std::fs::read(file).with_context(|| format!("{}: cannot read", file.display()))?;
+    Ok(Ended { status, took, output: String::from_utf8_lossy(&output).into_owned() })
 }
 
-/// Prints all that a part said, in one piece.
+/// Prints the output of a part in one piece.
 fn show(name: &str, ended: &Ended) {
     let mut out = std::io::stdout().lock();
-    // As with `println!`, there is nobody to tell if nobody reads it.
+    // As with `println!`, an output that nobody reads is no error.
     let _ = writeln!(out, "== {name}, {:.1} s", ended.took.as_secs_f64());
-    let _ = write!(out, "{}", ended.said);
+    let _ = write!(out, "{}", ended.output);
     let _ = writeln!(out, "== end of {name}");
 }
 
-/// Adds the counts of a part, and tells its seconds and failures again, so that nobody has to search for them.
+/// Adds the counts of a part, and repeats its seconds and failures below all output.
 fn count(part: Part, ended: Result<Ended>, tally: &mut Tally) {
     let name = part.name();
-    let Ended { status, took, said } = match ended {
+    let Ended { status, took, output } = match ended {
         Ok(ended) => ended,
         Err(why) => return tally.case(&name, Err(why)),
     };
-    let counts = said.lines().rev().find_map(Tally::read);
+    let counts = output.lines().rev().find_map(Tally::read);
     let counted = counts.as_ref().map_or_else(String::new, |counts| format!(": {counts}"));
     println!("{name}, {:.1} s{counted}", took.as_secs_f64());
     let failed = |line: &str| line.starts_with("FAILED ") || line.ends_with(" ... FAILED");
-    for line in said.lines().filter(|line| failed(line)) {
+    for line in output.lines().filter(|line| failed(line)) {
         println!("  {line}");
     }
-    // Cargo counts the Rust tests, and says so in many lines.
+    // Cargo counts the Rust tests, crate by crate.
     let ended = status.success() && (counts.is_some() || part == Part::Rust);
-    let told = counts.as_ref().is_some_and(|counts| counts.failed > 0);
+    let reported = counts.as_ref().is_some_and(|counts| counts.failed > 0);
     if let Some(counts) = counts {
         tally.add(&counts);
     }
-    if !ended && !told {
-        let last = said.lines().next_back().unwrap_or("it said nothing");
+    if !ended && !reported {
+        let last = output.lines().next_back().unwrap_or("no output");
         tally.case(&name, Err(anyhow!("broke off: {status}: {last}")));
     }
 }
@@ -136,10 +136,10 @@ mod tests {
 
     #[test]
     fn parts_without_counts_or_success_are_failed_cases() {
-        let counted = |part, program: &str, said: &str| {
+        let counted = |part, program: &str, output: &str| {
             let status = Command::new(program).status().unwrap();
             let (mut tally, took) = (Tally::default(), Duration::ZERO);
-            count(part, Ok(Ended { status, took, said: said.to_owned() }), &mut tally);
+            count(part, Ok(Ended { status, took, output: output.to_owned() }), &mut tally);
             (tally.passed, tally.failed, tally.skipped)
         };
         assert_eq!(counted(Part::C, "true", "ok a\n5 passed, 0 failed, 1 skipped\n"), (5, 0, 1));

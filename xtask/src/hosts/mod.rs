@@ -57,7 +57,7 @@ pub(crate) fn run(rust: bool) -> Result<()> {
     let start = Instant::now();
     prepare(&parts, &mut tally)?;
     println!("prepared in {:.1} s", start.elapsed().as_secs_f64());
-    lanes::run(&parts, &folder().join("said"), &mut tally)?;
+    lanes::run(&parts, &folder().join("logs"), &mut tally)?;
     close(&tally)
 }
 
@@ -68,18 +68,18 @@ pub(crate) fn run_part(part: Part, prepared: bool) -> Result<()> {
         prepare(&[part], &mut tally)?;
     }
     let (anthronet, folder, tally) = (tools::command_path(), folder(), &mut tally);
-    let with = |run: &[fn(Fixture<'_>, &mut Tally) -> Result<()>], tally: &mut Tally| {
+    let with_fixture = |tests: &[fn(Fixture<'_>, &mut Tally) -> Result<()>], tally: &mut Tally| {
         let environment = environment::prepare()?;
         let fixture = Fixture { anthronet: &anthronet, environment: &environment, folder: &folder };
-        run.iter().try_for_each(|run| run(fixture, tally))
+        tests.iter().try_for_each(|run| run(fixture, tally))
     };
     match part {
         Part::Files => {
-            with(&[files::run, skin::run, animation::run, usd::run, pose::run, morph::run], tally)?;
+            with_fixture(&[files::run, skin::run, animation::run, usd::run, pose::run, morph::run], tally)?;
         }
-        Part::Cpp => with(&[cpp::run], tally)?,
-        Part::Python => with(&[python::run], tally)?,
-        Part::Blender => with(&[blender::run], tally)?,
+        Part::Cpp => with_fixture(&[cpp::run], tally)?,
+        Part::Python => with_fixture(&[python::run], tally)?,
+        Part::Blender => with_fixture(&[blender::run], tally)?,
         Part::C => c::run(&environment::c_programs(), &folder, tally)?,
         Part::Unity => unity::run(&folder, tally)?,
         Part::Motion => motion::run(&anthronet, tally),
@@ -102,7 +102,7 @@ fn prepare(parts: &[Part], tally: &mut Tally) -> Result<()> {
     prepare_release(parts, tally)?;
     if any(&[Part::Files]) {
         // With the packages, features and profile of the unit tests, which have built them by now. If that fails the part
-        // tells it.
+        // reports it.
         let examples = ["--example", "skin_dump", "--example", "morph_dump"];
         let _ = tools::run(cargo("build").args(tools::EVERYTHING).args(examples));
     }
@@ -129,7 +129,7 @@ fn prepare_release(parts: &[Part], tally: &mut Tally) -> Result<()> {
         package::library()?;
     }
     if any(&[Part::Cpp]) {
-        // If that fails the part tells it.
+        // If that fails the part reports it.
         let _ = package::build_cpp();
     }
     // The system's packages are installed by one process at a time. The parts say why something is missing.
@@ -163,7 +163,7 @@ fn close(tally: &Tally) -> Result<()> {
     println!("{tally}");
     match tally.failed {
         0 => Ok(()),
-        n => Err(anyhow!("{n} cross-boundary tests failed")),
+        n => Err(anyhow!("{n} tests failed")),
     }
 }
 
