@@ -1,158 +1,277 @@
-//! Fits the biases of the local sliders (`sampling_bias.json`), so that the mean of every measure is the paper's.
+//! Fits the centres of the sliders (`sampling_bias.json`), so that per sex the mean of every measure that a survey has is the survey's.
 //!
 //! The mean of a measure over many bodies is nearly linear in the sliders' centres, so a few Gauss-Newton steps with one
-//! Jacobian suffice. There are more sliders than measures: of all biases that fit, the ones nearest to the present ones are
-//! chosen, which keeps proportions that were judged natural by eye.
+//! Jacobian suffice. There are more sliders than measures: of all centres that fit as well, those are chosen that bend the
+//! skin least, by the precision that sliders are drawn with ([`crate::smoothness`]). What the networks read is weighed by
+//! people's correlations: a waist a quarter of a deviation too narrow is nothing, beside exact hips and chest it is a belt.
 
-use std::collections::BTreeMap;
-
-use anthronet::measure::Definitions;
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
+use anthronet::measure::{Definition, MEASURE_COUNT, MeasureId, Sex};
+use faer::Mat;
 use rayon::prelude::*;
 
-use crate::corpus::{Corpus, Gauge, plausible};
-use crate::dataset::Bodies;
-use crate::evaluation::{NOT_MATCHED, Statistics};
-use crate::sampling::committed_biases;
+use crate::corpus::{Corpus, Gauge, Readings};
+use crate::measures::Definer;
+use crate::sampling::{Centres, Fixed, MUSCLE, WEIGHT};
+use crate::smoothness::{bounded_step, inverse};
+use crate::survey::{self, SexStatistics, Survey};
 use crate::{Error, Result};
 
-/// Target mean of [`NOT_MATCHED`] instead of the paper's, metres.
-const NATURAL_HEAD_HEIGHT: f64 = 0.231;
 /// Number of bodies that a slider's effect is measured on.
-const JACOBIAN_BODIES: u64 = 400;
-/// Number of bodies whose means are fitted; the standard errors are below 0.03 of the paper's standard deviations.
-const FITTED_BODIES: u64 = 16_000;
-const STEPS: usize = 3;
+const JACOBIAN_BODIES: u64 = 40;
+/// Number of bodies whose means are fitted; standard errors are below 0.05 of the survey's standard deviations.
+const FITTED_BODIES: u64 = 2_000;
+const STEPS: usize = 4;
 /// Step of a slider for the finite difference.
 const NUDGE: f64 = 0.1;
-/// Weight of a squared change of a slider against a squared z.
-const RELUCTANCE: f64 = 0.02;
+/// Price of the sliders against a squared deviation of one measure.
+const PRICE: f64 = 0.006;
+/// Share of independent noise in the correlations of what the networks read.
+const NOISE: f64 = 0.05;
+/// Weight of a squared deviation of what they do not read.
+const UNREAD: f64 = 0.5;
+/// Largest centre of a local slider.
+const FURTHEST: f64 = 0.6;
+/// Ranges of the medians of muscle and weight, so that both builds stay frequent, and standard deviation of their price.
+const MACROS: [[f64; 2]; 2] = [[0.4, 0.6], [0.4, 0.7]];
+const MACRO_SPREAD: f64 = 0.1;
 
-/// Fitted biases, and the statistics with them.
+/// Fitted centres, and how near the means are with them.
 pub struct Fitted {
-    /// Centre of each slider, by MakeHuman's name.
-    pub biases: BTreeMap<String, f64>,
-    /// Statistics of the bodies that they were fitted on.
-    pub statistics: Statistics,
+    /// Centres, female first.
+    pub centres: [Centres; 2],
+    /// Means of the bodies beside the survey's.
+    pub means: Vec<Mean>,
+}
+
+/// A measure of the sampled bodies beside the survey's, metres.
+#[derive(Clone, Debug)]
+pub struct Mean {
+    /// The sex.
+    pub sex: Sex,
+    /// The survey's column.
+    pub column: String,
+    /// Mean and standard deviation of the bodies.
+    pub ours: [f64; 2],
+    /// Mean and standard deviation of the people.
+    pub people: [f64; 2],
+}
+
+impl Mean {
+    /// Difference of the means in the people's standard deviations.
+    pub fn z(&self) -> f64 {
+        (self.ours[0] - self.people[0]) / self.people[1]
+    }
 }
 
 impl Fitted {
     /// The text of `sampling_bias.json`.
     pub fn to_json(&self) -> String {
-        let lines: Vec<String> =
-            self.biases.iter().map(|(name, bias)| format!(" {name:?}: {bias}")).collect();
-        format!("{{\n{}\n}}\n", lines.join(",\n"))
+        let of_sexes = Sex::ALL.iter().zip(&self.centres).map(|(sex, centres)| {
+            let lines: Vec<String> = centres.iter().map(|(name, value)| format!("  {name:?}: {value}")).collect();
+            format!(" \"{sex}\": {{\n{}\n }}", lines.join(",\n"))
+        });
+        format!("{{\n{}\n}}\n", of_sexes.collect::<Vec<_>>().join(",\n"))
     }
 }
 
-/// Fits all biases, starting from the committed ones.
+impl std::fmt::Display for Fitted {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (sex, centres) in Sex::ALL.into_iter().zip(&self.centres) {
+            let of_sex: Vec<&Mean> = self.means.iter().filter(|mean| mean.sex == sex).collect();
+            let rms = (of_sex.iter().map(|m| m.z() * m.z()).sum::<f64>() / of_sex.len() as f64).sqrt();
+            let [muscle, weight] =
+                [MUSCLE, WEIGHT].map(|name| centres.get(name).copied().unwrap_or(f64::NAN));
+            writeln!(f, "{sex}: muscle {muscle:.2}, weight {weight:.2}; metres; z in deviations of ANSUR II, rms {rms:.2}")?;
+            writeln!(f, "{:28} {:>7} {:>7} | {:>7} {:>7} | {:>6}", "column", "mean", "sd", "people", "sd", "z")?;
+            for mean in of_sex {
+                let [[a, b], [c, d]] = [mean.ours, mean.people];
+                writeln!(f, "{:28} {a:7.4} {b:7.4} | {c:7.4} {d:7.4} | {:6.2}", mean.column, mean.z())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is fitted: a column of the survey and what is read for it.
+struct Aims {
+    /// Columns that measures are, with the measures whose mean each is, then those of [`Definer::columns`].
+    columns: Vec<(String, Vec<usize>)>,
+    /// Number of columns that the networks read.
+    read: usize,
+    /// Weights of the others.
+    weights: Vec<f64>,
+}
+
+impl Aims {
+    fn new(columns: &[(Definition, f64)]) -> Self {
+        let mapped = Survey::Ansur2.mappings().into_iter().map(|mapping| {
+            let ids = anthronet::measure::expand_name(mapping.measure).unwrap_or_default();
+            (mapping.column.to_owned(), ids.into_iter().map(MeasureId::index).collect())
+        });
+        let mut all: Vec<(String, Vec<usize>)> = mapped.collect();
+        let read = all.len();
+        let further = columns.iter().enumerate();
+        all.extend(further.map(|(i, (c, _))| (c.name.clone(), vec![MEASURE_COUNT + i])));
+        Self { columns: all, read, weights: columns.iter().map(|c| c.1).collect() }
+    }
+
+    /// Weights of differences in standard deviations of the survey.
+    fn weights(&self, statistics: &SexStatistics) -> Result<Mat<f64>> {
+        let of: Vec<usize> =
+            self.columns.iter().map(|c| statistics.column(&c.0)).collect::<Result<_>>()?;
+        let deviation = |i: usize| statistics.columns[of[i]].deviation;
+        let correlations = Mat::from_fn(self.read, self.read, |i, j| {
+            let noise = if i == j { NOISE } else { 0.0 };
+            statistics.covariance(of[i], of[j]) / (deviation(i) * deviation(j)) + noise
+        });
+        let inverted = inverse(&correlations)?;
+        let n = self.columns.len();
+        Ok(Mat::from_fn(n, n, |i, j| match (i < self.read && j < self.read, i == j) {
+            (true, _) => inverted[(i, j)],
+            (false, true) => UNREAD * self.weights[i - self.read],
+            (false, false) => 0.0,
+        }))
+    }
+}
+
+/// Fits all centres from the middle of all sliders.
 ///
 /// # Errors
 /// When a slider is unknown or the equations cannot be solved.
-pub fn fit(
-    corpus: &mut Corpus,
-    definitions: &Definitions,
-    progress: &(dyn Fn(&str, u64, u64) + Sync),
-) -> Result<Fitted> {
-    let gauge = Gauge::new(definitions, &corpus.subdivision);
-    let start = committed_biases()?;
-    let total = JACOBIAN_BODIES * (start.len() as u64 + 1) + FITTED_BODIES * (STEPS as u64 + 1);
+pub fn fit(corpus: &mut Corpus, progress: &(dyn Fn(&str, u64, u64) + Sync)) -> Result<Fitted> {
+    let mirror = |v: u32| corpus.assets.mesh.mirror.get(&v).copied();
+    let landmarks = crate::landmarks::landmarks(&mirror)?;
+    let definitions = corpus.definitions()?;
+    let columns = Definer::new(corpus, &landmarks)?.columns()?;
+    let extra = corpus.with_standing(definitions.turns(), |standing| {
+        Readings::new(columns.iter().map(|c| &c.0), standing)
+    })?;
+    let aims = Aims::new(&columns);
+    let subdivision = corpus.subdivision.clone();
+    let gauge = Gauge::new(&definitions, &subdivision);
+    let extra = Gauge::of(extra, &subdivision);
+
+    let (locals, precision_of_locals) = corpus.sampler.precision();
+    let mut names: Vec<String> = locals.into_iter().map(str::to_owned).collect();
+    let of_locals = names.len();
+    names.extend([MUSCLE, WEIGHT].map(str::to_owned));
+    let precision = Mat::from_fn(names.len(), names.len(), |i, j| {
+        PRICE
+            * match (i < of_locals && j < of_locals, i == j) {
+                (true, _) => precision_of_locals[(i, j)],
+                (false, true) => 1.0 / (MACRO_SPREAD * MACRO_SPREAD),
+                (false, false) => 0.0,
+            }
+    });
+    let middle: Vec<f64> = (0..names.len()).map(|i| if i < of_locals { 0.0 } else { 0.5 }).collect();
+    let bounds: Vec<[f64; 2]> = (0..names.len())
+        .map(|i| if i < of_locals { [-FURTHEST, FURTHEST] } else { MACROS[i - of_locals].map(|m| m - 0.5) })
+        .collect();
+
+    let statistics = survey::committed()?;
+    let statistics = statistics
+        .get(Survey::Ansur2.name())
+        .ok_or_else(|| Error::Invalid("no statistics of ANSUR II".into()))?;
+    let total = 2 * (JACOBIAN_BODIES * (names.len() as u64 + 1) + FITTED_BODIES * (STEPS as u64 + 1));
     let mut done = 0;
-    let mut measure = |corpus: &mut Corpus, biases: &BTreeMap<String, f64>, bodies, people| {
-        corpus.sampler.set_biases(biases)?;
-        let statistics = statistics(corpus, &gauge, bodies, people);
-        done += bodies;
-        progress("mean measures", done, total);
-        Ok::<Statistics, Error>(statistics)
-    };
-
-    let before = misses(&measure(corpus, &start, JACOBIAN_BODIES, false)?);
-    let mut jacobian = Mat::zeros(before.nrows(), start.len());
-    for (j, name) in start.keys().enumerate() {
-        let nudged = start.iter().map(|(n, b)| (n.clone(), if n == name { b + NUDGE } else { *b })).collect();
-        let after = misses(&measure(corpus, &nudged, JACOBIAN_BODIES, false)?);
-        for i in 0..before.nrows() {
-            jacobian[(i, j)] = (after[(i, 0)] - before[(i, 0)]) / NUDGE;
+    let mut centres = [Centres::new(), Centres::new()];
+    let mut means = Vec::new();
+    for sex in Sex::ALL {
+        let people = statistics.of(sex);
+        let of_people = aims.columns.iter().map(|c| {
+            let column = &people.columns[people.column(&c.0)?];
+            Ok([column.mean, column.deviation])
+        });
+        let of_people: Vec<[f64; 2]> = of_people.collect::<Result<_>>()?;
+        let stature = &people.columns[people.column("stature")?];
+        let stature = [stature.mean, stature.deviation];
+        let weights = aims.weights(people)?;
+        let mut measure = |corpus: &mut Corpus, offsets: &[f64], bodies: u64| -> Result<Vec<[f64; 2]>> {
+            let values: Centres = names
+                .iter()
+                .zip(offsets.iter().zip(&middle))
+                .map(|(name, (offset, middle))| (name.clone(), ((middle + offset) * 1e4).round() / 1e4))
+                .collect();
+            corpus.sampler.set_centres(sex, &values)?;
+            let read = |n: u64| {
+                let fixed = Fixed { sex: Some(sex), stature: Some(stature), middle: false };
+                let points = corpus.fixed_specimen(n, fixed).points;
+                let own = gauge.read(&points);
+                let further = extra.read_all(&points);
+                let value = |i: &usize| own.get(*i).copied().unwrap_or_else(|| further[i - MEASURE_COUNT]);
+                aims.columns
+                    .iter()
+                    .map(|(_, of)| of.iter().map(value).sum::<f64>() / of.len() as f64)
+                    .collect::<Vec<f64>>()
+            };
+            let rows: Vec<Vec<f64>> = (0..bodies).into_par_iter().map(read).collect();
+            done += bodies;
+            progress("mean measures", done, total);
+            let n = bodies as f64;
+            Ok((0..aims.columns.len())
+                .map(|i| {
+                    let mean = rows.iter().map(|r| r[i]).sum::<f64>() / n;
+                    let variance = rows.iter().map(|r| (r[i] - mean) * (r[i] - mean)).sum::<f64>() / n;
+                    [mean, variance.sqrt()]
+                })
+                .collect())
+        };
+        let mut offsets = vec![0.0; names.len()];
+        let before = measure(corpus, &offsets, JACOBIAN_BODIES)?;
+        let mut jacobian = Mat::zeros(aims.columns.len(), names.len());
+        for j in 0..names.len() {
+            offsets[j] = NUDGE;
+            let after = measure(corpus, &offsets, JACOBIAN_BODIES)?;
+            offsets[j] = 0.0;
+            for (i, (a, b)) in after.iter().zip(&before).enumerate() {
+                jacobian[(i, j)] = (a[0] - b[0]) / NUDGE / of_people[i][1];
+            }
         }
-    }
-
-    let mut biases = start.clone();
-    let mut statistics = measure(corpus, &biases, FITTED_BODIES, true)?;
-    let mut change = Mat::zeros(start.len(), 1);
-    for _ in 0..STEPS {
-        change = better(&jacobian, &misses(&statistics), &change)?;
-        for ((bias, from), j) in biases.values_mut().zip(start.values()).zip(0..) {
-            *bias = ((from + change[(j, 0)]) * 1e4).round() / 1e4;
+        let mut ours = measure(corpus, &offsets, FITTED_BODIES)?;
+        for _ in 0..STEPS {
+            let residual: Vec<f64> = ours.iter().zip(&of_people).map(|(o, p)| (o[0] - p[0]) / p[1]).collect();
+            let step = bounded_step(&jacobian, &weights, &residual, &precision, &offsets, &bounds);
+            for (offset, step) in offsets.iter_mut().zip(step) {
+                *offset += step;
+            }
+            ours = measure(corpus, &offsets, FITTED_BODIES)?;
         }
-        statistics = measure(corpus, &biases, FITTED_BODIES, true)?;
+        centres[sex.index()] = names
+            .iter()
+            .zip(offsets.iter().zip(&middle))
+            .map(|(name, (offset, middle))| (name.clone(), ((middle + offset) * 1e4).round() / 1e4))
+            .collect();
+        means.extend(aims.columns.iter().zip(ours.iter().zip(&of_people)).map(|((column, _), (ours, people))| {
+            Mean { sex, column: column.clone(), ours: *ours, people: *people }
+        }));
     }
-    Ok(Fitted { biases, statistics })
-}
-
-/// The change x of all sliders with the least |m + J (x - x₀)|² + reluctance |x|², for misses m at the change x₀.
-fn better(jacobian: &Mat<f64>, misses: &Mat<f64>, so_far: &Mat<f64>) -> Result<Mat<f64>> {
-    let mut gram = jacobian * jacobian.transpose();
-    for i in 0..gram.nrows() {
-        gram[(i, i)] += RELUCTANCE;
-    }
-    let factor = gram.llt(Side::Lower).map_err(|e| Error::Invalid(format!("biases: {e:?}")))?;
-    Ok(jacobian.transpose() * factor.solve(jacobian * so_far - misses))
-}
-
-/// Difference of each mean from its target, in the paper's standard deviations.
-fn misses(statistics: &Statistics) -> Mat<f64> {
-    Mat::from_fn(statistics.measures.len(), 1, |i, _| {
-        let row = &statistics.measures[i];
-        let [mean, deviation, ..] = row.paper;
-        if row.name == NOT_MATCHED { row.z - (NATURAL_HEAD_HEIGHT - mean) / deviation } else { row.z }
-    })
-}
-
-/// Statistics of the first bodies of the corpus, optionally of the plausible ones only. A slider's effect is measured on
-/// all bodies, so that the set does not change with the slider.
-fn statistics(corpus: &Corpus, gauge: &Gauge<'_>, count: u64, people: bool) -> Statistics {
-    let drawn: Vec<_> =
-        (0..count).into_par_iter().map(|n| (n, gauge.read(&corpus.specimen(n).points))).collect();
-    let mut bodies = Bodies::default();
-    for (n, measures) in drawn.iter().filter(|(_, measures)| !people || plausible(measures)) {
-        bodies.numbers.push(*n);
-        bodies.measures.extend(measures.map(|m| m as f32));
-    }
-    Statistics::of(&[&bodies], drawn.len() - bodies.len())
+    Ok(Fitted { centres, means })
 }
 
 #[cfg(test)]
 mod tests {
-    use anthronet::measure::MeasureId;
+    use std::collections::BTreeMap;
 
     use super::*;
-    use crate::evaluation::paper_row;
-
-    #[test]
-    fn steps_end_where_means_fit_with_the_least_change() {
-        // Two means of three sliders; the third does the same as the first, half as well, and the effect bends.
-        let effect = |x: &Mat<f64>| {
-            let a = x[(0, 0)] + 0.5 * x[(2, 0)];
-            Mat::from_fn(2, 1, |i, _| if i == 0 { 8.0 * a + a * a - 4.0 } else { 5.0 * x[(1, 0)] + 1.0 })
-        };
-        let jacobian = Mat::from_fn(2, 3, |i, j| [[8.0, 0.0, 4.0], [0.0, 5.0, 0.0]][i][j]);
-        let mut x = Mat::zeros(3, 1);
-        for _ in 0..STEPS {
-            x = better(&jacobian, &effect(&x), &x).unwrap();
-        }
-        let left = effect(&x);
-        assert!((0..2).all(|i| left[(i, 0)].abs() < 0.01), "{left:?}");
-        assert!((x[(2, 0)] - 0.5 * x[(0, 0)]).abs() < 1e-9, "{x:?}");
-    }
+    use crate::sampling::committed_centres;
 
     #[test]
     fn the_file_holds_what_was_fitted() {
-        let biases = committed_biases().unwrap();
-        let fitted = Fitted { biases: biases.clone(), statistics: Statistics::of(&[], 0) };
-        let read: BTreeMap<String, f64> = serde_json::from_str(&fitted.to_json()).unwrap();
-        assert_eq!(read, biases);
-        let id = MeasureId::from_name(NOT_MATCHED).unwrap();
-        assert!((NATURAL_HEAD_HEIGHT - paper_row(id).unwrap()[0]).abs() < 0.02);
+        let centres = committed_centres().unwrap();
+        let fitted = Fitted { centres: centres.clone(), means: Vec::new() };
+        let read: BTreeMap<String, Centres> = serde_json::from_str(&fitted.to_json()).unwrap();
+        assert_eq!(Sex::ALL.map(|sex| read[sex.name()].clone()), centres);
+    }
+
+    #[test]
+    fn what_the_networks_read_is_weighed_by_peoples_correlations() {
+        let statistics = survey::committed().unwrap();
+        let aims = Aims::new(&[]);
+        let weights = aims.weights(&statistics["ansur2"].female).unwrap();
+        let of = |name: &str| aims.columns.iter().position(|c| c.0 == name).unwrap();
+        let [waist, hip] = ["waistcircumference", "buttockcircumference"].map(of);
+        // Both larger by a deviation is commoner than one alone.
+        let both = weights[(waist, waist)] + 2.0 * weights[(waist, hip)] + weights[(hip, hip)];
+        assert!(both < weights[(waist, waist)], "{both} {}", weights[(waist, waist)]);
     }
 }

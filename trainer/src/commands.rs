@@ -14,6 +14,7 @@ use crate::biases::fit;
 use crate::corpus::{CACHE, Corpus, Split};
 use crate::dataset::{Bodies, Dataset, first_of};
 use crate::evaluation::{GeneratorScores, Statistics, generator};
+use crate::measures::Definer;
 use crate::generator::{ShapeStatistics, TrainingOptions, TrainingSet, train};
 use crate::pack::pack;
 use crate::people::{self, PeopleTable};
@@ -175,15 +176,17 @@ pub fn evaluate(table: &Table, as_json: bool) -> Result<String> {
     serde_json::to_string_pretty(&json).map_err(|e| Error::Invalid(e.to_string()))
 }
 
-/// Rewrites `model/measures.json` and `model/landmarks.json`, which are defined on the mean body.
+/// Rewrites `model/landmarks.json`, `model/standing.json` and `model/measures.json`, which are defined on the mean body.
 ///
 /// # Errors
 /// When the source of bodies is not available or the definitions do not fit it.
 pub fn define_measures(folder: &Path) -> Result<()> {
     let corpus = Corpus::open(Path::new(CACHE))?;
     let mirror = |v| corpus.assets.mesh.mirror.get(&v).copied();
-    write_lines(&folder.join("landmarks.json"), &crate::landmarks::landmarks(&mirror)?)?;
-    write_lines(&folder.join("measures.json"), &crate::measures::definitions(&corpus, &mirror)?)
+    let landmarks = crate::landmarks::landmarks(&mirror)?;
+    write_lines(&folder.join("landmarks.json"), &landmarks)?;
+    write_lines(&folder.join("standing.json"), &crate::measures::turns(&landmarks)?)?;
+    write_lines(&folder.join("measures.json"), &Definer::new(&corpus, &landmarks)?.measures()?)
 }
 
 /// Writes a JSON list, a line per element.
@@ -203,10 +206,10 @@ fn write_lines(path: &Path, list: &[impl serde::Serialize]) -> Result<()> {
 pub fn fit_biases(path: &Path) -> Result<String> {
     let mut corpus = Corpus::open(Path::new(CACHE))?;
     let bar = Bar::new("mean measures", 1);
-    let fitted = fit(&mut corpus, &Definitions::embedded()?, &|what, done, of| bar.set(what, done, of))?;
+    let fitted = fit(&mut corpus, &|what, done, of| bar.set(what, done, of))?;
     bar.finish();
     write_atomic(path, fitted.to_json().as_bytes())?;
-    Ok(fitted.statistics.to_string())
+    Ok(fitted.to_string())
 }
 
 /// Computes the statistics of both surveys from their folders, each with `female.csv` and `male.csv`, and writes them.
@@ -245,7 +248,7 @@ fn score_people(folder: &Path) -> Result<PeopleTable> {
 
 fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {
     let corpus = Corpus::open(cache)?;
-    let definitions = Definitions::embedded()?;
+    let definitions = corpus.definitions()?;
     let bar = Bar::new("bodies", 1);
     let dataset =
         Dataset::load_or_make(&corpus, &definitions, cache, &|what, done, of| bar.set(what, done, of))?;
@@ -254,7 +257,7 @@ fn data(cache: &Path) -> Result<(Corpus, Definitions, Dataset)> {
 }
 
 fn score(model: &Model, corpus: &Corpus, split: Split, count: usize) -> Result<GeneratorScores> {
-    let numbers = first_of(corpus, model.definitions(), split, count);
+    let numbers = first_of(corpus, model.definitions(), split, count)?;
     let bar = Bar::new("scored bodies", numbers.len() as u64);
     let scores = generator(model, corpus, split, &numbers, &|| bar.inc());
     bar.finish();

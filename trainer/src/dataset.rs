@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
 use crate::basis::{Basis, COMPONENTS, flatten};
-use crate::corpus::{Corpus, DATA_VERSION, Gauge, SEED, Split, plausible};
+use crate::sampling::centres_hash;
+use crate::corpus::{Corpus, DATA_VERSION, Gauge, Plausible, SEED, Split};
 use crate::{Error, Result};
 
 /// Number of drawn bodies; implausible ones among them are left out.
@@ -43,7 +44,11 @@ pub struct Dataset {
 }
 
 /// The numbers of the first `count` bodies of a split, those of the data set, without making it.
-pub fn first_of(corpus: &Corpus, definitions: &Definitions, split: Split, count: usize) -> Vec<u64> {
+///
+/// # Errors
+/// As [`Plausible::new`].
+pub fn first_of(corpus: &Corpus, definitions: &Definitions, split: Split, count: usize) -> Result<Vec<u64>> {
+    let plausible = Plausible::new()?;
     let gauge = Gauge::new(definitions, &corpus.subdivision);
     let drawn: Vec<u64> = (0..DRAWN).filter(|&n| Split::of(n) == split).collect();
     let mut numbers = Vec::new();
@@ -51,11 +56,11 @@ pub fn first_of(corpus: &Corpus, definitions: &Definitions, split: Split, count:
         if numbers.len() >= count {
             break;
         }
-        let people = batch.par_iter().filter(|&&n| plausible(&gauge.read(&corpus.specimen(n).points)));
+        let people = batch.par_iter().filter(|&&n| plausible.holds(&gauge.read(&corpus.specimen(n).points)));
         numbers.extend(people.copied().collect::<Vec<u64>>());
     }
     numbers.truncate(count);
-    numbers
+    Ok(numbers)
 }
 
 impl Dataset {
@@ -70,14 +75,15 @@ impl Dataset {
         progress: &(dyn Fn(&str, u64, u64) + Sync),
     ) -> Result<Self> {
         let path = cache.join(format!(
-            "dataset-v{DATA_VERSION}-{SEED}-{DRAWN}-{COMPONENTS}-{}.safetensors",
-            &definitions.hash()[..12]
+            "dataset-v{DATA_VERSION}-{SEED}-{DRAWN}-{COMPONENTS}-{}-{}.safetensors",
+            &definitions.hash()[..12],
+            &centres_hash()[..12]
         ));
         if path.exists() {
             return Self::read(&path);
         }
         let basis = Basis::fit(corpus, &|what| progress(what, 0, 0))?;
-        let mut dataset = Self::draw(corpus, definitions, basis, progress);
+        let mut dataset = Self::draw(corpus, definitions, basis, progress)?;
         dataset.rejected = DRAWN as usize - dataset.count();
         dataset.write(&path)?;
         Ok(dataset)
@@ -92,7 +98,8 @@ impl Dataset {
         definitions: &Definitions,
         basis: Basis,
         progress: &(dyn Fn(&str, u64, u64) + Sync),
-    ) -> Self {
+    ) -> Result<Self> {
+        let plausible = Plausible::new()?;
         let gauge = Gauge::new(definitions, &corpus.subdivision);
         let mut dataset = Self {
             basis,
@@ -109,7 +116,7 @@ impl Dataset {
                 .filter_map(|&n| {
                     let specimen = corpus.specimen(n);
                     let measures = gauge.read(&specimen.points);
-                    plausible(&measures).then(|| (n, specimen.sex, measures, flatten(&specimen.points)))
+                    plausible.holds(&measures).then(|| (n, specimen.sex, measures, flatten(&specimen.points)))
                 })
                 .collect();
             let points: Vec<Vec<f32>> = specimens.iter().map(|s| s.3.clone()).collect();
@@ -127,7 +134,7 @@ impl Dataset {
             }
         }
         progress("measuring bodies", DRAWN, DRAWN);
-        dataset
+        Ok(dataset)
     }
 
     fn write(&self, path: &Path) -> Result<()> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anthronet::condition::Request;
 use anthronet::format::gltf::to_glb;
-use anthronet::measure::{MEASURE_COUNT, MeasureId, Measurements};
+use anthronet::measure::{Definitions, MEASURE_COUNT, MeasureId, Measurements};
 use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Scene, SceneOptions};
@@ -123,7 +123,7 @@ pub fn generator(
     })
 }
 
-fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<'_>, number: u64) -> Result<OfBody> {
+fn score(model: &Model, corpus: &Corpus, gauge: &Gauge<&Definitions>, number: u64) -> Result<OfBody> {
     let specimen = corpus.specimen(number);
     let cage = cage_of(&specimen.points);
     let truth = corpus.subdivision.refine(cage)?;

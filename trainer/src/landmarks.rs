@@ -26,6 +26,10 @@ const fn sided(name: &'static str, vertices: &'static [u32], place: &'static str
     Row { name, sided: true, vertices, place }
 }
 
+/// The acromion and the radiale of the left arm.
+pub(crate) const ACROMION: [u32; 2] = [8_279, 8_289];
+pub(crate) const RADIALE: u32 = 10_055;
+
 /// From head to foot. Terms are those of the measurer's handbook of ANSUR II (Hotzman et al. 2011), which ISO 7250-1 and
 /// ISO 8559-1 share.
 #[rustfmt::skip]
@@ -41,7 +45,7 @@ const ROWS: &[Row] = &[
     sided("neck_side", &[8_188], "side of the base of the neck, on the edge of the trapezius"),
     central("cervicale", &[1_491], "spine of the seventh cervical vertebra"),
     central("suprasternale", &[1_524], "lowest point of the notch above the breastbone"),
-    sided("acromion", &[8_279, 8_289], "outer edge of the shoulder blade's tip, above the shoulder joint"),
+    sided("acromion", &ACROMION, "outer edge of the shoulder blade's tip, above the shoulder joint"),
     sided("axilla", &[8_338], "hollow of the armpit"),
     sided("anterior_axillary_fold", &[8_097], "fold of the armpit towards the chest"),
     sided("posterior_axillary_fold", &[8_303], "fold of the armpit towards the back"),
@@ -66,7 +70,7 @@ const ROWS: &[Row] = &[
     sided("first_metatarsophalangeal", &[12_390], "innermost point of the ball of the foot"),
     sided("fifth_metatarsophalangeal", &[12_793], "outermost point of the ball of the foot"),
     sided("acropodion", &[11_624], "tip of the longest toe"),
-    sided("radiale", &[10_055], "upper edge of the head of the radius, at the outer side of the elbow"),
+    sided("radiale", &[RADIALE], "upper edge of the head of the radius, at the outer side of the elbow"),
     sided("olecranon", &[10_042], "point of the elbow"),
     sided("stylion", &[10_562], "tip of the radius at the thumb's side of the wrist"),
     sided("metacarpale_2", &[9_828], "outer edge of the knuckle of the index finger"),

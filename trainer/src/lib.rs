@@ -24,6 +24,7 @@ pub mod people;
 mod progress;
 pub mod reduce;
 pub mod sampling;
+pub mod smoothness;
 pub mod survey;
 pub mod tpose;
 pub mod training;

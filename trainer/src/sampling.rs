@@ -1,31 +1,27 @@
-//! Draws random people: MakeHuman slider values that cover the paper's table of statistics ("statistics-anthro").
+//! Draws random people: MakeHuman slider values around centres that make the mean person that of a survey.
 //!
 //! Sex, age, muscle, weight, proportions and ethnicity are drawn over their whole range; stature is drawn
-//! uniformly and the height slider solved for it; local sliders vary around small biases that bring the means
-//! of the measures to the paper's ([`crate::biases`]); heads grow with stature as people's do, not as bodies.
+//! uniformly and the height slider solved for it; local sliders vary together ([`crate::smoothness`]) around centres of each sex,
+//! which bring the means of the measures to those of ANSUR II ([`crate::biases`]); heads grow with stature as people's do, not as
+//! bodies.
 
 use std::collections::BTreeMap;
 
 use anthronet::measure::Sex;
 use anthronet::random::Random;
 use anthronet::skeleton::SidedJoint;
+use faer::Mat;
 use glam::Vec3;
+use sha2::{Digest, Sha256};
 
 use crate::assets::{Assets, CROWN, HEELS, Modifier, Target};
+use crate::smoothness::{Bending, SmoothDraws};
 use crate::{Error, Result};
 
 /// Shortest and tallest stature drawn, metres: the paper's table.
 pub const STATURE: [f64; 2] = [1.49, 1.991];
 
-const BIASES: &str = include_str!("sampling_bias.json");
-
-/// The distribution of a local slider.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Spread {
-    Uniform(f64),
-    /// Standard deviation; truncated at twice it.
-    Normal(f64),
-}
+const CENTRES: &str = include_str!("sampling_bias.json");
 
 /// A drawn person: blend shapes with their weights.
 #[derive(Clone, Debug)]
@@ -44,8 +40,47 @@ pub struct Person {
 
 /// Draws people from a source of bodies.
 pub struct Sampler {
-    locals: Vec<(Modifier, f64, Spread)>,
+    /// Local sliders, those of the body before those of the face.
+    locals: Vec<Local>,
+    draws: [SmoothDraws; 2],
+    centres: [Macros; 2],
 }
+
+/// A local slider.
+struct Local {
+    modifier: Modifier,
+    /// Its centre, per sex.
+    centres: [f64; 2],
+}
+
+/// Medians of the sliders of the whole body, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Macros {
+    muscle: f64,
+    weight: f64,
+}
+
+/// Centres of all sliders that have one, by MakeHuman's name; [`MUSCLE`] and [`WEIGHT`] are medians from 0 to 1.
+pub type Centres = BTreeMap<String, f64>;
+
+/// Muscle and weight among the [`Centres`].
+pub const MUSCLE: &str = "macro-muscle";
+/// See [`MUSCLE`].
+pub const WEIGHT: &str = "macro-weight";
+
+/// Standard deviations of sliders of the body and of the face, and the price of bending of each group, which lowers them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Spread {
+    Body(f64),
+    Face(f64),
+}
+const STIFFNESS: [f64; 2] = [45.0, 20.0];
+
+/// Shapes of the beta distributions of muscle and weight: below 1, builds at the ends are more frequent than in the middle.
+const MUSCLE_SHAPE: f64 = 1.3;
+const WEIGHT_SHAPE: f64 = 0.8;
+/// Age from 25 to 90 years is a uniform number to this power: a third of the way at the mean.
+const AGE_POWER: f64 = 1.8;
 
 /// Difference between left and right of a sided slider, standard deviation.
 const ASYMMETRY: f64 = 0.03;
@@ -58,55 +93,127 @@ const TOE_ASYMMETRY: f64 = 0.12;
 /// circumference by 9 cm a metre in ANSUR II).
 const HEAD_WITH_STATURE: f64 = 1.0;
 
-/// The committed biases: the centre of each local slider, by MakeHuman's name. [`crate::biases`] fits them.
+/// The committed centres, female first. [`crate::biases`] fits them.
 ///
 /// # Errors
 /// [`Error::Invalid`] when the file is not what it should be.
-pub fn committed_biases() -> Result<BTreeMap<String, f64>> {
-    serde_json::from_str(BIASES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))
+pub fn committed_centres() -> Result<[Centres; 2]> {
+    let mut of_sexes: BTreeMap<String, Centres> =
+        serde_json::from_str(CENTRES).map_err(|e| Error::Invalid(format!("sampling_bias.json: {e}")))?;
+    Ok(Sex::ALL.map(|sex| of_sexes.remove(sex.name()).unwrap_or_default()))
+}
+
+/// SHA-256 of the committed centres, in hexadecimal.
+pub fn centres_hash() -> String {
+    Sha256::digest(CENTRES).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// What is fixed of a person instead of drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fixed {
+    /// The sex.
+    pub sex: Option<Sex>,
+    /// Mean and standard deviation of a normal distribution of the stature, metres.
+    pub stature: Option<[f64; 2]>,
+    /// The middle of everything else.
+    pub middle: bool,
 }
 
 impl Sampler {
-    /// Prepares the sliders; adds our own toe length to the targets, which MakeHuman has no slider for.
+    /// Prepares the sliders; adds our own to the targets, which MakeHuman does not have.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the biases name an unknown slider.
+    /// [`Error::Invalid`] when the centres name an unknown slider.
     pub fn new(assets: &mut Assets) -> Result<Self> {
         let toes = toe_length(assets)?;
         assets.targets.add_procedural(TOE_LENGTH, "feet", toes);
-        let sampled = |m: &Modifier| spread(m).map(|spread| (m.clone(), 0.0, spread));
-        let mut sampler = Self { locals: assets.targets.modifiers.iter().filter_map(sampled).collect() };
-        sampler.set_biases(&committed_biases()?)?;
+        let bending = Bending::new(&assets.mesh.cage, &assets.base);
+        let mut locals = Vec::new();
+        let mut draws = Vec::new();
+        for (face, stiffness) in [false, true].into_iter().zip(STIFFNESS) {
+            let of_group = assets.targets.modifiers.iter().filter_map(|modifier| match spread(modifier)? {
+                Spread::Body(deviation) if !face => Some((modifier, deviation)),
+                Spread::Face(deviation) if face => Some((modifier, deviation)),
+                _ => None,
+            });
+            let of_group: Vec<(&Modifier, f64)> = of_group.collect();
+            draws.push(SmoothDraws::new(&bending, &assets.targets, &of_group, stiffness)?);
+            locals.extend(of_group.iter().map(|(m, _)| Local { modifier: (*m).clone(), centres: [0.0; 2] }));
+        }
+        let draws = <[SmoothDraws; 2]>::try_from(draws)
+            .map_err(|_| Error::Invalid("sliders of a third kind".into()))?;
+        let middle = Macros { muscle: 0.5, weight: 0.5 };
+        let mut sampler = Self { locals, draws, centres: [middle; 2] };
+        for (sex, centres) in Sex::ALL.into_iter().zip(committed_centres()?) {
+            sampler.set_centres(sex, &centres)?;
+        }
         Ok(sampler)
     }
 
-    /// Replaces the biases of the sliders that are named; the others keep theirs.
+    /// Replaces the centres of the sliders that are named; the others keep theirs.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a slider that is unknown or not sampled.
-    pub fn set_biases(&mut self, biases: &BTreeMap<String, f64>) -> Result<()> {
-        for (name, value) in biases {
-            let local = self.locals.iter_mut().find(|local| local.0.name == *name);
-            let unknown =
-                || Error::Invalid(format!("sampling_bias.json: {name} is no slider that is sampled"));
-            local.ok_or_else(unknown)?.1 = *value;
+    pub fn set_centres(&mut self, sex: Sex, centres: &Centres) -> Result<()> {
+        for (name, value) in centres {
+            match name.as_str() {
+                MUSCLE => self.centres[sex.index()].muscle = *value,
+                WEIGHT => self.centres[sex.index()].weight = *value,
+                name => {
+                    let local = self.locals.iter_mut().find(|local| local.modifier.name == name);
+                    let unknown =
+                        || Error::Invalid(format!("sampling_bias.json: {name} is no slider that is sampled"));
+                    local.ok_or_else(unknown)?.centres[sex.index()] = *value;
+                }
+            }
         }
         Ok(())
     }
 
+    /// Names of the local sliders, and their precision: the inverse covariance that they are drawn with.
+    pub fn precision(&self) -> (Vec<&str>, Mat<f64>) {
+        let names: Vec<&str> = self.locals.iter().map(|local| local.modifier.name.as_str()).collect();
+        let [body, face] = [0, 1].map(|group| &self.draws[group].precision);
+        let n = body.nrows();
+        let precision = Mat::from_fn(names.len(), names.len(), |i, j| match (i < n, j < n) {
+            (true, true) => body[(i, j)],
+            (false, false) => face[(i - n, j - n)],
+            _ => 0.0,
+        });
+        (names, precision)
+    }
+
     /// Draws the person with this number of this seed; the same pair gives the same person everywhere.
     pub fn draw(&self, assets: &Assets, seed: u64, number: u64) -> Person {
+        self.draw_with(assets, seed, number, Fixed::default())
+    }
+
+    /// As [`draw`](Self::draw), with some of it fixed.
+    pub fn draw_with(&self, assets: &Assets, seed: u64, number: u64, fixed: Fixed) -> Person {
         let mut rng = Random::new(seed, number);
-        let sex = if rng.uniform() < 0.5 { Sex::Female } else { Sex::Male };
-        let age = rng.uniform();
+        let drawn = if rng.uniform() < 0.5 { Sex::Female } else { Sex::Male };
+        let sex = fixed.sex.unwrap_or(drawn);
+        let middle = |value: f64, middle: f64| if fixed.middle { middle } else { value };
+        let age = middle(libm::pow(rng.uniform(), AGE_POWER), 1.0 / (1.0 + AGE_POWER));
         let ages = [("young", 1.0 - age), ("old", age)];
-        let muscles = three(beta(&mut rng, 0.7), ["minmuscle", "averagemuscle", "maxmuscle"]);
-        let weights = three(beta(&mut rng, 0.65), ["minweight", "averageweight", "maxweight"]);
-        let proportion = rng.uniform() * 2.0 - 1.0;
-        let cups = three(rng.uniform(), ["mincup", "averagecup", "maxcup"]);
-        let firmnesses = three(rng.uniform(), ["minfirmness", "averagefirmness", "maxfirmness"]);
-        let races = dirichlet(&mut rng, ["african", "asian", "caucasian"]);
-        let stature = STATURE[0] + (STATURE[1] - STATURE[0]) * rng.uniform();
+        let centres = self.centres[sex.index()];
+        let muscle = with_median(middle(beta(&mut rng, MUSCLE_SHAPE), 0.5), centres.muscle);
+        let weight = with_median(middle(beta(&mut rng, WEIGHT_SHAPE), 0.5), centres.weight);
+        let muscles = three(muscle, ["minmuscle", "averagemuscle", "maxmuscle"]);
+        let weights = three(weight, ["minweight", "averageweight", "maxweight"]);
+        let proportion = middle(rng.uniform() * 2.0 - 1.0, 0.0);
+        let cups = three(middle(rng.uniform(), 0.5), ["mincup", "averagecup", "maxcup"]);
+        let firmnesses = three(middle(rng.uniform(), 0.5), ["minfirmness", "averagefirmness", "maxfirmness"]);
+        let mut races = dirichlet(&mut rng, ["african", "asian", "caucasian"]);
+        if fixed.middle {
+            races = races.map(|(race, _)| (race, 1.0 / 3.0));
+        }
+        let place = rng.uniform();
+        let stature = match fixed.stature {
+            Some([mean, _]) if fixed.middle => mean,
+            Some([mean, deviation]) => mean + deviation * rng.normal(),
+            None => STATURE[0] + (STATURE[1] - STATURE[0]) * place,
+        };
 
         let mut person = Person { sex, shapes: Vec::new(), stature, shorter: Vec::new(), taller: Vec::new() };
         let set = &assets.targets;
@@ -141,16 +248,14 @@ impl Sampler {
                 }
             }
         }
-        for (modifier, bias, spread) in &self.locals {
-            let value = bias
-                + with_stature(&modifier.name, stature)
-                + match *spread {
-                    Spread::Uniform(half) => half * (2.0 * rng.uniform() - 1.0),
-                    Spread::Normal(deviation) => deviation * rng.normal().clamp(-2.0, 2.0),
-                };
+        let drawn = self.draws.iter().flat_map(|group| group.draw(&mut rng)).collect::<Vec<f64>>();
+        for (Local { modifier, centres }, drawn) in self.locals.iter().zip(drawn) {
+            let value =
+                centres[sex.index()] + with_stature(&modifier.name, stature) + middle(drawn, 0.0);
             let asymmetry = if modifier.name.starts_with(TOE_LENGTH) { TOE_ASYMMETRY } else { ASYMMETRY };
             for [negative, positive] in &modifier.pairs {
                 let sided = if modifier.pairs.len() > 1 { asymmetry * rng.normal() } else { 0.0 };
+                let sided = middle(sided, 0.0);
                 let value = value + sided;
                 let target = if value < 0.0 { negative } else { positive };
                 if let Some(number) = target {
@@ -202,12 +307,17 @@ fn spread(modifier: &Modifier) -> Option<Spread> {
         return None;
     }
     Some(match modifier.group.as_str() {
-        "head" | "neck" => Spread::Uniform(0.12),
-        "forehead" => Spread::Normal(0.12),
-        "cheek" | "chin" | "ears" | "eyebrows" | "eyes" | "mouth" | "nose" => Spread::Normal(0.2),
-        _ if name.starts_with("measure-") => Spread::Uniform(0.35),
-        _ => Spread::Uniform(0.245),
+        "head" => Spread::Body(0.3),
+        "neck" => Spread::Body(0.1),
+        "forehead" => Spread::Face(0.4),
+        "cheek" | "chin" | "ears" | "eyebrows" | "eyes" | "mouth" | "nose" => Spread::Face(0.7),
+        _ => Spread::Body(0.25),
     })
+}
+
+/// A number from 0 to 1 whose distribution has the median ½, bent so that it has this median.
+fn with_median(value: f64, median: f64) -> f64 {
+    libm::pow(value, libm::log(median) / libm::log(0.5))
 }
 
 /// The part of a slider's value that depends on stature.
@@ -250,7 +360,7 @@ fn toe_length(assets: &Assets) -> Result<[Target; 2]> {
     Ok(feet)
 }
 
-/// Beta(a, a) for a < 1 (Jöhnk 1964).
+/// Beta(a, a) (Jöhnk 1964); efficient for a up to about 1.
 fn beta(random: &mut Random, a: f64) -> f64 {
     loop {
         let (x, y) = (libm::pow(random.uniform(), 1.0 / a), libm::pow(random.uniform(), 1.0 / a));
@@ -285,7 +395,7 @@ mod tests {
     fn draws_have_the_distributions_they_are_named_for() {
         let mut random = Random::new(5, 0);
         let n = 20_000;
-        for a in [0.65, 0.7] {
+        for a in [MUSCLE_SHAPE, WEIGHT_SHAPE] {
             let draws: Vec<f64> = (0..n).map(|_| beta(&mut random, a)).collect();
             assert!(draws.iter().all(|x| (0.0..=1.0).contains(x)));
             let mean = draws.iter().sum::<f64>() / f64::from(n);
@@ -326,12 +436,19 @@ mod tests {
         let of = |name: &str, group: &str| {
             spread(&Modifier { name: format!("{name}|{group}"), group: group.to_owned(), pairs: Vec::new() })
         };
-        assert_eq!(of("head-fat-decr-incr", "head"), Some(Spread::Uniform(0.12)));
-        assert_eq!(of("nose-hump-decr-incr", "nose"), Some(Spread::Normal(0.2)));
-        assert_eq!(of("measure-waist-circ", "measure"), Some(Spread::Uniform(0.35)));
-        assert_eq!(of("upperarm-fat", "arms"), Some(Spread::Uniform(0.245)));
+        assert_eq!(of("head-fat-decr-incr", "head"), Some(Spread::Body(0.3)));
+        assert_eq!(of("nose-hump-decr-incr", "nose"), Some(Spread::Face(0.7)));
+        assert_eq!(of("measure-waist-circ", "measure"), Some(Spread::Body(0.25)));
         for left_out in ["torso-trans-in-out", "stomach-pregnant-decr-incr", "bulge-decr-incr"] {
             assert_eq!(of(left_out, "torso"), None, "{left_out}");
+        }
+    }
+
+    #[test]
+    fn medians_move_and_ends_stay() {
+        for median in [0.3, 0.5, 0.7] {
+            assert!((with_median(0.5, median) - median).abs() < 1e-12);
+            assert_eq!([with_median(0.0, median), with_median(1.0, median)], [0.0, 1.0]);
         }
     }
 }

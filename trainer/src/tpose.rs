@@ -11,6 +11,7 @@ use glam::Vec3;
 
 use crate::Result;
 use crate::assets::Assets;
+use crate::landmarks::{ACROMION, RADIALE};
 
 /// The joints of one arm, and how much each point follows its three segments.
 struct Arm {
@@ -21,8 +22,37 @@ struct Arm {
     weights: Vec<(u32, [f32; 3])>,
 }
 
+/// Where the shoulder's centre lies, by points of the skin.
+struct Shoulder {
+    // Vertices of the cage whose mean is the acromion's outer edge, on this side and on the other.
+    acromion: [[usize; 2]; 2],
+    // Vertex at the head of the radius.
+    radiale: usize,
+    // Point numbers of the shoulder and of the collarbone's end.
+    joint: [usize; 2],
+}
+
+/// The shoulder's centre lies below the acromion by this share of the distance to the head of the radius (de Leva 1996,
+/// "Joint center longitudinal positions computed from a selected subset of Chandler's data").
+const BELOW_ACROMION: f32 = 0.104;
+/// It lies under the middle of the humerus' head, inwards of the acromion's outer edge by this share of the distance between
+/// both acromia: 20 mm of 400.
+const INSIDE_ACROMION: f32 = 0.05;
+
+impl Shoulder {
+    fn place(&self, points: &mut [Vec3]) {
+        let [own, other] = self.acromion.map(|[a, b]| (points[a] + points[b]) * 0.5);
+        let down = points[self.radiale] - own;
+        let centre = own + Vec3::NEG_Y * (BELOW_ACROMION * down.length()) + (other - own) * INSIDE_ACROMION;
+        for joint in self.joint {
+            points[joint] = centre;
+        }
+    }
+}
+
 /// Swings both arms of a body into the T-pose.
 pub struct TPose {
+    shoulders: [Shoulder; 2],
     arms: [Arm; 2],
     pelvis: usize,
     ground: usize,
@@ -48,7 +78,27 @@ impl TPose {
             };
             Ok(Arm { outward, chain: joints.map(|j| heads + j), weights: weights(assets, &joints) })
         };
+        let mirror = |v: u32| {
+            let missing = || crate::Error::Source(format!("hm08.mirror: vertex {v} has no mirror image"));
+            assets.mesh.mirror.get(&v).copied().ok_or_else(missing)
+        };
+        let tails = heads + assets.rig.joints.len();
+        let shoulder = |side: Side| -> Result<Shoulder> {
+            let on = |v: u32, side: Side| -> Result<usize> {
+                Ok(if side == Side::Left { v } else { mirror(v)? } as usize)
+            };
+            let acromion = |side| Ok::<_, crate::Error>([on(ACROMION[0], side)?, on(ACROMION[1], side)?]);
+            Ok(Shoulder {
+                acromion: [acromion(side)?, acromion(side.mirrored())?],
+                radiale: on(RADIALE, side)?,
+                joint: [
+                    heads + joint(SidedJoint::Upperarm.on(side))?,
+                    tails + joint(SidedJoint::Clavicle.on(side))?,
+                ],
+            })
+        };
         Ok(Self {
+            shoulders: [shoulder(Side::Left)?, shoulder(Side::Right)?],
             arms: [arm(Side::Left)?, arm(Side::Right)?],
             pelvis: heads + joint(RigJoint::Pelvis)?,
             ground: heads + joint(RigJoint::Root)?,
@@ -59,6 +109,9 @@ impl TPose {
     ///
     /// Twist joints are moved to their place along the limb.
     pub fn apply(&self, assets: &Assets, points: &mut [Vec3]) {
+        for shoulder in &self.shoulders {
+            shoulder.place(points);
+        }
         for arm in &self.arms {
             arm.apply(points);
         }

@@ -6,6 +6,8 @@ use sha2::{Digest, Sha256};
 
 use super::catalogue::CATALOGUE;
 use super::names::MeasureId;
+use super::read::Reading;
+use super::standing::{Standing, Turn};
 use crate::{Error, Result};
 
 /// How a measure is computed.
@@ -19,6 +21,19 @@ pub enum Kind {
     Slice,
     /// Distance between two points, or the absolute value of its component along the axis.
     Length,
+    /// Distance along the axis between the two points that are furthest apart along it: a breadth, a depth, the stature.
+    Extent,
+}
+
+/// The pose that a measure is taken in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stance {
+    /// The T-pose, the bind pose: where a standing person measures the same.
+    #[default]
+    TPose,
+    /// Upright with arms hanging and legs together: [`Standing`].
+    Standing,
 }
 
 /// A point on the surface: vertices of LOD 0 with weights that sum to one.
@@ -48,15 +63,26 @@ pub struct Definition {
     pub name: String,
     /// How it is computed.
     pub kind: Kind,
-    /// A loop's points, a slice's landmarks or a length's two ends.
+    /// The pose that it is taken in.
+    #[serde(default, skip_serializing_if = "is_t_pose")]
+    pub stance: Stance,
+    /// A loop's points, a slice's landmarks, a length's two ends or the points of an extent; in the T-pose.
     pub points: Vec<Point>,
-    /// Unit normal, in model space, of the plane of a tape or slice; zero for a length.
+    /// For the standing body: per point, the joint that carries it as bone does; `None` where it moves as skin. Empty for skin
+    /// alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bones: Vec<Option<String>>,
+    /// Unit normal, in model space, of the plane of a tape or slice; zero for lengths and extents.
     pub normal: DVec3,
-    /// Unit axis, in model space, that a length is measured along; `None` for the straight distance.
+    /// Unit axis, in model space, that a length or extent is measured along; `None` for the straight distance.
     pub axis: Option<DVec3>,
     /// Edges, diagonals 0–2 of the quads included, that a slice cuts; empty otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edges: Vec<[u32; 2]>,
+}
+
+fn is_t_pose(stance: &Stance) -> bool {
+    *stance == Stance::TPose
 }
 
 /// What errors are about.
@@ -68,18 +94,12 @@ impl Definition {
         MeasureId::from_name(&self.name)?.standard()
     }
 
-    /// Every vertex that the measure depends on; a vertex may come more than once.
-    pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
-        let points = self.points.iter().flat_map(|p| p.0.iter().map(|t| t.0));
-        points.chain(self.edges.iter().flatten().copied())
-    }
-
     fn validate(&self, vertex_count: usize) -> Result<()> {
         let fail = |message: String| Error::invalid(WHAT, format!("{}: {message}", self.name));
         let least = match self.kind {
             Kind::Tape => 3,
             Kind::Slice => 1,
-            Kind::Length => 2,
+            Kind::Length | Kind::Extent => 2,
         };
         if self.points.len() < least || (self.kind == Kind::Length && self.points.len() != 2) {
             return Err(fail(format!("{} points do not make a {:?}", self.points.len(), self.kind)));
@@ -90,8 +110,15 @@ impl Definition {
         for point in &self.points {
             point.validate(vertex_count).map_err(fail)?;
         }
+        if !self.bones.is_empty() && (self.bones.len() != self.points.len() || self.stance == Stance::TPose) {
+            let message = "bones: expected one per point of a measure of the standing body";
+            return Err(fail(message.into()));
+        }
         let unit = |v: DVec3| (v.length() - 1.0).abs() < 1e-6;
-        if self.kind != Kind::Length && !unit(self.normal) {
+        if self.kind == Kind::Extent && self.axis.is_none() {
+            return Err(fail("an extent needs an axis".into()));
+        }
+        if matches!(self.kind, Kind::Tape | Kind::Slice) && !unit(self.normal) {
             return Err(fail(format!("normal {} is not of unit length", self.normal)));
         }
         if self.axis.is_some_and(|a| !unit(a)) {
@@ -104,10 +131,12 @@ impl Definition {
     }
 }
 
-/// The definitions of all measures, in the order of [`MeasureId`].
-#[derive(Clone, Debug, PartialEq)]
+/// The definitions of all measures, in the order of [`MeasureId`], ready to be read on bodies with a certain skin.
+#[derive(Clone, Debug)]
 pub struct Definitions {
     list: Vec<Definition>,
+    readings: Vec<Reading>,
+    turns: Vec<Turn>,
     hash: String,
 }
 
@@ -119,18 +148,43 @@ impl Definitions {
     ///
     /// # Errors
     /// None for the file that the library is built with; a test reads it.
-    pub fn embedded() -> Result<Self> {
-        Self::from_json(include_str!("../../../model/measures.json"), SURFACE_VERTICES)
+    pub fn embedded(standing: &Standing<'_>) -> Result<Self> {
+        Self::from_json(include_str!("../../../model/measures.json"), SURFACE_VERTICES, standing)
     }
 
     /// Parses definitions over a surface of `vertex_count` vertices.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the measure that is missing, out of order or inconsistent.
-    pub fn from_json(json: &str, vertex_count: usize) -> Result<Self> {
+    pub fn from_json(json: &str, vertex_count: usize, standing: &Standing<'_>) -> Result<Self> {
         let list = read_list(json, CATALOGUE.names(), vertex_count)?;
-        let hash = Sha256::digest(json.as_bytes()).iter().map(|b| format!("{b:02x}")).collect();
-        Ok(Self { list, hash })
+        let readings = list.iter().map(|d| Reading::new(d, standing)).collect::<Result<_>>()?;
+        let mut hash = Sha256::new();
+        hash.update(json);
+        for turn in standing.turns() {
+            hash.update(serde_json::to_string(turn).unwrap_or_default());
+        }
+        let hash = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        Ok(Self { list, readings, turns: standing.turns().to_vec(), hash })
+    }
+
+    /// The turns from the T-pose to the standing body.
+    pub fn turns(&self) -> &[Turn] {
+        &self.turns
+    }
+
+    /// What a measure is read from.
+    pub fn reading(&self, id: MeasureId) -> &Reading {
+        &self.readings[id.index()]
+    }
+
+    /// Every vertex that some measure depends on, ascending.
+    pub fn vertices(&self) -> Vec<u32> {
+        let all = self.readings.iter().flat_map(|r| r.points()).flat_map(|p| p.terms().iter().map(|t| t.0));
+        let mut vertices: Vec<u32> = all.collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
     }
 
     /// The definition of a measure.
@@ -143,7 +197,7 @@ impl Definitions {
         MeasureId::all().zip(&self.list)
     }
 
-    /// SHA-256 of the JSON, in hexadecimal; a model file records the one that it was trained with.
+    /// SHA-256 of the JSON and of the turns of the standing body, in hexadecimal; a model file records the one that it was trained with.
     pub fn hash(&self) -> &str {
         &self.hash
     }

@@ -3,9 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::catalogue::MEASURE_COUNT;
-use super::definition::{Definition, Definitions, Kind, Point};
+use super::definition::{Definition, Definitions, Kind, Point, Stance};
 use super::hull::hull_perimeter;
 use super::names::{MeasureId, Measurements};
+use super::standing::{Placed, Standing};
+use crate::Result;
 
 /// Sparse derivative of a measure with respect to vertex positions, metre per metre; the entries of a vertex that comes
 /// more than once add up.
@@ -23,24 +25,83 @@ impl Point {
 }
 
 impl Definitions {
-    /// Evaluates all measures of a body, metres, in the order of [`MeasureId`]. `at` gives the position of a vertex of LOD 0,
-    /// metres, model space.
+    /// Evaluates all measures of a body, metres, in the order of [`MeasureId`]. `at` gives the position of a vertex of LOD 0 in
+    /// the T-pose, metres, model space.
     pub fn read_all(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Measurements {
         let mut out = [0.0; MEASURE_COUNT];
-        for (id, definition) in self.iter() {
-            out[id.index()] = definition.read(at);
+        for (value, id) in out.iter_mut().zip(MeasureId::all()) {
+            *value = self.reading(id).read(at);
         }
         out
     }
 
     /// Evaluates one measure, metres; `at` as for [`Definitions::read_all`].
     pub fn read(&self, id: MeasureId, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
-        self.get(id).read(at)
+        self.reading(id).read(at)
+    }
+}
+
+/// A definition over points of the body in the measure's stance instead of vertices of the T-pose.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    definition: Definition,
+    points: Vec<Placed>,
+}
+
+impl Reading {
+    /// Places the points of a definition.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) for a bone that does not turn.
+    pub fn new(definition: &Definition, standing: &Standing<'_>) -> Result<Self> {
+        let mut points = Vec::new();
+        for (i, point) in definition.points.iter().enumerate() {
+            points.push(match (definition.stance, definition.bones.get(i).and_then(Option::as_deref)) {
+                (Stance::TPose, _) => Placed::unmoved(point),
+                (Stance::Standing, None) => standing.place(point),
+                (Stance::Standing, Some(bone)) => standing.place_on_bone(point, bone)?,
+            });
+        }
+        let mut own = definition.clone();
+        own.points = (0..points.len() as u32).map(|p| Point(vec![(p, 1.0)])).collect();
+        let mut point_of_vertex = std::collections::BTreeMap::new();
+        for end in own.edges.iter_mut().flatten() {
+            *end = *point_of_vertex.entry(*end).or_insert_with_key(|&v| {
+                let point = Point(vec![(v, 1.0)]);
+                points.push(match definition.stance {
+                    Stance::TPose => Placed::unmoved(&point),
+                    Stance::Standing => standing.place(&point),
+                });
+                points.len() as u32 - 1
+            });
+        }
+        Ok(Self { definition: own, points })
+    }
+
+    /// The definition; what it calls vertices are the places in [`points`](Self::points).
+    pub fn definition(&self) -> &Definition {
+        &self.definition
+    }
+
+    /// The points: first those of the definition, then the ends of a slice's edges.
+    pub fn points(&self) -> &[Placed] {
+        &self.points
+    }
+
+    /// Positions of the points in the measure's stance; `at` as for [`Definitions::read_all`].
+    pub fn positions(&self, at: impl Fn(u32) -> DVec3 + Copy) -> Vec<DVec3> {
+        self.points.iter().map(|p| p.position(at)).collect()
+    }
+
+    /// Evaluates the measure, metres; `at` as for [`Definitions::read_all`].
+    pub fn read(&self, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
+        let positions = self.positions(at);
+        self.definition.read(|p| positions[p as usize])
     }
 }
 
 impl Definition {
-    /// Evaluates the measure, metres; `at` gives the positions of the vertices that the definition names.
+    /// Evaluates the measure, metres; `at` gives the positions, in the measure's stance, of what the definition names.
     pub fn read(&self, at: impl Fn(u32) -> DVec3 + Copy) -> f64 {
         self.evaluate(at, None)
     }
@@ -55,7 +116,29 @@ impl Definition {
             Kind::Tape => self.tape(at, gradient),
             Kind::Slice => self.slice(at, gradient),
             Kind::Length => self.length(at, gradient),
+            Kind::Extent => self.extent(at, gradient),
         }
+    }
+
+    fn extent(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
+        let axis = self.axis.unwrap_or(DVec3::ZERO);
+        let along = self.points.iter().map(|p| p.position(at).dot(axis));
+        // The first of equal ones.
+        let mut ends = [(0, f64::INFINITY), (0, f64::NEG_INFINITY)];
+        for (i, value) in along.enumerate() {
+            if value < ends[0].1 {
+                ends[0] = (i, value);
+            }
+            if value > ends[1].1 {
+                ends[1] = (i, value);
+            }
+        }
+        let [(low, least), (high, most)] = ends;
+        if let Some(gradient) = gradient {
+            self.points[high].add_gradient(axis, gradient);
+            self.points[low].add_gradient(-axis, gradient);
+        }
+        most - least
     }
 
     fn length(&self, at: impl Fn(u32) -> DVec3 + Copy, gradient: Option<&mut Gradient>) -> f64 {
@@ -168,6 +251,8 @@ mod tests {
         let base = Definition {
             name: "test".into(),
             kind: Kind::Tape,
+            stance: Stance::TPose,
+            bones: Vec::new(),
             points: (32..48).map(|v| Point(vec![(v, 0.25), (v + 16, 0.75)])).collect(),
             normal: DVec3::new(0.1, 1.0, -0.2).normalize_or_zero(),
             axis: None,
@@ -181,7 +266,13 @@ mod tests {
             ..base.clone()
         };
         let along = Definition { axis: Some(DVec3::Y), ..length.clone() };
-        (points, vec![base, slice, length, along])
+        let extent = Definition {
+            kind: Kind::Extent,
+            points: base.points.clone(),
+            axis: Some(DVec3::new(0.6, 0.0, 0.8)),
+            ..length.clone()
+        };
+        (points, vec![base, slice, length, along, extent])
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
+use crate::measure::{Definitions, Skin, Standing};
 use crate::mesh::{Lod, Subdivision, Topology, VertexFaces};
 use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
@@ -162,6 +163,16 @@ impl Character {
     /// Skin weights of an accessory.
     pub fn accessory_weights(&self, accessory: &Accessory) -> SkinWeights {
         self.weights.rows(accessory.start..accessory.start + accessory.topology.vertex_count)
+    }
+
+    /// The definitions of the measures, for bodies with this skin.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the joint tree lacks a joint that turns from the T-pose to the standing body.
+    pub(crate) fn definitions(&self) -> Result<Definitions> {
+        let weights = |vertex: u32| self.weights.refined(&self.subdivision, vertex as usize);
+        let (joints, parents) = (self.joint_tree.names(), self.joint_tree.parents());
+        Definitions::embedded(&Standing::embedded(Skin { joints, parents, weights: &weights })?)
     }
 
     /// Skin weights of the body at LOD 0; the first rows are those of LOD 1.

@@ -128,12 +128,12 @@ impl Model {
             other => Error::Model { origin: origin.to_owned(), message: other.to_string() },
         };
         let fail = |message: String| Error::Model { origin: origin.to_owned(), message };
-        let definitions = Definitions::embedded().map_err(named)?;
+        let character = parts.character().map_err(named)?;
+        let definitions = character.definitions().map_err(named)?;
         let landmarks = Landmarks::embedded().map_err(named)?;
         if parts.definitions_hash != definitions.hash() {
             return Err(fail("made with other measure definitions than this library's".into()));
         }
-        let character = parts.character().map_err(named)?;
         let space = parts.shape_space().map_err(named)?;
         if space.points() != character.point_count() {
             return Err(fail(format!(
@@ -143,7 +143,7 @@ impl Model {
             )));
         }
         let surface = character.subdivision().refined().vertex_count;
-        if let Some(v) = definitions.iter().flat_map(|d| d.1.vertices()).find(|v| *v as usize >= surface) {
+        if let Some(v) = definitions.vertices().into_iter().find(|v| *v as usize >= surface) {
             return Err(fail(format!("measures read vertex {v} of {surface}")));
         }
         let k = space.components();

@@ -6,7 +6,8 @@ use super::Model;
 use crate::mesh::Lod;
 
 impl Model {
-    /// The JSON of `anthronet info --json`: measures with definitions, standards and ranges (metres), landmarks, joints with
+    /// The JSON of `anthronet info --json`: measures with definitions, standards and ranges (metres), the
+    /// turns from the T-pose to the standing body, landmarks, joints with
     /// parents, vertices per level of detail, versions and scores.
     pub fn info(&self) -> serde_json::Value {
         let (character, ranges) = (self.character(), self.ranges());
@@ -14,6 +15,7 @@ impl Model {
             let mut measure = json!({
                 "name": definition.name,
                 "kind": definition.kind,
+                "stance": definition.stance,
                 "points": definition.points,
                 "normal": definition.normal.to_array(),
                 "axis": definition.axis.map(|axis| axis.to_array()),
@@ -21,6 +23,9 @@ impl Model {
                 "min": ranges[id.index()].min,
                 "max": ranges[id.index()].max,
             });
+            if !definition.bones.is_empty() {
+                measure["bones"] = json!(definition.bones);
+            }
             if !definition.edges.is_empty() {
                 measure["edges"] = json!(definition.edges);
             }
@@ -35,6 +40,7 @@ impl Model {
         json!({
             "version": env!("CARGO_PKG_VERSION"),
             "measures": measures.collect::<Vec<_>>(),
+            "standing": self.definitions().turns(),
             "landmarks": self.landmarks().iter().collect::<Vec<_>>(),
             "joints": joints.collect::<Vec<_>>(),
             "vertices_per_lod": levels,

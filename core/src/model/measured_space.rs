@@ -6,12 +6,12 @@
 //! to the precision that decides their side of the plane; and a measure's derivative follows its value at once, while the
 //! rows are in the cache.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use multiversion::multiversion;
 
 use super::shape_space::ShapeSpace;
 use crate::condition::MeasuredShape;
-use crate::measure::{Definition, Definitions, Gradient, Kind, MEASURE_COUNT, Measurements, Point};
+use crate::measure::{Definition, Definitions, Gradient, Kind, MEASURE_COUNT, MeasureId, Measurements};
 use crate::mesh::Subdivision;
 
 /// The points of the shape space that measures depend on.
@@ -58,27 +58,29 @@ const MARGIN: f64 = 1e-9;
 impl MeasuredSpace {
     /// Collects the points that the definitions depend on.
     pub fn new(space: &ShapeSpace, subdivision: &Subdivision, definitions: &Definitions) -> Self {
-        let mut points: Vec<Vec<(u32, f64)>> = Vec::new();
-        let mut add = |terms: &[(u32, f64)]| {
-            let mut over_cage = std::collections::BTreeMap::new();
-            for &(vertex, weight) in terms {
-                for (i, w) in subdivision.stencil(vertex as usize) {
-                    *over_cage.entry(i).or_insert(0.0) += weight * f64::from(w);
+        let mut points: Vec<Vec<(u32, DMat3)>> = Vec::new();
+        let mut measures: Vec<Measure> = MeasureId::all()
+            .map(|id| {
+                let reading = definitions.reading(id);
+                let first = points.len() as u32;
+                points.extend(reading.points().iter().map(|point| {
+                    let mut over_cage = std::collections::BTreeMap::new();
+                    for &(vertex, matrix) in point.terms() {
+                        for (i, w) in subdivision.stencil(vertex as usize) {
+                            *over_cage.entry(i).or_insert(DMat3::ZERO) += matrix * f64::from(w);
+                        }
+                    }
+                    over_cage.into_iter().collect()
+                }));
+                let mut own = reading.definition().clone();
+                for (point, _) in own.points.iter_mut().flat_map(|point| &mut point.0) {
+                    *point += first;
                 }
-            }
-            points.push(over_cage.into_iter().collect());
-            (points.len() - 1) as u32
-        };
-        let mut measures: Vec<Measure> = definitions
-            .iter()
-            .map(|(_, definition)| {
-                let mut own = definition.clone();
-                own.points = definition.points.iter().map(|p| Point(vec![(add(&p.0), 1.0)])).collect();
-                let mut point_of_vertex = std::collections::BTreeMap::new();
                 for end in own.edges.iter_mut().flatten() {
-                    *end = *point_of_vertex.entry(*end).or_insert_with_key(|v| add(&[(*v, 1.0)]));
+                    *end += first;
                 }
-                Measure::new(own, point_of_vertex.into_values().collect())
+                let vertices = (first + own.points.len() as u32)..points.len() as u32;
+                Measure::new(own, vertices.collect())
             })
             .collect();
 
@@ -86,12 +88,9 @@ impl MeasuredSpace {
         let mut rows = vec![0.0_f32; points.len() * 3 * k];
         for component in 0..k {
             for (point, terms) in points.iter().enumerate() {
-                let mut sum = [0.0; 3];
-                for &(i, w) in terms {
-                    let b = space.component(component, i as usize);
-                    for axis in 0..3 {
-                        sum[axis] += w * b[axis];
-                    }
+                let mut sum = DVec3::ZERO;
+                for &(i, matrix) in terms {
+                    sum += matrix * DVec3::from_array(space.component(component, i as usize));
                 }
                 for axis in 0..3 {
                     rows[(3 * point + axis) * k + component] = sum[axis] as f32;
@@ -106,7 +105,7 @@ impl MeasuredSpace {
         }
         let mean = points
             .iter()
-            .map(|terms| terms.iter().map(|&(p, w)| space.mean_point(p as usize).as_dvec3() * w).sum())
+            .map(|terms| terms.iter().map(|&(p, matrix)| matrix * space.mean_point(p as usize).as_dvec3()).sum())
             .collect();
         Self { components: k, measures, mean, rows }
     }
@@ -165,7 +164,7 @@ impl Measure {
         let affects = |axis: &usize| match definition.kind {
             Kind::Tape => normal != Some(*axis),
             Kind::Slice => normal.is_none_or(|normal| normal == *axis),
-            Kind::Length => definition.axis.and_then(along).is_none_or(|along| along == *axis),
+            Kind::Length | Kind::Extent => definition.axis.and_then(along).is_none_or(|along| along == *axis),
         };
         let points = definition.points.iter().flat_map(|p| p.0.iter().map(|term| term.0));
         let mut coordinates: Vec<(u32, usize)> =

@@ -114,31 +114,48 @@ impl SkinWeights {
                 format!("expected {cage} vertices, got {}", self.len()),
             ));
         }
-        let joint_count = self.joints.iter().max().map_or(0, |j| usize::from(*j) + 1);
         let mut out = Self { offsets: vec![0], ..Self::default() };
-        let mut sums = vec![0.0_f32; joint_count];
-        let mut touched: Vec<u16> = Vec::new();
-        for r in 0..subdivision.refined().vertex_count {
-            for (vertex, share) in subdivision.stencil(r) {
-                for (joint, weight) in self.of(vertex as usize) {
-                    if sums[usize::from(joint)] == 0.0 && !touched.contains(&joint) {
-                        touched.push(joint);
-                    }
-                    sums[usize::from(joint)] += weight * share;
-                }
-            }
-            touched.sort_unstable();
-            for joint in touched.drain(..) {
-                let weight = std::mem::take(&mut sums[usize::from(joint)]);
-                // Vertex points have small negative stencil weights where few faces meet.
-                if weight > 1e-6 {
-                    out.joints.push(joint);
-                    out.weights.push(weight);
-                }
+        let mut sums = vec![0.0_f32; self.joint_count()];
+        for vertex in 0..subdivision.refined().vertex_count {
+            for (joint, weight) in self.refined_row(subdivision, vertex, &mut sums) {
+                out.joints.push(joint);
+                out.weights.push(weight);
             }
             out.offsets.push(out.joints.len() as u32);
         }
-        Self::new(out.offsets, out.joints, out.weights, joint_count)
+        Self::new(out.offsets, out.joints, out.weights, self.joint_count())
+    }
+
+    /// Joints and weights of one vertex of the refined surface, as [`refine`](Self::refine) gives them: joints ascending, weights
+    /// summing to one.
+    pub fn refined(&self, subdivision: &Subdivision, vertex: usize) -> Vec<(u16, f32)> {
+        let mut row = self.refined_row(subdivision, vertex, &mut vec![0.0; self.joint_count()]);
+        let sum: f32 = row.iter().map(|r| r.1).sum();
+        for (_, weight) in &mut row {
+            *weight /= sum;
+        }
+        row
+    }
+
+    fn joint_count(&self) -> usize {
+        self.joints.iter().max().map_or(0, |j| usize::from(*j) + 1)
+    }
+
+    /// The same before it is normalised. `sums` holds a zero per joint, before and after.
+    fn refined_row(&self, subdivision: &Subdivision, vertex: usize, sums: &mut [f32]) -> Vec<(u16, f32)> {
+        let mut touched: Vec<u16> = Vec::new();
+        for (cage, share) in subdivision.stencil(vertex) {
+            for (joint, weight) in self.of(cage as usize) {
+                if sums[usize::from(joint)] == 0.0 && !touched.contains(&joint) {
+                    touched.push(joint);
+                }
+                sums[usize::from(joint)] += weight * share;
+            }
+        }
+        touched.sort_unstable();
+        let row = touched.into_iter().map(|joint| (joint, std::mem::take(&mut sums[usize::from(joint)])));
+        // Vertex points have small negative stencil weights where few faces meet.
+        row.filter(|(_, weight)| *weight > 1e-6).collect()
     }
 
     /// The strongest influences of each vertex, normalised.

@@ -14,6 +14,7 @@ pub use rig::{JointSource, Rig};
 pub use targets::{Modifier, Target, TargetSet};
 pub use wheel::{WHEEL_NAME, WHEEL_SHA256, Wheel};
 
+use anthronet::skeleton::SkinWeights;
 use glam::Vec3;
 
 use crate::Result;
@@ -48,6 +49,22 @@ impl Assets {
         let targets = TargetSet::read(wheel, &mesh, &rig)?;
         let base = gather(&mesh, &rig, &mesh.raw_positions);
         Ok(Self { mesh, rig, targets, base })
+    }
+
+    /// Skin weights of the cage.
+    ///
+    /// # Errors
+    /// When the rig's weights are not usable.
+    pub fn cage_skin(&self) -> Result<SkinWeights> {
+        let (mut offsets, mut joints, mut weights) = (vec![0], Vec::new(), Vec::new());
+        for row in &self.rig.weights[..self.mesh.cage.vertex_count] {
+            for &(joint, weight) in row {
+                joints.push(joint);
+                weights.push(weight);
+            }
+            offsets.push(joints.len() as u32);
+        }
+        Ok(SkinWeights::new(offsets, joints, weights, self.rig.joints.len())?)
     }
 
     /// Number of points: cage, accessories, joint heads, joint tails.

@@ -46,8 +46,7 @@ pub(super) struct Row {
     sides: Option<[&'static str; 2]>,
     part: BodyPart,
     /// The nearest measure of a published standard or survey: ISO 8559-1:2017 (garment sizing), ISO 7250-1:2017
-    /// (technological design), ANSUR II (Gordon et al. 2014) and NHANES (2017 to March 2020). Nearest, not the same: ours are taken in the T-pose,
-    /// between points of the mesh.
+    /// (technological design), ANSUR II (Gordon et al. 2014) and NHANES (2017 to March 2020); `, near` where ours only resembles it.
     standard: Option<&'static str>,
 }
 
@@ -81,13 +80,13 @@ const ROWS: &[Row] = &[
     central!("hip_circumference", Trunk, Some("ISO 8559-1 hip girth; ANSUR II buttockcircumference; NHANES bmxhip")),
     central!("height", Trunk, Some("ISO 7250-1 stature; ANSUR II stature; NHANES bmxht")),
     central!("shoulder_width", Trunk, Some("ISO 7250-1 shoulder (biacromial) breadth; ANSUR II biacromialbreadth")),
-    central!("torso_height_back", Trunk, Some("ISO 8559-1 back neck point to waist; ANSUR II waistbacklength")),
-    central!("torso_height_front", Trunk, Some("ANSUR II waistfrontlengthsitting")),
+    central!("torso_height_back", Trunk, Some("ISO 8559-1 back neck point to waist, near; ANSUR II waistbacklength, near")),
+    central!("torso_height_front", Trunk, Some("ANSUR II waistfrontlengthsitting, near")),
     central!("head_circumference", Head, Some("ISO 8559-1 head girth; ANSUR II headcircumference")),
     central!("neck_circumference", Head, Some("ISO 8559-1 neck girth; ANSUR II neckcircumference")),
     central!("head_height", Head, Some("ISO 8559-1 head height")),
     central!("neck_length_midline", Head, None),
-    central!("neck_length_lateral", Head, Some("ANSUR II earheight less neckheight, near")),
+    central!("neck_length_lateral", Head, None),
     sided!("hand_size", Hand, Some("ISO 7250-1 hand length; ANSUR II handlength")),
     sided!("arm_circumference", Arm, Some("ISO 8559-1 upper-arm girth; ANSUR II bicepscircumferenceflexed")),
     sided!("arm_length", Arm, Some("ISO 8559-1 upper-arm length; ANSUR II acromionradialelength")),
