@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use anthronet::condition::Fill;
+use anthronet::condition::{Fill, Population};
 use anthronet::measure::Sex;
 use anthronet::mesh::Lod;
 use anthronet::retarget::FingerMode;
@@ -27,6 +27,15 @@ pub(crate) fn fill() -> impl TypedValueParser<Value = Fill> {
         PossibleValue::new(fill.name()).help(match fill {
             Fill::Mean => "The most likely values, given the others",
             Fill::Sample => "A random draw of plausible values, given the others; `--seed` selects it",
+        })
+    }))
+}
+
+pub(crate) fn population() -> impl TypedValueParser<Value = Population> {
+    one_of(Population::ALL.map(|population| {
+        PossibleValue::new(population.name()).help(match population {
+            Population::Ansur2 => "Soldiers of the United States, 2010 to 2012 (ANSUR II)",
+            Population::Synthetic => "The bodies that the model was trained on: every build and stature alike",
         })
     }))
 }

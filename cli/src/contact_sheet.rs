@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anthronet::Body;
-use anthronet::condition::{Fill, Request, SexPrior};
+use anthronet::condition::{Fill, Population, Request, SexPrior};
 use anthronet::format::write_atomic;
 use anthronet::measure::{MeasureId, Sex};
 use anthronet::mesh::Lod;
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     check_extension("-o", &arguments.output, &["png"])?;
     FileSet::default().model().writes("-o", Some(&arguments.output)).check()?;
     let model = Model::from_environment()?;
-    let typical = Sex::ALL.map(|sex| Typical::of(model.prior().of(sex)));
+    let typical = Sex::ALL.map(|sex| Typical::of(model.prior(Population::default()).of(sex)));
     let people = people(usize::from(arguments.count), arguments.seed, &typical);
     let columns = usize::from(arguments.columns).min(people.len());
     let rows = people.len().div_ceil(columns);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anthronet::condition::{Fill, Request};
+use anthronet::condition::{Fill, Population, Request};
 use anthronet::measure::Sex;
 use anthronet::{Error, Side};
 use clap::Args;
@@ -42,6 +42,11 @@ pub(crate) struct RequestArguments {
     #[arg(long, value_parser = choice::fill())]
     pub(crate) fill: Option<Fill>,
 
+    /// Whose measures fill the missing ones and tell what is unusual: the people of a survey, or the bodies of the training,
+    /// of every build and stature alike [default: ansur2].
+    #[arg(long, value_parser = choice::population())]
+    pub(crate) population: Option<Population>,
+
     /// If the measures cannot belong to one person, use the nearest feasible ones instead of failing.
     #[arg(long)]
     pub(crate) nearest: bool,
@@ -71,6 +76,9 @@ impl RequestArguments {
         }
         if let Some(fill) = self.fill {
             request.fill = fill;
+        }
+        if let Some(population) = self.population {
+            request.population = population;
         }
         request.nearest |= self.nearest;
         Ok(request)

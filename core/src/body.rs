@@ -101,7 +101,7 @@ impl Body {
         let report = Report::new(
             request,
             &solved.prepared,
-            model.prior(),
+            model.priors(),
             &solved.outcome,
             mass.mass_kg,
             mass.volume_m3,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use anthronet::condition::Request;
+use anthronet::condition::{Population, Request};
 use anthronet::format::gltf::to_glb;
 use anthronet::measure::{Definitions, MEASURE_COUNT, MeasureId, Measurements};
 use anthronet::model::Model;
@@ -186,7 +186,7 @@ fn fill(
         let id = MeasureId::from_name(name).ok_or_else(|| Error::Invalid(format!("no measure {name}")))?;
         known[id.index()] = Some(measures[id.index()]);
     }
-    let conditional = model.prior().of(*sex).condition(&known)?;
+    let conditional = model.prior(Population::Synthetic).of(*sex).condition(&known)?;
     let (low, high) = conditional.interval90();
     let open: Vec<usize> = (0..MEASURE_COUNT).filter(|i| known[*i].is_none()).collect();
     let n = open.len() as f64;

@@ -21,6 +21,7 @@ mod losses;
 pub mod measures;
 pub mod pack;
 pub mod people;
+pub mod population;
 mod progress;
 pub mod reduce;
 pub mod sampling;

@@ -13,6 +13,7 @@ use crate::corpus::{Corpus, DATA_VERSION, SEED};
 use crate::dataset::{Bodies, Dataset};
 use crate::generator::TrainedGenerator;
 use crate::reduce::{SHARES, reduce};
+use crate::survey::Survey;
 use crate::{Error, Result};
 
 /// Components stored as half floats; the rest are bytes.
@@ -39,6 +40,7 @@ pub fn pack(
     let (coarse, scales) = bytes(basis, surface);
     let joints = &corpus.assets.rig.joints;
     let config: GeneratorConfig = generator.config.clone();
+    let bodies = prior(&dataset.train)?;
     Ok(ModelParts {
         cage: corpus.cage().clone(),
         reduced: [
@@ -68,7 +70,7 @@ pub fn pack(
             .map(|ik| basis.rows[ik])
             .collect(),
         skin: skin(corpus),
-        prior: prior(&dataset.train)?,
+        priors: [people(&bodies)?, bodies],
         ranges: ranges(&dataset.train),
         standardisation: [generator.measure_mean.to_vec(), generator.measure_std.to_vec()],
         networks: generator.tensors.clone(),
@@ -108,6 +110,15 @@ fn skin(corpus: &Corpus) -> (Vec<u32>, Vec<u16>, Vec<f32>) {
         offsets.push(joints.len() as u32);
     }
     (offsets, joints, weights)
+}
+
+/// The prior of ANSUR II's people.
+fn people(bodies: &[Vec<f64>; 3]) -> Result<[Vec<f64>; 3]> {
+    let statistics = crate::survey::committed()?;
+    let statistics = statistics
+        .get(Survey::Ansur2.name())
+        .ok_or_else(|| Error::Invalid("no statistics of ANSUR II".into()))?;
+    crate::population::prior(Survey::Ansur2, statistics, bodies)
 }
 
 /// Means, covariances and quantiles of the measures, female first.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use anthronet::condition::{FEASIBILITY_NOISE, Request};
+use anthronet::condition::{FEASIBILITY_NOISE, Population, Request};
 use anthronet::measure::{BodyPart, MeasureId, Sex, expand_name};
 use anthronet::model::Model;
 use rayon::prelude::*;
@@ -290,7 +290,7 @@ impl<'a> Scoring<'a> {
         });
         let mass =
             person[self.mass_column].map(|own| (report.mass_kg - own, self.mass.predict(&values) - own));
-        let prior = self.model.prior().of(self.people.sex);
+        let prior = self.model.prior(Population::Ansur2).of(self.people.sex);
         Ok(Tried::Made(Outcome {
             open: open.collect(),
             mass,

@@ -17,7 +17,7 @@ pub use crate::error::{Conflict, ConflictMeasure};
 pub use error::{FEASIBILITY_NOISE, FILL_NOISE, PROJECTION_NOISE};
 pub use feasibility::{Feasibility, Limits};
 pub use prepare::Prepared;
-pub use prior::{Conditional, GivenMeasures, Prior, QUANTILE_COUNT, SexPrior};
+pub use prior::{Conditional, GivenMeasures, Population, Prior, Priors, QUANTILE_COUNT, SexPrior};
 pub use report::{Filled, MeasureReport, Report, refusal_json};
 pub use request::{Fill, LATENT_LIMIT, MeasureRange, Request};
 pub use solve::{MeasuredShape, SolveOptions, SolveOutcome, solve};

@@ -1,6 +1,6 @@
 //! A synthetic population for tests: two factors (size, girth) plus independent residuals, both sexes, no model file.
 
-use super::prior::{Prior, QUANTILE_COUNT, SexPrior};
+use super::prior::{Prior, Priors, QUANTILE_COUNT, SexPrior};
 use super::request::MeasureRange;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements};
 
@@ -64,6 +64,11 @@ pub(crate) fn sex_prior(size: f64, girth: f64) -> SexPrior {
 /// Women, and men larger by one and a half deviations of size.
 pub(crate) fn prior() -> Prior {
     Prior::new(sex_prior(0.0, 0.0), sex_prior(1.5, 0.0))
+}
+
+/// The same as people's and as bodies' prior.
+pub(crate) fn priors() -> Priors {
+    Priors::new([prior(), prior()])
 }
 
 /// Ranges of ± six standard deviations in whole centimetres, none below one.

@@ -10,7 +10,8 @@ use super::file::{ModelParts, Provenance};
 use super::measured_space::MeasuredSpace;
 use super::shape_space::ShapeSpace;
 use crate::condition::{
-    Limits, MeasureRange, MeasuredShape, Prepared, Prior, Request, SolveOptions, SolveOutcome, solve,
+    Limits, MeasureRange, MeasuredShape, Population, Prepared, Prior, Priors, Request, SolveOptions,
+    SolveOutcome, solve,
 };
 use crate::measure::{Definitions, Landmarks, MEASURE_COUNT, Measurements, Sex};
 use crate::network::{Decoder, Encoder};
@@ -40,7 +41,7 @@ struct Shared {
     measured: MeasuredSpace,
     joint_mean: Vec<f32>,
     joint_rows: Vec<f32>,
-    prior: Prior,
+    priors: Priors,
     ranges: [MeasureRange; MEASURE_COUNT],
     standardisation: [Measurements; 2],
     decoder: Decoder,
@@ -186,7 +187,7 @@ impl Model {
                 measured,
                 joint_mean: parts.joint_mean.clone(),
                 joint_rows: parts.joint_rows.clone(),
-                prior: parts.prior().map_err(named)?,
+                priors: parts.priors().map_err(named)?,
                 ranges: parts.measure_ranges().map_err(named)?,
                 standardisation: [standard(0)?, standard(1)?],
                 decoder,
@@ -222,9 +223,14 @@ impl Model {
         &self.shared.measured
     }
 
-    /// The priors over measures of both sexes.
-    pub fn prior(&self) -> &Prior {
-        &self.shared.prior
+    /// The priors over measures of all populations.
+    pub fn priors(&self) -> &Priors {
+        &self.shared.priors
+    }
+
+    /// The priors over measures of both sexes of a population.
+    pub fn prior(&self, population: Population) -> &Prior {
+        self.shared.priors.of(population)
     }
 
     /// The values that a request may give, metres, in the order of [`MeasureId`](crate::measure::MeasureId).
@@ -269,7 +275,7 @@ impl Model {
     pub fn solve(&self, request: &Request) -> Result<Solved> {
         let shared = &self.shared;
         let prepared =
-            Prepared::new(request, &shared.prior, &shared.ranges, &Limits::default(), self.latent_size())?;
+            Prepared::new(request, &shared.priors, &shared.ranges, &Limits::default(), self.latent_size())?;
         let decoded = self.decode(&prepared.projected, prepared.sex, &prepared.z);
         let outcome = self.solve_from(&decoded, &prepared.given)?;
         Ok(Solved { prepared, decoded, outcome })

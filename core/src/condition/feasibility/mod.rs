@@ -1,12 +1,13 @@
 //! Whether the given measures can belong to one person, and if not, which of them conflict and which values are nearest.
 //!
-//! The criterion is the Mahalanobis distance of the given measures from the prior's mean, with [`FEASIBILITY_NOISE`] added
+//! People's prior warns; what is refused is beyond the limit of that prior and of the trained bodies' too. The criterion is the
+//! Mahalanobis distance of the given measures from a prior's mean, with [`FEASIBILITY_NOISE`] added
 //! to the covariance. In that metric the point of the feasible ellipsoid nearest to the given measures lies on the line to
 //! the mean, so it has a closed form.
 
 use super::chi_squared;
 use super::error::FEASIBILITY_NOISE;
-use super::prior::{GivenMeasures, SexPrior};
+use super::prior::{GivenMeasures, Population, SexPrior};
 use super::request::{group_by, groups};
 use super::text::{list, metres};
 use crate::Result;
@@ -68,13 +69,15 @@ impl Limits {
 pub struct Feasibility {
     /// The sex that was assumed.
     pub sex: Sex,
+    /// Whose distance warns.
+    pub population: Population,
     /// Number of given measures.
     pub count: usize,
-    /// Mahalanobis distance from the mean; 0 when nothing is given.
+    /// Mahalanobis distance from that population's mean; 0 when nothing is given.
     pub distance: f64,
     /// The distance beyond which a request is unusual.
     pub warn: f64,
-    /// The distance beyond which a request is refused.
+    /// The distance beyond which a request is refused, from the mean of every prior.
     pub refuse: f64,
     /// The conflicts; empty for a feasible request.
     pub conflicts: Vec<Conflict>,
@@ -83,15 +86,27 @@ pub struct Feasibility {
 }
 
 impl Feasibility {
-    /// Judges the given measures (metres) of a person of this sex, by the prior of that sex.
+    /// Judges the given measures (metres) of a person of this sex, by priors of that sex: the first, of `population`, warns, and
+    /// what is beyond the limit of all of them is infeasible.
     ///
     /// # Errors
     /// As [`SexPrior::project`], with `limits.noise`.
-    pub fn assess(prior: &SexPrior, sex: Sex, given: &GivenMeasures, limits: &Limits) -> Result<Self> {
+    pub fn assess(
+        priors: [&SexPrior; 2],
+        population: Population,
+        sex: Sex,
+        given: &GivenMeasures,
+        limits: &Limits,
+    ) -> Result<Self> {
         let count = given.iter().flatten().count();
-        let distance = prior.distance_squared(given, limits.noise)?.sqrt();
+        let distances = [
+            priors[0].distance_squared(given, limits.noise)?.sqrt(),
+            priors[1].distance_squared(given, limits.noise)?.sqrt(),
+        ];
+        let distance = distances[0];
         let mut result = Self {
             sex,
+            population,
             count,
             distance,
             warn: limits.warn(count),
@@ -100,8 +115,8 @@ impl Feasibility {
             nearest: *given,
         };
         // An overflow counts as infeasible.
-        if distance.is_nan() || distance > result.refuse {
-            let search = Search::new(prior, given, limits)?;
+        if distances.iter().all(|distance| distance.is_nan() || *distance > result.refuse) {
+            let search = Search::new(priors, given, limits)?;
             let sets = search.resolve(&mut result.nearest)?;
             let mut covered = Vec::new();
             for set in &sets {
@@ -134,9 +149,9 @@ impl Feasibility {
             let step = libm::pow(10.0, libm::floor(libm::log10(one_in)) - 1.0);
             format!("about 1 in {}", thousands((one_in / step).round() * step))
         };
-        let sex = self.sex;
+        let (sex, members) = (self.sex, self.population.members());
         Some(format!(
-            "the given measures are unusual together: {rarity} {sex} bodies is so far from the average"
+            "the given measures are unusual together: {rarity} {sex} {members} is so far from their average"
         ))
     }
 
@@ -161,7 +176,7 @@ fn thousands(value: f64) -> String {
 
 /// The search for conflicts among one request's measures.
 struct Search<'a> {
-    prior: &'a SexPrior,
+    priors: [&'a SexPrior; 2],
     limits: &'a Limits,
     /// Indices of measures, one entry per name: both sides together where both are given.
     names: Vec<Vec<usize>>,
@@ -170,13 +185,13 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(prior: &'a SexPrior, given: &GivenMeasures, limits: &'a Limits) -> Result<Self> {
+    fn new(priors: [&'a SexPrior; 2], given: &GivenMeasures, limits: &'a Limits) -> Result<Self> {
         let names = group_by(given, |_, _| true)
             .into_iter()
             .map(|group| group.ids.iter().map(|id| id.index()).collect())
             .collect();
         let refuse = (0..=MEASURE_COUNT).map(|n| limits.refuse(n)).collect();
-        Ok(Self { prior, limits, names, refuse })
+        Ok(Self { priors, limits, names, refuse })
     }
 
     /// Replaces one conflict after another by its nearest values until all measures together are feasible; returns the
@@ -201,10 +216,20 @@ impl<'a> Search<'a> {
 
     /// Distance of these measures as a share of the limit of feasibility; above 1 they conflict.
     fn excess(&self, set: &[usize], values: &GivenMeasures) -> Result<f64> {
+        Ok(self.nearer(set, values)?.1)
+    }
+
+    /// The prior that these measures are nearer to, and the distance from it as a share of the limit.
+    fn nearer(&self, set: &[usize], values: &GivenMeasures) -> Result<(&'a SexPrior, f64)> {
         let part = subset(values, set);
-        let distance = self.prior.distance_squared(&part, self.limits.noise)?.sqrt();
-        let excess = distance / self.refuse[set.len().min(MEASURE_COUNT)];
-        Ok(if excess.is_nan() { f64::INFINITY } else { excess })
+        let of = |prior: &'a SexPrior| -> Result<(&'a SexPrior, f64)> {
+            let distance = prior.distance_squared(&part, self.limits.noise)?.sqrt();
+            let excess = distance / self.refuse[set.len().min(MEASURE_COUNT)];
+            Ok((prior, if excess.is_nan() { f64::INFINITY } else { excess }))
+        };
+        let [people, bodies] = self.priors.map(of);
+        let (people, bodies) = (people?, bodies?);
+        Ok(if bodies.1 < people.1 { bodies } else { people })
     }
 
     /// A conflicting set of the fewest names possible, the worst of that size; larger than [`FULL_SEARCH`], a minimal one.
@@ -255,8 +280,8 @@ impl<'a> Search<'a> {
     /// sides stay equal.
     fn make_feasible(&self, set: &[usize], values: &mut GivenMeasures) -> Result<()> {
         let start = *values;
-        let mean = self.prior.mean();
-        let excess = self.excess(set, values)?;
+        let (prior, excess) = self.nearer(set, values)?;
+        let mean = prior.mean();
         let mut scale = if excess.is_finite() { NEAREST_SCALE / excess.max(1.0) } else { 0.0 };
         for attempt in 0..=MAX_SHRINKS {
             if attempt == MAX_SHRINKS {

@@ -11,7 +11,11 @@ fn assess(pairs: &[(&str, f64)]) -> Feasibility {
     for (name, value) in pairs {
         request.set(name, *value).unwrap();
     }
-    Feasibility::assess(&sex_prior(0.0, 0.0), Sex::Female, &request.measures, &Limits::default()).unwrap()
+    judge(&sex_prior(0.0, 0.0), &request.measures, &Limits::default())
+}
+
+fn judge(prior: &SexPrior, given: &GivenMeasures, limits: &Limits) -> Feasibility {
+    Feasibility::assess([prior; 2], Population::Ansur2, Sex::Female, given, limits).unwrap()
 }
 
 fn names(conflict: &Conflict) -> Vec<&str> {
@@ -90,13 +94,13 @@ fn a_conflict_of_many_is_found_by_greedy_removal() {
     let covariance: Vec<_> = (0..n * n).map(|i| f64::from(u8::from(i % (n + 1) == 0))).collect();
     let p = SexPrior::new(&[10.0; MEASURE_COUNT], &covariance, &vec![10.0; n * QUANTILE_COUNT]).unwrap();
     let given = std::array::from_fn(|i| MeasureId::from_index(i)?.side().is_none().then_some(12.0));
-    let found = Feasibility::assess(&p, Sex::Female, &given, &limits).unwrap();
+    let found = judge(&p, &given, &limits);
     assert!(found.conflicts[0].measures.len() > FULL_SEARCH, "{found:?}");
     assert!(is_feasible(&p, &found.nearest, &limits));
 }
 
 fn is_feasible(p: &SexPrior, given: &GivenMeasures, limits: &Limits) -> bool {
-    Feasibility::assess(p, Sex::Female, given, limits).unwrap().is_feasible()
+    judge(p, given, limits).is_feasible()
 }
 
 #[test]
@@ -107,7 +111,7 @@ fn a_request_of_many_conflicts_gets_a_short_message() {
         let deviation = p.covariance()[i * (MEASURE_COUNT + 1)].sqrt();
         Some(p.mean()[i] + 3.0 * deviation * random.normal())
     });
-    let found = Feasibility::assess(&p, Sex::Female, &given, &Limits::default()).unwrap();
+    let found = judge(&p, &given, &Limits::default());
     let last = &found.conflicts.last().unwrap().message;
     assert!(last.contains(" measures do not go together for a female, most of all "), "{last}");
     assert!(found.infeasible().to_string().len() < 1000, "{}", found.infeasible().to_string());
@@ -122,7 +126,37 @@ fn huge_numbers_are_judged_too() {
     }
     let mut given = [None; MEASURE_COUNT];
     given[0] = Some(f64::NAN);
-    assert!(Feasibility::assess(&sex_prior(0.0, 0.0), Sex::Female, &given, &Limits::default()).is_err());
+    let p = sex_prior(0.0, 0.0);
+    let judged = Feasibility::assess([&p; 2], Population::Ansur2, Sex::Female, &given, &Limits::default());
+    assert!(judged.is_err());
+}
+
+#[test]
+fn what_people_are_not_but_bodies_are_gives_a_warning() {
+    // Bodies whose girth is four deviations larger than people's.
+    let (people, bodies) = (sex_prior(0.0, 0.0), sex_prior(0.0, 4.0));
+    let assess = |waist: f64, hip: f64| {
+        let mut given = [None; MEASURE_COUNT];
+        for (name, value) in [("height", 1.69), ("waist_circumference", waist), ("hip_circumference", hip)] {
+            given[MeasureId::from_name(name).unwrap().index()] = Some(value);
+        }
+        let priors = [&people, &bodies];
+        Feasibility::assess(priors, Population::Ansur2, Sex::Female, &given, &Limits::default()).unwrap()
+    };
+    let heavy = assess(1.55, 1.50);
+    assert!(heavy.is_feasible() && heavy.distance > heavy.warn, "{heavy:?}");
+    assert!(heavy.warning().unwrap().contains("female people of ANSUR II"), "{:?}", heavy.warning());
+    // Contradicting both, it is moved to the nearer of them.
+    let wrong = assess(1.75, 0.85);
+    assert!(!wrong.is_feasible());
+    let nearest = Feasibility::assess(
+        [&people, &bodies],
+        Population::Ansur2,
+        Sex::Female,
+        &wrong.nearest,
+        &Limits::default(),
+    );
+    assert!(nearest.unwrap().is_feasible());
 }
 
 #[test]
@@ -147,7 +181,7 @@ proptest! {
             let deviation = p.covariance()[i * (MEASURE_COUNT + 1)].sqrt();
             given[i] = mask[i].then(|| p.mean()[i] + spread * deviation * random.normal());
         }
-        let found = Feasibility::assess(&p, Sex::Female, &given, &limits).unwrap();
+        let found = judge(&p, &given, &limits);
         prop_assert_eq!(found.is_feasible(), found.distance <= found.refuse);
         prop_assert!(is_feasible(&p, &found.nearest, &limits), "{:?}", found);
         prop_assert_eq!(found.nearest.map(|v| v.is_some()).to_vec(), mask.clone());

@@ -2,7 +2,7 @@
 
 use super::error::PROJECTION_NOISE;
 use super::feasibility::{Feasibility, Limits};
-use super::prior::{Conditional, GivenMeasures, Prior, SexPrior};
+use super::prior::{Conditional, GivenMeasures, Population, Prior, Priors, SexPrior};
 use super::request::{Fill, MeasureRange, Request};
 use crate::error::Conflict;
 use crate::measure::{MEASURE_COUNT, MeasureId, Measurements, Sex};
@@ -25,7 +25,7 @@ pub struct Prepared {
     pub given: GivenMeasures,
     /// All measures: the given ones and the filled ones.
     pub filled: Measurements,
-    /// `filled` after [`SexPrior::project`]: the measures that the network is conditioned on.
+    /// `filled` after [`SexPrior::project`] by the prior of the trained bodies: the measures that the network is conditioned on.
     pub projected: Measurements,
     /// Lower end of each open measure's 90 % interval, conditioned on the given ones; the value of a given one.
     pub low90: Measurements,
@@ -47,7 +47,7 @@ impl Prepared {
     /// the nearest feasible ones.
     pub fn new(
         request: &Request,
-        prior: &Prior,
+        priors: &Priors,
         ranges: &[MeasureRange; MEASURE_COUNT],
         limits: &Limits,
         latent_size: usize,
@@ -56,10 +56,13 @@ impl Prepared {
         let mut warnings = Vec::new();
         let sex = match request.sex {
             Some(sex) => sex,
-            None => guess_sex(request, prior, limits, &mut warnings)?,
+            None => guess_sex(request, priors.of(request.population), limits, &mut warnings)?,
         };
-        let prior = prior.of(sex);
-        let feasibility = Feasibility::assess(prior, sex, &request.measures, limits)?;
+        let prior = priors.of(request.population).of(sex);
+        let bodies = priors.of(Population::Synthetic).of(sex);
+        let judges = [prior, bodies];
+        let feasibility =
+            Feasibility::assess(judges, request.population, sex, &request.measures, limits)?;
         if !feasibility.is_feasible() {
             if !request.nearest {
                 return Err(Error::Infeasible(feasibility.infeasible()));
@@ -79,7 +82,7 @@ impl Prepared {
             sex,
             given: feasibility.nearest,
             filled,
-            projected: prior.project(&filled, PROJECTION_NOISE)?,
+            projected: bodies.project(&filled, PROJECTION_NOISE)?,
             low90,
             high90,
             z: request.latent(latent_size),

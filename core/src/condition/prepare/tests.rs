@@ -1,9 +1,9 @@
-use super::super::test_prior::{prior, ranges};
+use super::super::test_prior::{prior, priors, ranges};
 use super::*;
 use crate::measure::MeasureId;
 
 fn prepare(request: &Request) -> Result<Prepared> {
-    Prepared::new(request, &prior(), &ranges(), &Limits::default(), 10)
+    Prepared::new(request, &priors(), &ranges(), &Limits::default(), 10)
 }
 
 #[test]

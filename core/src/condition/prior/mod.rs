@@ -5,6 +5,10 @@
 //! likelihoods of the given measures. In formulas G are the given measures, U the open ones, A their values and e the standard
 //! deviation of the measurement noise.
 
+mod population;
+
+pub use population::{Population, Priors};
+
 use super::chi_squared;
 use super::error::FILL_NOISE;
 use crate::math::cholesky::Cholesky;

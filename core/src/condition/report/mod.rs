@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::prepare::Prepared;
-use super::prior::Prior;
+use super::prior::{Population, Priors};
 use super::request::{Fill, Request, group_by};
 use super::solve::SolveOutcome;
 use crate::error::{Conflict, Infeasible};
@@ -52,7 +52,7 @@ pub struct MeasureReport {
     pub low90: f64,
     /// Upper end of that interval.
     pub high90: f64,
-    /// Percentage of people of this sex, 0 to 100, whose value is at most the obtained one.
+    /// Percentage of the population's people of this sex, 0 to 100, whose value is at most the obtained one.
     pub percentile: f64,
 }
 
@@ -71,6 +71,8 @@ pub struct Report {
     pub sex: Sex,
     /// How open measures were filled.
     pub fill: Fill,
+    /// Whose prior filled them.
+    pub population: Population,
     /// The latent vector of the body.
     pub z: Vec<f64>,
     /// Mass, kg.
@@ -93,7 +95,7 @@ impl Report {
     pub fn new(
         request: &Request,
         prepared: &Prepared,
-        prior: &Prior,
+        priors: &Priors,
         outcome: &SolveOutcome,
         mass: f64,
         volume: f64,
@@ -102,7 +104,7 @@ impl Report {
             Fill::Mean => Filled::PriorMean,
             Fill::Sample => Filled::PriorSample,
         };
-        let prior = prior.of(prepared.sex);
+        let prior = priors.of(request.population).of(prepared.sex);
         let measures: Vec<_> = MeasureId::all()
             .map(|id| {
                 let i = id.index();
@@ -135,6 +137,7 @@ impl Report {
             seed: request.seed,
             sex: prepared.sex,
             fill: request.fill,
+            population: request.population,
             z: prepared.z.clone(),
             mass_kg: mass,
             volume_m3: volume,

@@ -1,6 +1,6 @@
 use super::super::feasibility::Limits;
 use super::super::solve::{MeasuredShape, SolveOptions, solve};
-use super::super::test_prior::{prior, ranges};
+use super::super::test_prior::{priors, ranges};
 use super::*;
 use crate::measure::{MEASURE_COUNT, Measurements};
 
@@ -23,11 +23,11 @@ impl MeasuredShape for Identity {
 }
 
 fn report(request: &Request) -> Report {
-    let prepared = Prepared::new(request, &prior(), &ranges(), &Limits::default(), 2).unwrap();
+    let prepared = Prepared::new(request, &priors(), &ranges(), &Limits::default(), 2).unwrap();
     let variances = [1.0; MEASURE_COUNT];
     let options = SolveOptions::default();
     let outcome = solve(&Identity, &prepared.projected, &variances, &prepared.given, &options).unwrap();
-    Report::new(request, &prepared, &prior(), &outcome, 65.0, 0.066)
+    Report::new(request, &prepared, &priors(), &outcome, 65.0, 0.066)
 }
 
 fn request() -> Request {
@@ -101,7 +101,7 @@ fn a_replaced_request_says_so() {
 fn a_refused_request_is_reported_with_its_conflicts() {
     let request = Request { sex: Some(Sex::Female), seed: 3, ..Request::default() };
     let request = request.with("waist_circumference", 0.55).unwrap().with("hip_circumference", 1.38).unwrap();
-    let error = Prepared::new(&request, &prior(), &ranges(), &Limits::default(), 2).unwrap_err();
+    let error = Prepared::new(&request, &priors(), &ranges(), &Limits::default(), 2).unwrap_err();
     let crate::Error::Infeasible(why) = &error else { panic!("{error}") };
     let json: serde_json::Value = serde_json::from_str(&refusal_json(&request, why)).unwrap();
     let measures = json["measures"].as_array().unwrap();

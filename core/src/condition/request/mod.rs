@@ -8,7 +8,7 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use super::prior::GivenMeasures;
+use super::prior::{GivenMeasures, Population};
 use super::text::{list, metres};
 use crate::measure::{MEASURE_COUNT, MeasureId, Sex, expand_name};
 use crate::random::Random;
@@ -81,6 +81,8 @@ pub struct Request {
     pub z: Option<Vec<f64>>,
     /// How open measures are filled.
     pub fill: Fill,
+    /// Whose prior fills them, and judges what is unusual.
+    pub population: Population,
     /// Whether to replace an infeasible request by the nearest feasible one, with a warning, instead of refusing it.
     pub nearest: bool,
 }
@@ -99,6 +101,8 @@ struct RequestFile {
     z: Option<Vec<f64>>,
     #[serde(default)]
     fill: Fill,
+    #[serde(default)]
+    population: Population,
     #[serde(default)]
     nearest: bool,
 }
@@ -140,6 +144,7 @@ impl Default for Request {
             seed: 0,
             z: None,
             fill: Fill::Mean,
+            population: Population::default(),
             nearest: false,
         }
     }
@@ -148,7 +153,8 @@ impl Default for Request {
 impl Request {
     /// Parses JSON such as `{"sex": "female", "measures": {"height": 1.70, "arm_length": 0.33}, "seed": 7}`.
     ///
-    /// All fields are optional: `sex`, `measures`, `seed`, `z` (numbers), `fill` (`"mean"` or `"sample"`), `nearest`.
+    /// All fields are optional: `sex`, `measures`, `seed`, `z` (numbers), `fill` (`"mean"` or `"sample"`),
+    /// `population` (`"ansur2"` or `"synthetic"`), `nearest`.
     /// A measure without its side sets both sides, and one with its side overrides that, in any order. `null` is the same
     /// as leaving a measure out.
     ///
@@ -170,6 +176,7 @@ impl Request {
             seed: file.seed,
             z: file.z,
             fill: file.fill,
+            population: file.population,
             nearest: file.nearest,
             ..Self::default()
         };
@@ -208,6 +215,7 @@ impl Request {
             object.insert("z".into(), z.clone().into());
         }
         object.insert("fill".into(), self.fill.name().into());
+        object.insert("population".into(), self.population.name().into());
         object.insert("nearest".into(), self.nearest.into());
         Value::from(object).to_string()
     }

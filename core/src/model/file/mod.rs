@@ -1,6 +1,6 @@
 //! The model file: a safetensors file with everything that training produced.
 //!
-//! Format version 2. [`ModelParts::to_bytes`] names the arrays. The metadata entry `anthronet` is JSON: names and parents of
+//! Format version 3. [`ModelParts::to_bytes`] names the arrays. The metadata entry `anthronet` is JSON: names and parents of
 //! the joints, names of the accessories, the networks' configuration, hashes of the topology and of the measure definitions,
 //! provenance, and a checksum: the SHA-256 of the whole file with the checksum's own 64 digits as zeros, which detects a
 //! change anywhere in the file. Sizes in the file are checked against each other before they are used.
@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 
 use super::character::{Accessory, Character, ReducedMesh};
 use super::shape_space::ShapeSpace;
-use crate::condition::{MeasureRange, Prior};
+use crate::condition::{MeasureRange, Population, Prior, Priors};
 use crate::measure::MEASURE_COUNT;
 use crate::mesh::Topology;
 use crate::network::Tensors;
@@ -25,7 +25,7 @@ use crate::skeleton::{JointTree, SkinWeights};
 use crate::{Error, Result};
 
 /// Version of the file's layout; a file of another version is refused.
-pub const FORMAT_VERSION: u32 = 2;
+pub const FORMAT_VERSION: u32 = 3;
 
 /// How the model was trained, and its scores; for information only, shown by `info`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -71,9 +71,9 @@ pub struct ModelParts {
     pub joint_rows: Vec<f32>,
     /// Skin weights of cage and accessories, the arguments of [`SkinWeights::new`]: offsets of the rows, joints, weights.
     pub skin: (Vec<u32>, Vec<u16>, Vec<f32>),
-    /// Per sex, female first: means `(2, M)` in m, covariances `(2, M, M)` in m², quantiles `(2, M, 101)` in m;
-    /// M is [`MEASURE_COUNT`].
-    pub prior: [Vec<f64>; 3],
+    /// Per population in the order of [`Population::ALL`], and per sex, female first: means `(2, M)` in m, covariances
+    /// `(2, M, M)` in m², quantiles `(2, M, 101)` in m; M is [`MEASURE_COUNT`].
+    pub priors: [[Vec<f64>; 3]; 2],
     /// Per measure the smallest and largest value that a request may give, `(M, 2)`, metres.
     pub ranges: Vec<f64>,
     /// Mean and standard deviation that measures are standardised with, one each per measure, metres.
@@ -126,6 +126,9 @@ const NO_CHECKSUM: [u8; 64] = [b'0'; 64];
 
 const METADATA_KEY: &str = "anthronet";
 
+/// The arrays of a prior, in the order of [`ModelParts::priors`].
+const PRIOR_ARRAYS: [&str; 3] = ["mean", "covariance", "quantiles"];
+
 impl ModelParts {
     /// The file's bytes; the same parts give the same bytes.
     ///
@@ -168,8 +171,11 @@ impl ModelParts {
         arrays.add("skin.offsets", Dtype::U32, vec![self.skin.0.len()], &self.skin.0);
         arrays.add("skin.joints", Dtype::U16, vec![self.skin.1.len()], &self.skin.1);
         arrays.add("skin.weights", Dtype::F32, vec![self.skin.2.len()], &self.skin.2);
-        for (name, data) in ["mean", "covariance", "quantiles"].iter().zip(&self.prior) {
-            arrays.add(&format!("prior.{name}"), Dtype::F64, vec![2, data.len() / 2], data);
+        for (population, prior) in Population::ALL.iter().zip(&self.priors) {
+            for (name, data) in PRIOR_ARRAYS.iter().zip(prior) {
+                let name = format!("prior.{}.{name}", population.name());
+                arrays.add(&name, Dtype::F64, vec![2, data.len() / 2], data);
+            }
         }
         arrays.add("measures.ranges", Dtype::F64, vec![MEASURE_COUNT, 2], &self.ranges);
         for (name, data) in ["mean", "deviation"].iter().zip(&self.standardisation) {
@@ -248,6 +254,11 @@ impl ModelParts {
                 networks.insert(key.to_owned(), reader.network(name)?);
             }
         }
+        let prior = |population: Population| -> Result<[Vec<f64>; 3]> {
+            let [mean, covariance, quantiles] = PRIOR_ARRAYS
+                .map(|name| reader.get(&format!("prior.{}.{name}", population.name()), Dtype::F64));
+            Ok([mean?, covariance?, quantiles?])
+        };
         let (joint_names, joint_parents) = metadata.joints.into_iter().unzip();
         Ok(Self {
             reduced: [reader.reduced("lod2")?, reader.reduced("lod3")?],
@@ -267,11 +278,7 @@ impl ModelParts {
                 reader.get("skin.joints", Dtype::U16)?,
                 reader.get("skin.weights", Dtype::F32)?,
             ),
-            prior: [
-                reader.get("prior.mean", Dtype::F64)?,
-                reader.get("prior.covariance", Dtype::F64)?,
-                reader.get("prior.quantiles", Dtype::F64)?,
-            ],
+            priors: [prior(Population::Ansur2)?, prior(Population::Synthetic)?],
             ranges: reader.get("measures.ranges", Dtype::F64)?,
             standardisation: [
                 reader.get("measures.mean", Dtype::F64)?,
@@ -321,12 +328,15 @@ impl ModelParts {
         )
     }
 
-    /// The priors over measures of both sexes.
+    /// The priors over measures of all populations.
     ///
     /// # Errors
     /// As [`Prior::from_slices`].
-    pub fn prior(&self) -> Result<Prior> {
-        Prior::from_slices(&self.prior[0], &self.prior[1], &self.prior[2])
+    pub fn priors(&self) -> Result<Priors> {
+        let of = |[mean, covariance, quantiles]: &[Vec<f64>; 3]| {
+            Prior::from_slices(mean, covariance, quantiles)
+        };
+        Ok(Priors::new([of(&self.priors[0])?, of(&self.priors[1])?]))
     }
 
     /// The range of values of each measure, metres.
