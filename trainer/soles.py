@@ -24,6 +24,8 @@ REACH, HIGHEST = 0.03, 0.01
 # Vertices count that are under heel or ball in more than this share of the bodies.
 OFTEN = 0.1
 FLOOR = [1, 0, 1]
+# Price of a slope against what it explains: distances go together, and bodies of other proportions are not to be extrapolated.
+RIDGE = 0.02
 
 
 def read(path):
@@ -83,8 +85,8 @@ def bodies(anthronet):
         path = Path(folder) / "body.glb"
         for sex, count in BODIES.items():
             for seed in range(1, count + 1):
-                request = ["--sex", sex, "--fill", "sample", "--seed", str(seed), "--lod", "1", "-o", str(path)]
-                subprocess.run([anthronet, "generate", *request], check=True, capture_output=True)
+                request = ["--sex", sex, "--fill", "sample", "--population", "synthetic", "--seed", str(seed), "--lod", "1"]
+                subprocess.run([anthronet, "generate", *request, "-o", str(path)], check=True, capture_output=True)
                 yield read(path)
 
 
@@ -112,7 +114,9 @@ def main(anthronet):
     for name, part in parts.items():
         middle = vertices[:, part].mean(0)
         offsets = (vertices[:, part] - middle).reshape(len(vertices), -1)
-        slopes = np.linalg.lstsq(distances - mean, offsets, rcond=None)[0].reshape(len(mean), -1, 3)
+        apart = distances - mean
+        ridge = RIDGE * len(apart) * np.diag(spread**2)
+        slopes = np.linalg.solve(apart.T @ apart + ridge, apart.T @ offsets).reshape(len(mean), -1, 3)
         lines = [
             json.dumps([round(ball_weight[v], 3), *middle[i].round(4).tolist(), *slopes[:, i].ravel().round(3).tolist()])
             for i, v in enumerate(part)

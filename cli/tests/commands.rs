@@ -103,7 +103,7 @@ fn info_is_what_programs_expect() {
     let measures = info["measures"].as_array().unwrap();
     assert_eq!(measures.len(), MEASURE_COUNT);
     for measure in measures {
-        assert!(["tape", "slice", "length"].contains(&measure["kind"].as_str().unwrap()));
+        assert!(["tape", "slice", "length", "extent"].contains(&measure["kind"].as_str().unwrap()));
         let points = measure["points"].as_array().unwrap();
         assert!(!points.is_empty());
         for point in points {

@@ -107,7 +107,7 @@ const FURTHEST: &[(&str, DVec3, f64, f64)] = &[
     ("vertex", DVec3::Y, 0.2, 0.006),
     ("menton", DVec3::NEG_Y, 0.012, 0.0065),
     ("bustpoint", DVec3::Z, 0.02, 0.009),
-    ("buttock_point", DVec3::NEG_Z, 0.08, 0.013),
+    ("buttock_point", DVec3::NEG_Z, 0.08, 0.022),
     ("pternion", DVec3::NEG_Z, 0.06, 0.0065),
     ("acropodion", DVec3::Z, 0.2, 0.004),
     ("dactylion_3", DVec3::X, 0.2, 0.002),

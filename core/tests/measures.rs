@@ -1,7 +1,8 @@
 //! Measures against true planar cuts of the same body: loops are an approximation, and this holds how good.
 
+use anthronet::Body;
 use anthronet::condition::{Fill, Request};
-use anthronet::measure::{Definition, Kind, Sex};
+use anthronet::measure::{Kind, MeasureId, Sex, Stance};
 use anthronet::model::Model;
 use glam::{DVec2, DVec3};
 
@@ -50,6 +51,46 @@ fn cut(vertices: &[glam::Vec3], quads: &[[u32; 4]], centre: DVec3, normal: DVec3
     out
 }
 
+/// The body standing, by plain linear blend skinning of the whole surface with the turns that the definitions name; arms are
+/// moved out of the way, as they hang beside the hips. Not the library's way.
+fn standing(model: &Model, body: &Body) -> Vec<glam::Vec3> {
+    let character = body.character();
+    let tree = character.joint_tree();
+    let turns = model.definitions().turns();
+    let at = |v: u32| body.vertices()[v as usize].as_dvec3();
+    // Per joint, what it does to a point: from the innermost turn outwards.
+    let chains: Vec<Vec<usize>> = (0..tree.len())
+        .map(|joint| {
+            let mut chain = Vec::new();
+            let mut next = Some(joint);
+            while let Some(j) = next {
+                chain.extend(turns.iter().position(|turn| turn.joint == tree.names()[j]));
+                next = tree.parents()[j].map(|p| p as usize);
+            }
+            chain
+        })
+        .collect();
+    let moved = |joint: usize, x: DVec3| {
+        chains[joint].iter().fold(x, |x, &turn| {
+            let centre = turns[turn].centre.position(at);
+            centre + glam::DMat3::from_rotation_z(turns[turn].degrees.to_radians()) * (x - centre)
+        })
+    };
+    let arms = ["upperarm_l", "upperarm_r"].map(|name| turns.iter().position(|t| t.joint == name).unwrap());
+    let weights = character.body_weights().unwrap();
+    (0..body.vertices().len())
+        .map(|v| {
+            let mut sum = DVec3::ZERO;
+            let mut of_arms = 0.0;
+            for (joint, weight) in weights.of(v) {
+                sum += moved(usize::from(joint), at(v as u32)) * f64::from(weight);
+                of_arms += if chains[usize::from(joint)].iter().any(|t| arms.contains(t)) { weight } else { 0.0 };
+            }
+            if of_arms > 0.5 { glam::Vec3::splat(f32::NAN) } else { sum.as_vec3() }
+        })
+        .collect()
+}
+
 fn flat(points: &[DVec3], normal: DVec3) -> Vec<DVec2> {
     let (e1, e2) = normal.any_orthonormal_pair();
     points.iter().map(|p| DVec2::new(p.dot(e1), p.dot(e2))).collect()
@@ -77,18 +118,23 @@ fn tapes_read_what_a_planar_cut_reads() {
         ("calf_circumference_left", 0.004, 0.005),
     ];
     for (name, bias, spread) in limits {
-        let definition: &Definition = model.definitions().iter().find(|d| d.1.name == name).unwrap().1;
+        let id = MeasureId::from_name(name).unwrap();
+        let (definition, reading) = (model.definitions().get(id), model.definitions().reading(id));
         assert_eq!(definition.kind, Kind::Tape);
         let errors: Vec<f64> = people
             .iter()
             .map(|body| {
                 let at = |v: u32| body.vertices()[v as usize].as_dvec3();
-                let tape = definition.read(at);
-                let places: Vec<DVec3> = definition.points.iter().map(|p| p.position(at)).collect();
+                let tape = reading.read(at);
+                let places = reading.positions(at);
                 let centre = places.iter().sum::<DVec3>() / places.len() as f64;
                 let reach = 1.45 * places.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
                 let quads = &body.character().subdivision().refined().quads;
-                let mut plane = cut(body.vertices(), quads, centre, definition.normal, reach);
+                let surface = match definition.stance {
+                    Stance::TPose => body.vertices().to_vec(),
+                    Stance::Standing => standing(&model, body),
+                };
+                let mut plane = cut(&surface, quads, centre, definition.normal, reach);
                 // The other thigh is within reach.
                 plane.retain(|p| !name.starts_with("thigh") || p.x * centre.x > 0.0);
                 // The tape itself, by the slow hull: the definition is what it says.
@@ -107,27 +153,19 @@ fn tapes_read_what_a_planar_cut_reads() {
 #[test]
 fn the_chest_is_the_cut_at_the_nipples() {
     let model = Model::embedded().unwrap();
-    let definition = model.definitions().iter().find(|d| d.1.name == "chest_circumference").unwrap().1;
+    let id = MeasureId::from_name("chest_circumference").unwrap();
+    let (definition, reading) = (model.definitions().get(id), model.definitions().reading(id));
     assert_eq!(definition.kind, Kind::Slice);
-    let mut compared = 0;
     for seed in 1..=12 {
         let sex = Some(Sex::ALL[seed as usize % 2]);
         let body = model.generate(&Request { sex, seed, fill: Fill::Sample, ..Request::default() }).unwrap();
         let at = |v: u32| body.vertices()[v as usize].as_dvec3();
-        let nipples: Vec<DVec3> = definition.points.iter().map(|p| p.position(at)).collect();
+        let nipples = reading.positions(at);
         let level = (nipples[0] + nipples[1]) / 2.0;
-        // Anything at that height but the arms: nothing reaches farther out than the chest itself does.
+        // Anything at that height but the arms, which hang beside the chest.
         let quads = &body.character().subdivision().refined().quads;
-        let armpit = body.skeleton().find("upperarm_l").unwrap();
-        let arm = f64::from(body.skeleton().bind()[armpit].translation.y);
-        if arm - level.y < 0.09 {
-            println!("seed {seed}: left out, the arms hang into the plane");
-            continue;
-        }
-        let plane = cut(body.vertices(), quads, level, DVec3::Y, 2.0);
+        let plane = cut(&standing(&model, &body), quads, level, DVec3::Y, 2.0);
         let whole = hull_perimeter(&flat(&plane, DVec3::Y));
-        assert!((whole - definition.read(at)).abs() < 1e-6, "seed {seed}: {whole} {}", definition.read(at));
-        compared += 1;
+        assert!((whole - reading.read(at)).abs() < 1e-6, "seed {seed}: {whole} {}", reading.read(at));
     }
-    assert!(compared >= 8, "only {compared} of 12 chests were compared");
 }

@@ -36,10 +36,10 @@ fn a_header_that_promises_too_much_is_refused_before_anything_is_allocated() {
 fn another_version_is_named() {
     let mark: &[u8] = br#"format_version\":"#;
     let at = EMBEDDED.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
-    assert_eq!(EMBEDDED[at], b'2');
+    assert_eq!(EMBEDDED[at], b'3');
     let mut bytes = EMBEDDED.to_vec();
     bytes[at] = b'7';
-    assert!(refused(&bytes).contains("format version 2, got 7"));
+    assert!(refused(&bytes).contains("format version 3, got 7"));
 }
 
 #[test]

@@ -141,7 +141,7 @@ pub enum Table {
         /// Number of bodies; `None` for 1000.
         bodies: Option<usize>,
     },
-    /// Statistics of the measures of all bodies, beside the paper's.
+    /// Statistics of the measures of all bodies, beside the paper's and the people's of ANSUR II.
     Statistics,
     /// Bodies made from some of real people's measures, beside these people: the rows of a survey in a folder.
     People(PathBuf),
@@ -162,7 +162,10 @@ pub fn evaluate(table: &Table, as_json: bool) -> Result<String> {
         Table::Statistics => {
             let (_, _, dataset) = data(cache)?;
             let splits = [&dataset.train, &dataset.validation, &dataset.held_out];
-            let statistics = Statistics::of(&splits, dataset.rejected);
+            let surveys = survey::committed()?;
+            let missing = || Error::Invalid("no statistics of ANSUR II".into());
+            let people = surveys.get(Survey::Ansur2.name()).ok_or_else(missing)?;
+            let statistics = Statistics::of(&splits, dataset.rejected, Survey::Ansur2, people)?;
             (json!(statistics), statistics.to_string())
         }
         Table::People(folder) => {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anthronet::condition::{Population, Request};
 use anthronet::format::gltf::to_glb;
-use anthronet::measure::{Definitions, MEASURE_COUNT, MeasureId, Measurements};
+use anthronet::measure::{Definitions, MEASURE_COUNT, MeasureId, Measurements, Sex};
 use anthronet::model::Model;
 use anthronet::random::Random;
 use anthronet::scene::{Scene, SceneOptions};
@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::corpus::{Corpus, Gauge, Split, cage_of};
 use crate::dataset::Bodies;
+use crate::survey::{Survey, SurveyStatistics};
 use crate::{Error, Result};
 
 /// Scores of the generator, millimetres unless stated.
@@ -260,7 +261,7 @@ impl std::fmt::Display for GeneratorScores {
     }
 }
 
-/// Statistics of the measures of the sampled bodies, beside the paper's.
+/// Statistics of the measures of the sampled bodies, beside the paper's and a survey's.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
     /// Number of bodies.
@@ -269,23 +270,29 @@ pub struct Statistics {
     pub rejected: usize,
     /// Root mean square of the rows' z.
     pub rms_z: f64,
-    /// The same without [`NOT_MATCHED`], whose mean is deliberately not the paper's.
-    pub rms_z_matched: f64,
-    /// One row per measure of the paper's.
+    /// One row per sex and measure.
     pub measures: Vec<StatisticsRow>,
 }
 
-/// One row of the table of statistics: ours over all sampled bodies, and the paper's.
+/// One row of the table of statistics; metres.
 #[derive(Clone, Debug, Serialize)]
 pub struct StatisticsRow {
+    /// The sex.
+    pub sex: Sex,
     /// Measure, with its side.
     pub name: String,
-    /// Mean, standard deviation, minimum, maximum; metres.
+    /// Mean, standard deviation, minimum, maximum of the bodies of that sex.
     pub ours: [f64; 4],
-    /// The same of the paper's 100k bodies ("statistics-anthro").
-    pub paper: [f64; 4],
-    /// Our mean minus the paper's, in the paper's standard deviations.
-    pub z: f64,
+    /// Mean and standard deviation of the bodies when those as tall as people count as often as among people: statures are drawn
+    /// evenly.
+    pub as_tall: [f64; 2],
+    /// Mean and standard deviation of the people of ANSUR II, where a column is the measure.
+    pub people: Option<[f64; 2]>,
+    /// Mean, standard deviation, minimum, maximum of the paper's 100k bodies of both sexes ("statistics-anthro"); some of its
+    /// measures are taken elsewhere.
+    pub paper: Option<[f64; 4]>,
+    /// The mean of `as_tall` minus the people's, in the people's standard deviations.
+    pub z: Option<f64>,
 }
 
 /// The paper's table "statistics-anthro": measure without side; mean, standard deviation, minimum, maximum, metres.
@@ -316,65 +323,90 @@ const PAPER: [(&str, [f64; 4]); 24] = [
     ("heel_to_toe_length", [0.269, 0.019, 0.229, 0.306]),
 ];
 
-/// The measure whose mean is deliberately not the paper's: heads as tall as the paper's at its circumference are eggs.
-pub const NOT_MATCHED: &str = "head_height";
-
 /// The paper's mean, standard deviation, minimum and maximum of a measure, metres; `None` for one that it does not have.
 pub fn paper_row(id: MeasureId) -> Option<[f64; 4]> {
     PAPER.iter().find(|row| row.0 == id.base_name()).map(|row| row.1)
 }
 
 impl Statistics {
-    /// The statistics of the paper's measures over some splits of the data set.
-    pub fn of(splits: &[&Bodies], rejected: usize) -> Self {
-        let measures: Vec<StatisticsRow> = MeasureId::all()
-            .filter_map(|id| {
-                let paper = paper_row(id)?;
-                let values: Vec<f64> = splits
+    /// The statistics of some splits of the data set, beside the people of a survey.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the survey lacks a column that a measure is.
+    pub fn of(splits: &[&Bodies], rejected: usize, survey: Survey, people: &SurveyStatistics) -> Result<Self> {
+        let mappings = survey.mappings();
+        let mut measures = Vec::new();
+        for sex in Sex::ALL {
+            let of_sex = people.of(sex);
+            let column = |id: MeasureId| -> Result<Option<[f64; 2]>> {
+                let mapping = mappings.iter().find(|mapping| mapping.measure == id.base_name());
+                let found = mapping.map(|m| Ok::<_, Error>(&of_sex.columns[of_sex.column(m.column)?]));
+                Ok(found.transpose()?.map(|c| [c.mean, c.deviation]))
+            };
+            let bodies: Vec<&[f32]> = splits
+                .iter()
+                .flat_map(|b| (0..b.len()).filter(|&i| b.sex(i) == sex).map(|i| b.measures(i)))
+                .collect();
+            let stature = |row: &[f32]| f64::from(row[MeasureId::HEIGHT.index()]);
+            let weights: Vec<f64> = match column(MeasureId::HEIGHT)? {
+                Some([mean, deviation]) => bodies
                     .iter()
-                    .flat_map(|b| (0..b.len()).map(|i| f64::from(b.measures(i)[id.index()])))
-                    .collect();
-                let n = values.len() as f64;
-                let mean = values.iter().sum::<f64>() / n;
-                let deviation = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
-                let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-                let most = values.iter().copied().fold(0.0, f64::max);
-                Some(StatisticsRow {
+                    .map(|row| libm::exp(-0.5 * libm::pow((stature(row) - mean) / deviation, 2.0)))
+                    .collect(),
+                None => vec![1.0; bodies.len()],
+            };
+            for id in MeasureId::all() {
+                let values = || bodies.iter().map(|row| f64::from(row[id.index()]));
+                let even = spread(values().map(|v| (v, 1.0)));
+                let as_tall = spread(values().zip(weights.iter().copied()));
+                let least = values().fold(f64::INFINITY, f64::min);
+                let people = column(id)?;
+                measures.push(StatisticsRow {
+                    sex,
                     name: id.name().to_owned(),
-                    ours: [mean, deviation, least, most],
-                    paper,
-                    z: (mean - paper[0]) / paper[1],
-                })
-            })
-            .collect();
-        let rms = |of: &dyn Fn(&StatisticsRow) -> bool| {
-            let squares: Vec<f64> = measures.iter().filter(|row| of(row)).map(|row| row.z * row.z).collect();
-            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-        };
-        Self {
+                    ours: [even[0], even[1], least, values().fold(0.0, f64::max)],
+                    as_tall,
+                    people,
+                    paper: paper_row(id),
+                    z: people.map(|[mean, deviation]| (as_tall[0] - mean) / deviation),
+                });
+            }
+        }
+        let squares: Vec<f64> = measures.iter().filter_map(|row| row.z).map(|z| z * z).collect();
+        Ok(Self {
             bodies: splits.iter().map(|b| b.len()).sum(),
             rejected,
-            rms_z: rms(&|_| true),
-            rms_z_matched: rms(&|row| row.name != NOT_MATCHED),
+            rms_z: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             measures,
-        }
+        })
     }
+}
+
+/// Mean and standard deviation of values with weights.
+fn spread(values: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
+    let total: f64 = values.clone().map(|v| v.1).sum();
+    let mean = values.clone().map(|(v, w)| v * w).sum::<f64>() / total;
+    [mean, (values.map(|(v, w)| w * (v - mean) * (v - mean)).sum::<f64>() / total).sqrt()]
 }
 
 impl std::fmt::Display for Statistics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let columns = ["mean", "std", "min", "max"];
-        writeln!(f, "{} bodies ({} rejected); metres; ours, then the paper's", self.bodies, self.rejected)?;
-        writeln!(
-            f,
-            "z: our mean minus the paper's, in the paper's deviations; its rms is {:.2}, and {:.2} without {NOT_MATCHED}",
-            self.rms_z, self.rms_z_matched
-        )?;
-        let titles = columns.map(|c| format!(" {c:>6}")).concat();
-        writeln!(f, "{:28}{titles} |{titles} | {:>6}", "measure", "z")?;
-        for row in &self.measures {
-            let numbers = |of: [f64; 4]| of.map(|v| format!(" {v:6.3}")).concat();
-            writeln!(f, "{:28}{} |{} | {:6.2}", row.name, numbers(row.ours), numbers(row.paper), row.z)?;
+        writeln!(f, "{} bodies ({} rejected); metres", self.bodies, self.rejected)?;
+        writeln!(f, "ours: all; as tall as people: mean and deviation; people: ANSUR II's; paper: its bodies of both sexes")?;
+        writeln!(f, "z: ours as tall as people minus the people's, in the people's deviations; rms {:.2}", self.rms_z)?;
+        let titles = |columns: &[&str]| columns.iter().map(|c| format!(" {c:>6}")).collect::<String>();
+        let four = titles(&["mean", "std", "min", "max"]);
+        let two = titles(&["mean", "std"]);
+        for sex in Sex::ALL {
+            writeln!(f, "\n{sex:28}{four} |{two} |{two} |{four} | {:>5}", "z")?;
+            for row in self.measures.iter().filter(|row| row.sex == sex) {
+                let numbers = |of: &[f64]| of.iter().map(|v| format!(" {v:6.3}")).collect::<String>();
+                let people = row.people.map_or_else(|| titles(&["–", "–"]), |of| numbers(&of));
+                let paper = row.paper.map_or_else(|| titles(&["–"; 4]), |of| numbers(&of));
+                let z = row.z.map_or_else(String::new, |z| format!("{z:5.2}"));
+                let (ours, as_tall) = (numbers(&row.ours), numbers(&row.as_tall));
+                writeln!(f, "{:28}{ours} |{as_tall} |{people} |{paper} | {z:>5}", row.name)?;
+            }
         }
         Ok(())
     }
@@ -416,31 +448,33 @@ mod tests {
 
     #[test]
     fn statistics_tell_how_far_the_means_are() {
-        let mut bodies = Bodies { numbers: vec![0, 1], sex: vec![0, 1], ..Bodies::default() };
-        for sign in [-1.0, 1.0] {
-            // Around a mean that is one of the paper's deviations above the paper's.
-            bodies.measures.extend(MeasureId::all().map(|id| {
-                let [mean, deviation, ..] = paper_row(id).unwrap_or_default();
-                (mean + deviation + sign * 0.01) as f32
-            }));
+        let committed = crate::survey::committed().unwrap();
+        let people = &committed["ansur2"];
+        // Per sex two bodies about a mean that is one of the people's deviations above theirs, but for the stature.
+        let mut bodies = Bodies { numbers: (0..4).collect(), sex: vec![0, 0, 1, 1], ..Bodies::default() };
+        for sex in Sex::ALL {
+            let of_sex = people.of(sex);
+            for sign in [-1.0, 1.0] {
+                bodies.measures.extend(MeasureId::all().map(|id| {
+                    let mapping = Survey::Ansur2.mappings().into_iter().find(|m| m.measure == id.base_name());
+                    let column = mapping.map(|m| &of_sex.columns[of_sex.column(m.column).unwrap()]);
+                    let [mean, deviation] = column.map_or([1.0, 0.1], |c| [c.mean, c.deviation]);
+                    let above = if id == MeasureId::HEIGHT { 0.0 } else { deviation };
+                    (mean + above + sign * 0.01) as f32
+                }));
+            }
         }
-        // The row that is not matched is listed, and counts in the first of the two numbers only.
-        for row in bodies.measures.chunks_exact_mut(MEASURE_COUNT) {
-            let id = MeasureId::from_name(NOT_MATCHED).unwrap();
-            row[id.index()] += 6.0 * paper_row(id).unwrap()[1] as f32;
-        }
-        let statistics = Statistics::of(&[&bodies], 3);
+        let statistics = Statistics::of(&[&bodies], 3, Survey::Ansur2, people).unwrap();
+        assert_eq!((statistics.bodies, statistics.rejected), (4, 3));
+        assert_eq!(statistics.measures.len(), 2 * MEASURE_COUNT);
         for row in &statistics.measures {
-            let z = if row.name == NOT_MATCHED { 7.0 } else { 1.0 };
-            assert!((row.z - z).abs() < 1e-4, "{row:?}");
-            assert!((row.ours[1] - 0.01).abs() < 1e-6, "{row:?}");
-            assert!((row.ours[3] - row.ours[2] - 0.02).abs() < 1e-6, "{row:?}");
+            let expected = if row.name == "height" { 0.0 } else { 1.0 };
+            assert!(row.z.is_none_or(|z| (z - expected).abs() < 1e-3), "{row:?}");
+            assert_eq!(row.z.is_some(), row.people.is_some());
+            assert!((row.ours[1] - 0.01).abs() < 1e-6 && (row.ours[3] - row.ours[2] - 0.02).abs() < 1e-6);
         }
-        assert!((statistics.rms_z - (84.0_f64 / 36.0).sqrt()).abs() < 1e-4);
-        assert!((statistics.rms_z_matched - 1.0).abs() < 1e-4);
-        let json = serde_json::to_value(&statistics).unwrap();
-        assert_eq!((&json["bodies"], &json["rejected"]), (&2.into(), &3.into()));
-        assert_eq!(json["measures"].as_array().unwrap().len(), 36);
-        assert!(statistics.to_string().contains("its rms is 1.53, and 1.00 without head_height"));
+        let mapped = statistics.measures.iter().filter(|row| row.z.is_some()).count() as f64;
+        assert!((statistics.rms_z - ((mapped - 2.0) / mapped).sqrt()).abs() < 1e-3);
+        assert!(statistics.to_string().contains("waist_circumference"));
     }
 }

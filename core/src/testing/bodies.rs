@@ -1,4 +1,4 @@
-//! Three skeletons of the rig with very different proportions, made without the model.
+//! Three skeletons of the rig with very different proportions about those of the model's mean bodies, made without the model.
 
 use std::sync::Arc;
 
@@ -27,11 +27,11 @@ const LEFT: [Row; 11] = [
     ("lowerarm", "upperarm", [0.265, 0.79, 0.01], [0.405, 0.79, 0.01]),
     ("hand", "lowerarm", [0.405, 0.79, 0.01], [0.46, 0.787, 0.015]),
     ("index_01", "hand", [0.46, 0.785, 0.025], [0.47, 0.782, 0.026]),
-    ("thigh", "pelvis", [0.06, 0.515, -0.005], [0.085, 0.293, 0.011]),
-    ("calf", "thigh", [0.085, 0.293, 0.011], [0.115, 0.044, -0.003]),
-    ("foot", "calf", [0.115, 0.044, -0.003], [0.115, 0.006, 0.069]),
-    ("ball", "foot", [0.115, 0.006, 0.069], [0.112, 0.008, 0.115]),
-    ("calf_twist_01", "calf", [0.115, 0.044, -0.003], [0.12, 0.02, -0.003]),
+    ("thigh", "pelvis", [0.064, 0.515, -0.005], [0.088, 0.288, 0.012]),
+    ("calf", "thigh", [0.088, 0.288, 0.012], [0.113, 0.04, 0.0]),
+    ("foot", "calf", [0.113, 0.04, 0.0], [0.114, 0.0055, 0.0745]),
+    ("ball", "foot", [0.114, 0.0055, 0.0745], [0.1115, 0.0065, 0.118]),
+    ("calf_twist_01", "calf", [0.113, 0.04, 0.0], [0.12, 0.02, 0.0]),
 ];
 
 const LEG: [SidedJoint; 4] = [SidedJoint::Thigh, SidedJoint::Calf, SidedJoint::Foot, SidedJoint::Ball];

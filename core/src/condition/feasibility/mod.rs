@@ -53,11 +53,6 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The Mahalanobis distance of `count` measures beyond which there is a warning.
-    pub fn warn(&self, count: usize) -> f64 {
-        chi_squared::upper_quantile(self.warn_tail, count).sqrt()
-    }
-
     /// The Mahalanobis distance of `count` measures beyond which they are refused.
     pub fn refuse(&self, count: usize) -> f64 {
         self.slack * chi_squared::upper_quantile(self.refuse_tail, count).sqrt()
@@ -75,8 +70,10 @@ pub struct Feasibility {
     pub count: usize,
     /// Mahalanobis distance from that population's mean; 0 when nothing is given.
     pub distance: f64,
-    /// The distance beyond which a request is unusual.
-    pub warn: f64,
+    /// Share of that population, under the Gaussian, that is as far from its mean.
+    pub share_beyond: f64,
+    /// The share below which a request is unusual.
+    pub warn_tail: f64,
     /// The distance beyond which a request is refused, from the mean of every prior.
     pub refuse: f64,
     /// The conflicts; empty for a feasible request.
@@ -109,7 +106,8 @@ impl Feasibility {
             population,
             count,
             distance,
-            warn: limits.warn(count),
+            share_beyond: priors[0].share_beyond(given, limits.noise)?,
+            warn_tail: limits.warn_tail,
             refuse: limits.refuse(count),
             conflicts: Vec::new(),
             nearest: *given,
@@ -135,12 +133,12 @@ impl Feasibility {
         self.conflicts.is_empty()
     }
 
-    /// A warning when the measures are feasible, but beyond [`warn`](Self::warn).
+    /// A warning when the measures are feasible, but fewer people than [`warn_tail`](Self::warn_tail) have such.
     pub fn warning(&self) -> Option<String> {
-        if !self.is_feasible() || self.distance <= self.warn {
+        if !self.is_feasible() || self.share_beyond >= self.warn_tail {
             return None;
         }
-        let share = chi_squared::survival(self.distance * self.distance, self.count);
+        let share = self.share_beyond;
         let rarity = if share < 1e-9 {
             "fewer than 1 in 1,000,000,000".to_owned()
         } else {

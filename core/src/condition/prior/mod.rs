@@ -230,12 +230,21 @@ impl SexPrior {
     }
 
     /// Share of people, under the Gaussian, who are at least as far from the mean as the given measures; 1 when nothing is given.
+    /// Two sides of one value count once: surveys take one side, and who gives both alike says nothing about their difference.
     ///
     /// # Errors
     /// As [`SexPrior::project`].
     pub fn share_beyond(&self, given: &GivenMeasures, noise: f64) -> Result<f64> {
+        let once = MeasureId::all().map(|id| {
+            let mirror = id.mirrored();
+            given[id.index()].filter(|value| mirror >= id || given[mirror.index()] != Some(*value))
+        });
+        let mut given: GivenMeasures = [None; MEASURE_COUNT];
+        for (slot, value) in given.iter_mut().zip(once) {
+            *slot = value;
+        }
         let count = given.iter().flatten().count();
-        Ok(chi_squared::survival(self.distance_squared(given, noise)?, count))
+        Ok(chi_squared::survival(self.distance_squared(&given, noise)?, count))
     }
 
     /// Log-likelihood of the given measures, with covariance S_GG + e²I, up to a constant that depends on their number only.
