@@ -49,6 +49,69 @@ struct SliceVertex {
     tail_norms: [f64; STAGES.len()],
 }
 
+/// Vertices of the surface as sums of points of the cage, each of which is read once for all of them.
+struct Stencils {
+    /// The points of the cage.
+    cage: Vec<usize>,
+    /// Per vertex the end of its terms.
+    ends: Vec<usize>,
+    /// Places in `cage`, and weights.
+    terms: Vec<(usize, f64)>,
+}
+
+impl Stencils {
+    fn new(vertices: &[u32], subdivision: &Subdivision) -> Self {
+        let mut place = vec![usize::MAX; subdivision.cage_len()];
+        let (mut cage, mut ends, mut terms) = (Vec::new(), Vec::new(), Vec::new());
+        for &vertex in vertices {
+            for (i, weight) in subdivision.stencil(vertex as usize) {
+                let place = &mut place[i as usize];
+                if *place == usize::MAX {
+                    *place = cage.len();
+                    cage.push(i as usize);
+                }
+                terms.push((*place, f64::from(weight)));
+            }
+            ends.push(terms.len());
+        }
+        Self { cage, ends, terms }
+    }
+
+    /// The vertices, for these points of the cage.
+    fn of(&self, of_cage: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
+        let cage: Vec<DVec3> = self.cage.iter().map(|i| of_cage(*i)).collect();
+        let mut start = 0;
+        let sums = self.ends.iter().map(|&end| {
+            let terms = &self.terms[start..end];
+            start = end;
+            terms.iter().map(|&(i, weight)| cage[i] * weight).sum()
+        });
+        sums.collect()
+    }
+}
+
+/// What a vertex is multiplied by: for most points of the T-pose a number.
+#[derive(Clone, Copy, Debug)]
+enum Factor {
+    Number(f64),
+    Matrix(DMat3),
+}
+
+impl Factor {
+    fn new(matrix: DMat3) -> Self {
+        let number = matrix.x_axis.x;
+        let same = matrix == DMat3::from_diagonal(DVec3::splat(number));
+        if same { Self::Number(number) } else { Self::Matrix(matrix) }
+    }
+
+    fn times(&self, x: DVec3) -> DVec3 {
+        match self {
+            Self::Number(number) => x * *number,
+            Self::Matrix(matrix) => *matrix * x,
+        }
+    }
+}
+
 /// Numbers of components after which the bound on the rest of the sum may already decide a vertex's side of the plane.
 const STAGES: [usize; 2] = [64, 128];
 
@@ -58,19 +121,17 @@ const MARGIN: f64 = 1e-9;
 impl MeasuredSpace {
     /// Collects the points that the definitions depend on.
     pub fn new(space: &ShapeSpace, subdivision: &Subdivision, definitions: &Definitions) -> Self {
-        let mut points: Vec<Vec<(u32, DMat3)>> = Vec::new();
+        // Vertices of the surface over the cage, each once, and the points over these.
+        let vertices = definitions.vertices();
+        let stencils = Stencils::new(&vertices, subdivision);
+        let mut points: Vec<Vec<(usize, Factor)>> = Vec::new();
         let mut measures: Vec<Measure> = MeasureId::all()
             .map(|id| {
                 let reading = definitions.reading(id);
                 let first = points.len() as u32;
                 points.extend(reading.points().iter().map(|point| {
-                    let mut over_cage = std::collections::BTreeMap::new();
-                    for &(vertex, matrix) in point.terms() {
-                        for (i, w) in subdivision.stencil(vertex as usize) {
-                            *over_cage.entry(i).or_insert(DMat3::ZERO) += matrix * f64::from(w);
-                        }
-                    }
-                    over_cage.into_iter().collect()
+                    let terms = point.terms().iter();
+                    terms.map(|(v, m)| (vertices.partition_point(|u| u < v), Factor::new(*m))).collect()
                 }));
                 let mut own = reading.definition().clone();
                 for (point, _) in own.points.iter_mut().flat_map(|point| &mut point.0) {
@@ -83,15 +144,16 @@ impl MeasuredSpace {
                 Measure::new(own, vertices.collect())
             })
             .collect();
+        let place = |of_vertices: &[DVec3], terms: &[(usize, Factor)]| -> DVec3 {
+            terms.iter().map(|(v, factor)| factor.times(of_vertices[*v])).sum()
+        };
 
         let k = space.components();
         let mut rows = vec![0.0_f32; points.len() * 3 * k];
         for component in 0..k {
+            let moved = stencils.of(|i| DVec3::from_array(space.component(component, i)));
             for (point, terms) in points.iter().enumerate() {
-                let mut sum = DVec3::ZERO;
-                for &(i, matrix) in terms {
-                    sum += matrix * DVec3::from_array(space.component(component, i as usize));
-                }
+                let sum = place(&moved, terms);
                 for axis in 0..3 {
                     rows[(3 * point + axis) * k + component] = sum[axis] as f32;
                 }
@@ -103,10 +165,8 @@ impl MeasuredSpace {
                 vertex.tail_norms = STAGES.map(|stage| norm(row.iter().skip(stage).map(|x| f64::from(*x))));
             }
         }
-        let mean = points
-            .iter()
-            .map(|terms| terms.iter().map(|&(p, matrix)| matrix * space.mean_point(p as usize).as_dvec3()).sum())
-            .collect();
+        let at_mean = stencils.of(|i| space.mean_point(i).as_dvec3());
+        let mean = points.iter().map(|terms| place(&at_mean, terms)).collect();
         Self { components: k, measures, mean, rows }
     }
 

@@ -114,22 +114,22 @@ impl SkinWeights {
                 format!("expected {cage} vertices, got {}", self.len()),
             ));
         }
+        let joint_count = self.joints.iter().max().map_or(0, |j| usize::from(*j) + 1);
         let mut out = Self { offsets: vec![0], ..Self::default() };
-        let mut sums = vec![0.0_f32; self.joint_count()];
         for vertex in 0..subdivision.refined().vertex_count {
-            for (joint, weight) in self.refined_row(subdivision, vertex, &mut sums) {
+            for (joint, weight) in self.refined_row(subdivision, vertex) {
                 out.joints.push(joint);
                 out.weights.push(weight);
             }
             out.offsets.push(out.joints.len() as u32);
         }
-        Self::new(out.offsets, out.joints, out.weights, self.joint_count())
+        Self::new(out.offsets, out.joints, out.weights, joint_count)
     }
 
     /// Joints and weights of one vertex of the refined surface, as [`refine`](Self::refine) gives them: joints ascending, weights
     /// summing to one.
     pub fn refined(&self, subdivision: &Subdivision, vertex: usize) -> Vec<(u16, f32)> {
-        let mut row = self.refined_row(subdivision, vertex, &mut vec![0.0; self.joint_count()]);
+        let mut row = self.refined_row(subdivision, vertex);
         let sum: f32 = row.iter().map(|r| r.1).sum();
         for (_, weight) in &mut row {
             *weight /= sum;
@@ -137,25 +137,21 @@ impl SkinWeights {
         row
     }
 
-    fn joint_count(&self) -> usize {
-        self.joints.iter().max().map_or(0, |j| usize::from(*j) + 1)
-    }
-
-    /// The same before it is normalised. `sums` holds a zero per joint, before and after.
-    fn refined_row(&self, subdivision: &Subdivision, vertex: usize, sums: &mut [f32]) -> Vec<(u16, f32)> {
-        let mut touched: Vec<u16> = Vec::new();
+    /// The same before it is normalised.
+    fn refined_row(&self, subdivision: &Subdivision, vertex: usize) -> Vec<(u16, f32)> {
+        let mut sums: Vec<(u16, f32)> = Vec::new();
         for (cage, share) in subdivision.stencil(vertex) {
             for (joint, weight) in self.of(cage as usize) {
-                if sums[usize::from(joint)] == 0.0 && !touched.contains(&joint) {
-                    touched.push(joint);
+                match sums.iter_mut().find(|sum| sum.0 == joint) {
+                    Some(sum) => sum.1 += weight * share,
+                    None => sums.push((joint, weight * share)),
                 }
-                sums[usize::from(joint)] += weight * share;
             }
         }
-        touched.sort_unstable();
-        let row = touched.into_iter().map(|joint| (joint, std::mem::take(&mut sums[usize::from(joint)])));
+        sums.sort_unstable_by_key(|sum| sum.0);
         // Vertex points have small negative stencil weights where few faces meet.
-        row.filter(|(_, weight)| *weight > 1e-6).collect()
+        sums.retain(|(_, weight)| *weight > 1e-6);
+        sums
     }
 
     /// The strongest influences of each vertex, normalised.
