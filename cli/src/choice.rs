@@ -35,7 +35,9 @@ pub(crate) fn population() -> impl TypedValueParser<Value = Population> {
     one_of(Population::ALL.map(|population| {
         PossibleValue::new(population.name()).help(match population {
             Population::Ansur2 => "Soldiers of the United States, 2010 to 2012 (ANSUR II)",
-            Population::Synthetic => "The bodies that the model was trained on: every build and stature alike",
+            Population::Synthetic => {
+                "The bodies that the model was trained on: every build and stature alike"
+            }
         })
     }))
 }

@@ -84,7 +84,8 @@ fn standing(model: &Model, body: &Body) -> Vec<glam::Vec3> {
             let mut of_arms = 0.0;
             for (joint, weight) in weights.of(v) {
                 sum += moved(usize::from(joint), at(v as u32)) * f64::from(weight);
-                of_arms += if chains[usize::from(joint)].iter().any(|t| arms.contains(t)) { weight } else { 0.0 };
+                of_arms +=
+                    if chains[usize::from(joint)].iter().any(|t| arms.contains(t)) { weight } else { 0.0 };
             }
             if of_arms > 0.5 { glam::Vec3::splat(f32::NAN) } else { sum.as_vec3() }
         })

@@ -67,7 +67,8 @@ impl Fitted {
     /// The text of `sampling_bias.json`.
     pub fn to_json(&self) -> String {
         let of_sexes = Sex::ALL.iter().zip(&self.centres).map(|(sex, centres)| {
-            let lines: Vec<String> = centres.iter().map(|(name, value)| format!("  {name:?}: {value}")).collect();
+            let lines: Vec<String> =
+                centres.iter().map(|(name, value)| format!("  {name:?}: {value}")).collect();
             format!(" \"{sex}\": {{\n{}\n }}", lines.join(",\n"))
         });
         format!("{{\n{}\n}}\n", of_sexes.collect::<Vec<_>>().join(",\n"))
@@ -81,8 +82,15 @@ impl std::fmt::Display for Fitted {
             let rms = (of_sex.iter().map(|m| m.z() * m.z()).sum::<f64>() / of_sex.len() as f64).sqrt();
             let [muscle, weight] =
                 [MUSCLE, WEIGHT].map(|name| centres.get(name).copied().unwrap_or(f64::NAN));
-            writeln!(f, "{sex}: muscle {muscle:.2}, weight {weight:.2}; metres; z in deviations of ANSUR II, rms {rms:.2}")?;
-            writeln!(f, "{:28} {:>7} {:>7} | {:>7} {:>7} | {:>6}", "column", "mean", "sd", "people", "sd", "z")?;
+            writeln!(
+                f,
+                "{sex}: muscle {muscle:.2}, weight {weight:.2}; metres; z in deviations of ANSUR II, rms {rms:.2}"
+            )?;
+            writeln!(
+                f,
+                "{:28} {:>7} {:>7} | {:>7} {:>7} | {:>6}",
+                "column", "mean", "sd", "people", "sd", "z"
+            )?;
             for mean in of_sex {
                 let [[a, b], [c, d]] = [mean.ours, mean.people];
                 writeln!(f, "{:28} {a:7.4} {b:7.4} | {c:7.4} {d:7.4} | {:6.2}", mean.column, mean.z())?;
@@ -117,8 +125,7 @@ impl Aims {
 
     /// Weights of differences in standard deviations of the survey.
     fn weights(&self, statistics: &SexStatistics) -> Result<Mat<f64>> {
-        let of: Vec<usize> =
-            self.columns.iter().map(|c| statistics.column(&c.0)).collect::<Result<_>>()?;
+        let of: Vec<usize> = self.columns.iter().map(|c| statistics.column(&c.0)).collect::<Result<_>>()?;
         let deviation = |i: usize| statistics.columns[of[i]].deviation;
         let correlations = Mat::from_fn(self.read, self.read, |i, j| {
             let noise = if i == j { NOISE } else { 0.0 };
@@ -241,9 +248,14 @@ pub fn fit(corpus: &mut Corpus, progress: &(dyn Fn(&str, u64, u64) + Sync)) -> R
             .zip(offsets.iter().zip(&middle))
             .map(|(name, (offset, middle))| (name.clone(), ((middle + offset) * 1e4).round() / 1e4))
             .collect();
-        means.extend(aims.columns.iter().zip(ours.iter().zip(&of_people)).map(|((column, _), (ours, people))| {
-            Mean { sex, column: column.clone(), ours: *ours, people: *people }
-        }));
+        means.extend(aims.columns.iter().zip(ours.iter().zip(&of_people)).map(
+            |((column, _), (ours, people))| Mean {
+                sex,
+                column: column.clone(),
+                ours: *ours,
+                people: *people,
+            },
+        ));
     }
     Ok(Fitted { centres, means })
 }

@@ -101,7 +101,11 @@ impl Corpus {
     ///
     /// # Errors
     /// When a turn does not fit, and those of `take`.
-    pub fn with_standing<T>(&self, turns: &[Turn], take: impl FnOnce(&Standing<'_>) -> Result<T>) -> Result<T> {
+    pub fn with_standing<T>(
+        &self,
+        turns: &[Turn],
+        take: impl FnOnce(&Standing<'_>) -> Result<T>,
+    ) -> Result<T> {
         let rig = &self.assets.rig;
         let joints: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
         let parents: Vec<Option<u32>> = rig.joints.iter().map(|j| j.parent.map(|p| p as u32)).collect();

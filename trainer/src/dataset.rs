@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
 use crate::basis::{Basis, COMPONENTS, flatten};
-use crate::sampling::centres_hash;
 use crate::corpus::{Corpus, DATA_VERSION, Gauge, Plausible, SEED, Split};
+use crate::sampling::centres_hash;
 use crate::{Error, Result};
 
 /// Number of drawn bodies; implausible ones among them are left out.

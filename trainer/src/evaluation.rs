@@ -333,7 +333,12 @@ impl Statistics {
     ///
     /// # Errors
     /// [`Error::Invalid`] when the survey lacks a column that a measure is.
-    pub fn of(splits: &[&Bodies], rejected: usize, survey: Survey, people: &SurveyStatistics) -> Result<Self> {
+    pub fn of(
+        splits: &[&Bodies],
+        rejected: usize,
+        survey: Survey,
+        people: &SurveyStatistics,
+    ) -> Result<Self> {
         let mappings = survey.mappings();
         let mut measures = Vec::new();
         for sex in Sex::ALL {
@@ -392,8 +397,15 @@ fn spread(values: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
 impl std::fmt::Display for Statistics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "{} bodies ({} rejected); metres", self.bodies, self.rejected)?;
-        writeln!(f, "ours: all; as tall as people: mean and deviation; people: ANSUR II's; paper: its bodies of both sexes")?;
-        writeln!(f, "z: ours as tall as people minus the people's, in the people's deviations; rms {:.2}", self.rms_z)?;
+        writeln!(
+            f,
+            "ours: all; as tall as people: mean and deviation; people: ANSUR II's; paper: its bodies of both sexes"
+        )?;
+        writeln!(
+            f,
+            "z: ours as tall as people minus the people's, in the people's deviations; rms {:.2}",
+            self.rms_z
+        )?;
         let titles = |columns: &[&str]| columns.iter().map(|c| format!(" {c:>6}")).collect::<String>();
         let four = titles(&["mean", "std", "min", "max"]);
         let two = titles(&["mean", "std"]);

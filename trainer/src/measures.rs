@@ -255,7 +255,8 @@ impl<'a> Definer<'a> {
     /// # Errors
     /// When the landmarks do not fit the mesh.
     pub fn new(corpus: &'a Corpus, landmarks: &'a [Landmark]) -> Result<Self> {
-        let bodies: Vec<Vec<Vec3>> = (0..MEAN_OF).into_par_iter().map(|n| corpus.specimen(n).points).collect();
+        let bodies: Vec<Vec<Vec3>> =
+            (0..MEAN_OF).into_par_iter().map(|n| corpus.specimen(n).points).collect();
         let mut cage = vec![DVec3::ZERO; cage_of(&bodies[0]).len()];
         for body in &bodies {
             for (sum, p) in cage.iter_mut().zip(body) {
@@ -265,7 +266,8 @@ impl<'a> Definer<'a> {
         let mean = corpus.subdivision.refine_f64(&cage)?;
         let turns = turns(landmarks)?;
         let standing = corpus.with_standing(&turns, |standing| {
-            let stands = |v: usize| standing.place(&Point(vec![(v as u32, 1.0)])).position(|v| mean[v as usize]);
+            let stands =
+                |v: usize| standing.place(&Point(vec![(v as u32, 1.0)])).position(|v| mean[v as usize]);
             Ok((0..mean.len()).map(stands).collect())
         })?;
         Ok(Self { corpus, landmarks, surface: Surface::new(corpus), mean: [mean, standing] })
@@ -431,7 +433,8 @@ impl<'a> Definer<'a> {
         };
         let normal = (DVec3::from(normal) * flip).normalize_or(DVec3::Y);
         let points = self.surface.planar_loop(mean, origin, near, normal);
-        let points = points.ok_or_else(|| Error::Invalid(format!("{name}: the plane does not cut a closed loop")))?;
+        let points =
+            points.ok_or_else(|| Error::Invalid(format!("{name}: the plane does not cut a closed loop")))?;
         Ok((points, normal))
     }
 

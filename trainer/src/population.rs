@@ -20,11 +20,7 @@ const DISAGREEMENT: f64 = 1e-4;
 ///
 /// # Errors
 /// When the survey lacks a column that a measure is, or the bodies' covariance is singular.
-pub fn prior(
-    survey: Survey,
-    statistics: &SurveyStatistics,
-    bodies: &[Vec<f64>; 3],
-) -> Result<[Vec<f64>; 3]> {
+pub fn prior(survey: Survey, statistics: &SurveyStatistics, bodies: &[Vec<f64>; 3]) -> Result<[Vec<f64>; 3]> {
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     for sex in Sex::ALL {
         let n = MEASURE_COUNT;
@@ -46,12 +42,7 @@ struct Mapped {
     column: usize,
 }
 
-fn of_sex(
-    survey: Survey,
-    people: &SexStatistics,
-    mean: &[f64],
-    covariance: &[f64],
-) -> Result<[Vec<f64>; 3]> {
+fn of_sex(survey: Survey, people: &SexStatistics, mean: &[f64], covariance: &[f64]) -> Result<[Vec<f64>; 3]> {
     let n = MEASURE_COUNT;
     let mapped = survey.mappings().into_iter().map(|mapping| {
         let ids = expand_name(mapping.measure).unwrap_or_default();
@@ -143,7 +134,11 @@ fn normal_quantile(percent: usize) -> f64 {
     let (mut low, mut high) = (-4.0, 4.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if 0.5 * libm::erfc(-middle / std::f64::consts::SQRT_2) < share { low = middle } else { high = middle }
+        if 0.5 * libm::erfc(-middle / std::f64::consts::SQRT_2) < share {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     0.5 * (low + high)
 }

@@ -250,8 +250,7 @@ impl Sampler {
         }
         let drawn = self.draws.iter().flat_map(|group| group.draw(&mut rng)).collect::<Vec<f64>>();
         for (Local { modifier, centres }, drawn) in self.locals.iter().zip(drawn) {
-            let value =
-                centres[sex.index()] + with_stature(&modifier.name, stature) + middle(drawn, 0.0);
+            let value = centres[sex.index()] + with_stature(&modifier.name, stature) + middle(drawn, 0.0);
             let asymmetry = if modifier.name.starts_with(TOE_LENGTH) { TOE_ASYMMETRY } else { ASYMMETRY };
             for [negative, positive] in &modifier.pairs {
                 let sided = if modifier.pairs.len() > 1 { asymmetry * rng.normal() } else { 0.0 };

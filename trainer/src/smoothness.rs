@@ -94,7 +94,8 @@ impl SmoothDraws {
         sliders: &[(&Modifier, f64)],
         stiffness: f64,
     ) -> Result<Self> {
-        let bent: Vec<Vec<DVec3>> = sliders.iter().map(|(modifier, _)| bending.of(targets, modifier)).collect();
+        let bent: Vec<Vec<DVec3>> =
+            sliders.iter().map(|(modifier, _)| bending.of(targets, modifier)).collect();
         let n = sliders.len();
         let precision = Mat::from_fn(n, n, |i, j| {
             let together: f64 = bent[i].iter().zip(&bent[j]).map(|(a, b)| a.dot(*b)).sum();
@@ -172,8 +173,7 @@ mod tests {
         let jacobian = Mat::from_fn(1, 2, |_, j| [2.0, 1.0][j]);
         let one = Mat::from_fn(1, 1, |_, _| 1.0);
         let small = Mat::from_fn(2, 2, |i, j| if i == j { 1e-6 } else { 0.0 });
-        let step =
-            bounded_step(&jacobian, &one, &[-2.0], &small, &[0.0, 0.0], &[[-0.5, 0.5], [-5.0, 5.0]]);
+        let step = bounded_step(&jacobian, &one, &[-2.0], &small, &[0.0, 0.0], &[[-0.5, 0.5], [-5.0, 5.0]]);
         assert!((step[0] - 0.5).abs() < 1e-5 && (step[1] - 1.0).abs() < 1e-4, "{step:?}");
         // With a price both share by their effect.
         let price = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { 0.0 });

@@ -138,7 +138,12 @@ impl<'a> Standing<'a> {
             let mut left = 1.0;
             for (turn, share) in self.shares(vertex) {
                 left -= share;
-                self.add_carried(turn, vertex, DMat3::from_diagonal(DVec3::splat(weight * share)), &mut terms);
+                self.add_carried(
+                    turn,
+                    vertex,
+                    DMat3::from_diagonal(DVec3::splat(weight * share)),
+                    &mut terms,
+                );
             }
             add(&mut terms, vertex, DMat3::from_diagonal(DVec3::splat(weight * left)));
         }

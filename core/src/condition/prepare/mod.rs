@@ -61,8 +61,7 @@ impl Prepared {
         let prior = priors.of(request.population).of(sex);
         let bodies = priors.of(Population::Synthetic).of(sex);
         let judges = [prior, bodies];
-        let feasibility =
-            Feasibility::assess(judges, request.population, sex, &request.measures, limits)?;
+        let feasibility = Feasibility::assess(judges, request.population, sex, &request.measures, limits)?;
         if !feasibility.is_feasible() {
             if !request.nearest {
                 return Err(Error::Infeasible(feasibility.infeasible()));

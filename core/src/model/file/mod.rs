@@ -333,9 +333,8 @@ impl ModelParts {
     /// # Errors
     /// As [`Prior::from_slices`].
     pub fn priors(&self) -> Result<Priors> {
-        let of = |[mean, covariance, quantiles]: &[Vec<f64>; 3]| {
-            Prior::from_slices(mean, covariance, quantiles)
-        };
+        let of =
+            |[mean, covariance, quantiles]: &[Vec<f64>; 3]| Prior::from_slices(mean, covariance, quantiles);
         Ok(Priors::new([of(&self.priors[0])?, of(&self.priors[1])?]))
     }
 
