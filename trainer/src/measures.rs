@@ -163,6 +163,9 @@ const FITTED: &[(&str, f64, Stance, How)] = &[
     ("bimalleolarbreadth", 1.0, T, Straight(at("lateral_malleolus"), at("medial_malleolus"))),
 ];
 
+/// Landmarks with weights.
+type Weighted = &'static [(&'static str, f64)];
+
 /// The turns from the T-pose to the standing body, of the left side, degrees, each with its centre: landmarks with weights, those
 /// of the other side last.
 ///
@@ -170,7 +173,7 @@ const FITTED: &[(&str, f64, Stance, How)] = &[
 /// spreads them. Centres lie where the joints do: at the collarbone's inner end; below the acromion, two fifths of the way to the
 /// hollow of the armpit; at the height of the trochanter, half as far from the middle (Harrington et al. 2007 have the hip joint
 /// at 0.33 of the distance of the iliac spines plus 7 mm).
-const TURNS: [(SidedJoint, f64, &[(&str, f64)], &[(&str, f64)]); 3] = [
+const TURNS: [(SidedJoint, f64, Weighted, Weighted); 3] = [
     (SidedJoint::Clavicle, -6.0, &[("suprasternale", 0.88), ("acromion", 0.12)], &[]),
     (SidedJoint::Upperarm, -72.0, &[("acromion", 0.62), ("axilla", 0.38)], &[]),
     (SidedJoint::Thigh, -5.0, &[("trochanterion", 0.76)], &[("trochanterion", 0.24)]),
