@@ -5,7 +5,7 @@
 //! skin least, by the precision that sliders are drawn with ([`crate::smoothness`]). What the networks read is weighed by
 //! people's correlations: a waist a quarter of a deviation too narrow is nothing, beside exact hips and chest it is a belt.
 
-use anthronet::measure::{Definition, MEASURE_COUNT, MeasureId, Sex};
+use anthronet::measure::{Definition, MEASURE_COUNT, MeasureId, Measurements, Sex};
 use faer::Mat;
 use rayon::prelude::*;
 
@@ -123,6 +123,25 @@ impl Aims {
         Self { columns: all, read, weights: columns.iter().map(|c| c.1).collect() }
     }
 
+    /// Mean and standard deviation of each column over the bodies of these numbers; `read` gives measures and further columns.
+    fn means(&self, read: impl Fn(u64) -> (Measurements, Vec<f64>) + Sync, bodies: u64) -> Vec<[f64; 2]> {
+        let row = |n: u64| -> Vec<f64> {
+            let (own, further) = read(n);
+            let value = |i: &usize| own.get(*i).copied().unwrap_or_else(|| further[i - MEASURE_COUNT]);
+            let columns = self.columns.iter();
+            columns.map(|(_, of)| of.iter().map(value).sum::<f64>() / of.len() as f64).collect()
+        };
+        let rows: Vec<Vec<f64>> = (0..bodies).into_par_iter().map(row).collect();
+        let n = bodies as f64;
+        (0..self.columns.len())
+            .map(|i| {
+                let mean = rows.iter().map(|r| r[i]).sum::<f64>() / n;
+                let variance = rows.iter().map(|r| (r[i] - mean) * (r[i] - mean)).sum::<f64>() / n;
+                [mean, variance.sqrt()]
+            })
+            .collect()
+    }
+
     /// Weights of differences in standard deviations of the survey.
     fn weights(&self, statistics: &SexStatistics) -> Result<Mat<f64>> {
         let of: Vec<usize> = self.columns.iter().map(|c| statistics.column(&c.0)).collect::<Result<_>>()?;
@@ -138,6 +157,46 @@ impl Aims {
             (false, true) => UNREAD * self.weights[i - self.read],
             (false, false) => 0.0,
         }))
+    }
+}
+
+/// The sliders that are fitted: the local ones, then muscle and weight.
+struct Sliders {
+    names: Vec<String>,
+    /// Where each starts.
+    middle: Vec<f64>,
+    /// How far it may go from there.
+    bounds: Vec<[f64; 2]>,
+    /// Price of going there.
+    precision: Mat<f64>,
+}
+
+impl Sliders {
+    fn new(corpus: &Corpus) -> Self {
+        let (locals, precision_of_locals) = corpus.sampler.precision();
+        let mut names: Vec<String> = locals.into_iter().map(str::to_owned).collect();
+        let of_locals = names.len();
+        names.extend([MUSCLE, WEIGHT].map(str::to_owned));
+        let precision = Mat::from_fn(names.len(), names.len(), |i, j| {
+            PRICE
+                * match (i < of_locals && j < of_locals, i == j) {
+                    (true, _) => precision_of_locals[(i, j)],
+                    (false, true) => 1.0 / (MACRO_SPREAD * MACRO_SPREAD),
+                    (false, false) => 0.0,
+                }
+        });
+        let middle = (0..names.len()).map(|i| if i < of_locals { 0.0 } else { 0.5 }).collect();
+        let bounds = (0..names.len()).map(|i| match i.checked_sub(of_locals) {
+            None => [-FURTHEST, FURTHEST],
+            Some(i) => MACROS[i].map(|m| m - 0.5),
+        });
+        Self { middle, bounds: bounds.collect(), precision, names }
+    }
+
+    /// The centres at these distances from the middle, as the file keeps them.
+    fn centres(&self, offsets: &[f64]) -> Centres {
+        let values = offsets.iter().zip(&self.middle).map(|(o, m)| ((m + o) * 1e4).round() / 1e4);
+        self.names.iter().cloned().zip(values).collect()
     }
 }
 
@@ -158,28 +217,12 @@ pub fn fit(corpus: &mut Corpus, progress: &(dyn Fn(&str, u64, u64) + Sync)) -> R
     let gauge = Gauge::new(&definitions, &subdivision);
     let extra = Gauge::of(extra, &subdivision);
 
-    let (locals, precision_of_locals) = corpus.sampler.precision();
-    let mut names: Vec<String> = locals.into_iter().map(str::to_owned).collect();
-    let of_locals = names.len();
-    names.extend([MUSCLE, WEIGHT].map(str::to_owned));
-    let precision = Mat::from_fn(names.len(), names.len(), |i, j| {
-        PRICE
-            * match (i < of_locals && j < of_locals, i == j) {
-                (true, _) => precision_of_locals[(i, j)],
-                (false, true) => 1.0 / (MACRO_SPREAD * MACRO_SPREAD),
-                (false, false) => 0.0,
-            }
-    });
-    let middle: Vec<f64> = (0..names.len()).map(|i| if i < of_locals { 0.0 } else { 0.5 }).collect();
-    let bounds: Vec<[f64; 2]> = (0..names.len())
-        .map(|i| if i < of_locals { [-FURTHEST, FURTHEST] } else { MACROS[i - of_locals].map(|m| m - 0.5) })
-        .collect();
-
+    let sliders = Sliders::new(corpus);
     let statistics = survey::committed()?;
     let statistics = statistics
         .get(Survey::Ansur2.name())
         .ok_or_else(|| Error::Invalid("no statistics of ANSUR II".into()))?;
-    let total = 2 * (JACOBIAN_BODIES * (names.len() as u64 + 1) + FITTED_BODIES * (STEPS as u64 + 1));
+    let total = 2 * (JACOBIAN_BODIES * (sliders.names.len() as u64 + 1) + FITTED_BODIES * (STEPS as u64 + 1));
     let mut done = 0;
     let mut centres = [Centres::new(), Centres::new()];
     let mut means = Vec::new();
@@ -194,39 +237,23 @@ pub fn fit(corpus: &mut Corpus, progress: &(dyn Fn(&str, u64, u64) + Sync)) -> R
         let stature = [stature.mean, stature.deviation];
         let weights = aims.weights(people)?;
         let mut measure = |corpus: &mut Corpus, offsets: &[f64], bodies: u64| -> Result<Vec<[f64; 2]>> {
-            let values: Centres = names
-                .iter()
-                .zip(offsets.iter().zip(&middle))
-                .map(|(name, (offset, middle))| (name.clone(), ((middle + offset) * 1e4).round() / 1e4))
-                .collect();
-            corpus.sampler.set_centres(sex, &values)?;
-            let read = |n: u64| {
-                let fixed = Fixed { sex: Some(sex), stature: Some(stature), middle: false };
-                let points = corpus.fixed_specimen(n, fixed).points;
-                let own = gauge.read(&points);
-                let further = extra.read_all(&points);
-                let value = |i: &usize| own.get(*i).copied().unwrap_or_else(|| further[i - MEASURE_COUNT]);
-                aims.columns
-                    .iter()
-                    .map(|(_, of)| of.iter().map(value).sum::<f64>() / of.len() as f64)
-                    .collect::<Vec<f64>>()
-            };
-            let rows: Vec<Vec<f64>> = (0..bodies).into_par_iter().map(read).collect();
+            corpus.sampler.set_centres(sex, &sliders.centres(offsets))?;
+            let fixed = Fixed { sex: Some(sex), stature: Some(stature), middle: false };
+            let means = aims.means(
+                |n| {
+                    let points = corpus.fixed_specimen(n, fixed).points;
+                    (gauge.read(&points), extra.read_all(&points))
+                },
+                bodies,
+            );
             done += bodies;
             progress("mean measures", done, total);
-            let n = bodies as f64;
-            Ok((0..aims.columns.len())
-                .map(|i| {
-                    let mean = rows.iter().map(|r| r[i]).sum::<f64>() / n;
-                    let variance = rows.iter().map(|r| (r[i] - mean) * (r[i] - mean)).sum::<f64>() / n;
-                    [mean, variance.sqrt()]
-                })
-                .collect())
+            Ok(means)
         };
-        let mut offsets = vec![0.0; names.len()];
+        let mut offsets = vec![0.0; sliders.names.len()];
         let before = measure(corpus, &offsets, JACOBIAN_BODIES)?;
-        let mut jacobian = Mat::zeros(aims.columns.len(), names.len());
-        for j in 0..names.len() {
+        let mut jacobian = Mat::zeros(aims.columns.len(), sliders.names.len());
+        for j in 0..sliders.names.len() {
             offsets[j] = NUDGE;
             let after = measure(corpus, &offsets, JACOBIAN_BODIES)?;
             offsets[j] = 0.0;
@@ -237,17 +264,14 @@ pub fn fit(corpus: &mut Corpus, progress: &(dyn Fn(&str, u64, u64) + Sync)) -> R
         let mut ours = measure(corpus, &offsets, FITTED_BODIES)?;
         for _ in 0..STEPS {
             let residual: Vec<f64> = ours.iter().zip(&of_people).map(|(o, p)| (o[0] - p[0]) / p[1]).collect();
-            let step = bounded_step(&jacobian, &weights, &residual, &precision, &offsets, &bounds);
+            let step =
+                bounded_step(&jacobian, &weights, &residual, &sliders.precision, &offsets, &sliders.bounds);
             for (offset, step) in offsets.iter_mut().zip(step) {
                 *offset += step;
             }
             ours = measure(corpus, &offsets, FITTED_BODIES)?;
         }
-        centres[sex.index()] = names
-            .iter()
-            .zip(offsets.iter().zip(&middle))
-            .map(|(name, (offset, middle))| (name.clone(), ((middle + offset) * 1e4).round() / 1e4))
-            .collect();
+        centres[sex.index()] = sliders.centres(&offsets);
         means.extend(aims.columns.iter().zip(ours.iter().zip(&of_people)).map(
             |((column, _), (ours, people))| Mean {
                 sex,

@@ -135,9 +135,9 @@ fn normal_quantile(percent: usize) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if 0.5 * libm::erfc(-middle / std::f64::consts::SQRT_2) < share {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     0.5 * (low + high)
